@@ -1,5 +1,7 @@
 """Containers, each written by its own library: what was written is what is read."""
 
+import os
+import signal
 import sys
 from io import BytesIO
 
@@ -11,9 +13,12 @@ from mcap_ros2.writer import Writer as Ros2Writer
 from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 from scipy.io import savemat
 
+from bench.bounds import bounded, bounds
 from bench.errors import InputError
 from bench.trace.choose import GivenOptions
 from bench.trace.read import read, read_recording
+from bench.trace.readers.containers import apart
+from bench.trace.source import Source
 from tests.trace.recordings import current, velocity
 
 TIME = np.arange(400) * 2e-3
@@ -205,3 +210,21 @@ def test_a_missing_library_is_reported_with_how_to_install_it(tmp_path, monkeypa
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(InputError, match=rf"is not installed; install it: pip install 'servobench\[{extra}\]'"):
         read_recording(path)
+
+
+def deadly(source):
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def refusing(source):
+    raise InputError(source.path, f"found {bounds().size:g}", "allowed: less")
+
+
+def test_a_library_that_a_file_ends_with_its_process_is_read_by_another_process(monkeypatch):
+    """asammdf's compiled part crashes on one of 40 files with a flipped bit."""
+    monkeypatch.delenv("SERVOBENCH_WATCHED", raising=False)
+    source = Source("run.mf4", b"MDF", ".mf4")
+    with pytest.raises(InputError, match=r"run\.mf4: the file is truncated or damaged .*SIGSEGV"):
+        apart(deadly)(source)
+    with bounded("5 kB"), pytest.raises(InputError, match=r"^run\.mf4: found 5120; allowed: less$"):
+        apart(refusing)(source)

@@ -56,6 +56,10 @@ def parquet_table(content: bytes, path: str) -> pa.Table:
     ):
         fields, meta = list(file.schema_arrow), file.metadata
         wanted = [field.name for field in fields if is_numeric(field.type)]
+        # Where what is told of a column is damaged, asking for it ends the process: Arrow raises while it reads alone.
+        plain = [field.name for field in fields if is_numeric(field.type) and not field.type.num_fields]
+        for k in range(meta.num_row_groups if plain else 0):
+            next(file.iter_batches(batch_size=1, row_groups=[k], columns=plain), None)
         chunks = [meta.row_group(k).column(j) for k in range(meta.num_row_groups) for j in range(meta.num_columns)]
         read = [one for one in chunks if any(f"{one.path_in_schema}.".startswith(f"{name}.") for name in wanted)]
         size = sum(max(one.num_values * WIDTH, one.total_uncompressed_size) for one in read)

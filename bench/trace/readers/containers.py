@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import importlib
 import logging
+import math
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from io import BytesIO
 from typing import Any
 
+from bench.bounds import Bounds, bounds, within
 from bench.errors import InputError
+from bench.jobs.process import Failure, Limits, WorkerProcess, watched
+from bench.trace.channel import Recording
+from bench.trace.source import Source
 
 #: Compressions by the bytes they begin with: zlib with its usual window, Zstandard, an LZ4 frame.
 _ZLIB, _ZSTD, _LZ4 = b"\x78", b"\x28\xb5\x2f\xfd", b"\x04\x22\x4d\x18"
@@ -52,6 +58,38 @@ def reading(
         reason = next(iter(str(error).splitlines()), "") or type(error).__name__
         found = f"the {container} file is truncated or damaged ({reason})"
         raise InputError(path, found, f"allowed: a complete {container} file") from error
+
+
+#: Of a library that may hang; a recording of gigabytes takes minutes.
+_LIMITS = Limits(deadline=900.0, memory=math.inf)
+
+
+def apart(read: Callable[[Source], Recording]) -> Callable[[Source], Recording]:
+    """A reader whose library a damaged file can end with all of its process, in a process of its own (0.4 s)."""
+
+    def asked(source: Source) -> Recording:
+        if watched():
+            return read(source)
+        with WorkerProcess(partial(_told, read), _LIMITS) as process:
+            found = process.do((source, bounds()))
+        if isinstance(found, Failure):
+            said = f"the file is truncated or damaged (what reads it: {found.reason})"
+            raise InputError(source.path, said, "allowed: a complete file")
+        if isinstance(found, Recording):
+            return found
+        raise InputError(*found)
+
+    return asked
+
+
+def _told(read: Callable[[Source], Recording], item: tuple[Source, Bounds]) -> Recording | tuple[str, str, str]:
+    """A recording, or place, fault and advice of its refusal, which no exception carries from process to process."""
+    source, limits = item
+    try:
+        with within(limits):
+            return read(source)
+    except InputError as error:
+        return error.where, error.found, error.allowed
 
 
 class _Kept(logging.Handler):

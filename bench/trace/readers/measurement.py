@@ -24,7 +24,7 @@ import numpy as np
 from bench.bounds import require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
-from bench.trace.readers.containers import library, reading, unpack, warnings_of
+from bench.trace.readers.containers import apart, library, reading, unpack, warnings_of
 from bench.trace.readers.named_arrays import channels_of
 from bench.trace.source import FileFormat, Source, begins
 
@@ -147,5 +147,6 @@ def _tdms_channel(channel: Any, values: np.ndarray, axis: str | None, first: Any
     return replace(plain, time=time, axis=axis)
 
 
-MDF = FileFormat("MDF4", (".mf4", ".mdf"), begins(b"MDF     ", b"UnFinMF "), _read_mdf)
+#: A bit that has flipped among what describes a channel ends asammdf's compiled part: 1 of 40 files.
+MDF = FileFormat("MDF4", (".mf4", ".mdf"), begins(b"MDF     ", b"UnFinMF "), apart(_read_mdf))
 TDMS = FileFormat("TDMS", (".tdms",), begins(b"TDSm"), _read_tdms)

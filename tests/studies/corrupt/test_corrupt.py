@@ -7,6 +7,7 @@ import bench
 from bench.errors import InputError
 from tests.studies.corrupt import files, signals
 from tests.studies.corrupt.__main__ import KINDS, outcome
+from tests.studies.corrupt.flips import SUMMED, flipped
 
 #: Of each way in which one can be noticed: by sign, drop-out, range, delay, scale, time and damage to the file.
 SAMPLE = (
@@ -37,6 +38,15 @@ def test_a_bit_that_flips_among_the_samples_is_seen_where_the_file_has_sums(tmp_
     path.write_bytes(content)
     with pytest.raises(InputError, match="truncated or damaged"):
         bench.read(path, files.COLUMNS.get(kept, {"time": "time [s]", "velocity": "velocity [rad/s]"}))
+
+
+@pytest.mark.parametrize("kept", ["parquet", "parquet with sums"])
+def test_a_bit_that_flips_ends_no_process_and_changes_no_number_that_has_a_sum(tmp_path, monkeypatch, kept):
+    """Of 150 Parquet files one ended the process: Arrow was asked what a damaged column is said to hold."""
+    monkeypatch.chdir(tmp_path)
+    found = flipped(kept, 150, 0, tmp_path)
+    assert found.total() == 150 and found["refused"] > 10
+    assert not (found["another number"] and kept in SUMMED)
 
 
 def test_what_is_sound_is_not_refused(tmp_path):
