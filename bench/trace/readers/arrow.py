@@ -60,8 +60,13 @@ def parquet_table(content: bytes, path: str) -> pa.Table:
         plain = [field.name for field in fields if is_numeric(field.type) and not field.type.num_fields]
         for k in range(meta.num_row_groups if plain else 0):
             next(file.iter_batches(batch_size=1, row_groups=[k], columns=plain), None)
-        chunks = [meta.row_group(k).column(j) for k in range(meta.num_row_groups) for j in range(meta.num_columns)]
-        read = [one for one in chunks if any(f"{one.path_in_schema}.".startswith(f"{name}.") for name in wanted)]
+        groups = [meta.row_group(k) for k in range(meta.num_row_groups)]
+        chunks = [(group.num_rows, group.column(j)) for group in groups for j in range(meta.num_columns)]
+        whole = all(rows == one.num_values for rows, one in chunks if one.path_in_schema in plain)
+        if not whole or sum(group.num_rows for group in groups) != meta.num_rows:  # no sum is of what is told of a file
+            allowed = f"allowed: a complete {PARQUET.format} file"
+            raise InputError(path, f"found columns that do not hold the {meta.num_rows} rows it tells of", allowed)
+        read = [one for _, one in chunks if any(f"{one.path_in_schema}.".startswith(f"{name}.") for name in wanted)]
         size = sum(max(one.num_values * WIDTH, one.total_uncompressed_size) for one in read)
         require_expansion(path, size, len(content))
         if not meta.num_rows:

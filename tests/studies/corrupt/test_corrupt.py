@@ -1,5 +1,7 @@
 """A small sample of corrupted recordings, with a floor: none that a check can see is wrong without a word."""
 
+import contextlib
+
 import numpy as np
 import pytest
 
@@ -55,3 +57,17 @@ def test_what_is_sound_is_not_refused(tmp_path):
 
 def test_there_are_kinds_enough_and_those_that_nobody_can_see_are_named():
     assert len(KINDS) > 60 and set(KINDS) > signals.OF_ANOTHER_AXIS
+
+
+def test_a_parquet_that_tells_of_fewer_rows_than_its_columns_hold_is_damaged(tmp_path):
+    """One bit where the rows are counted lost half of the samples without a word."""
+    content = files.as_parquet((1e-3 * np.arange(60), np.ones(60), np.ones(60)), checksums=True)
+    places = [k for k in range(len(content) // 2, len(content)) if content[k] == 2 * 60]  # a count, as Thrift has it
+    refused = 0
+    for place in places:
+        (tmp_path / "run.parquet").write_bytes(content[:place] + bytes([2 * 28]) + content[place + 1 :])
+        with contextlib.suppress(InputError):
+            assert bench.read(tmp_path / "run.parquet").time.size == 60
+            continue
+        refused += 1
+    assert refused > 1
