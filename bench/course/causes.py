@@ -160,7 +160,8 @@ def refusals(runs: Mapping[str, LabRun], rig: Rig) -> dict[str, str]:
     told = {}
     for name in {**contradicted, **{name: "" for cause in causes for name in cause}}:
         same = twins if name in twins else (name,)
-        words = list(dict.fromkeys(_told(cause[one]) for cause in causes for one in same if cause.get(one)))
+        undone = dict.fromkeys(cause[one] for cause in causes for one in same if cause.get(one))
+        words = list(dict.fromkeys(", and ".join(mistake.words for mistake in made) for made in undone))
         why = [f"{' and '.join(twins)} are one and the same recording"] if name in twins else []
         why += [" - or ".join(words)] if 0 < len(words) <= TOLD else []
         found = contradicted.get(name) or f"its J contradicts that of {', '.join(contradicted)}"
@@ -175,10 +176,6 @@ def _alike(one: LabRun, other: LabRun) -> bool:
         return False
     same = (one.velocity == other.velocity) | (one.current == other.current)  # one of them may be in another unit
     return float(np.mean(same)) > SAME
-
-
-def _told(undone: Sequence[KnownMistake]) -> str:
-    return ", and ".join(mistake.words for mistake in undone)
 
 
 def _causes(runs: Mapping[str, LabRun], choices: Sequence[Sequence[str]], rig: Rig) -> list[Undone]:

@@ -57,15 +57,12 @@ class Decline:
         corner: speed at which it starts to - rad/s.
         no_load: speed at which it would end, as the winding was during the run - rad/s.
         lag: tau, by which it comes late, L/R - s.
-        extrapolated: speed at which the line through the fall from 90 to 50 % meets the top - rad/s; the corner without
-            inductance, later by alpha*tau with it.
         half: the corner is known within so much - rad/s.
     """
 
     corner: float
     no_load: float
     lag: float
-    extrapolated: float
     half: float
 
 
@@ -110,7 +107,7 @@ def decline(velocity: Array, current: Array, sample_period: float) -> Decline:
         reason = f"the current falls {1e3 * found.x[2]:.0f} ms late, and L/R of a winding is a few: it was filtered"
         raise UndeterminedError("corner speed", reason, "speed and current as the drive has them, without a filter")
     variance = found.fun @ found.fun / max(found.fun.size - 3, 1) * np.linalg.pinv(found.jac.T @ found.jac)[0, 0]
-    return Decline(*found.x.tolist(), extrapolated=corner, half=NORMAL95 * math.sqrt(variance))
+    return Decline(*found.x.tolist(), half=NORMAL95 * math.sqrt(variance))
 
 
 def _late(values: Array, lag: float, period: float) -> Array:
