@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import logging
-import math
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -60,8 +59,9 @@ def reading(
         raise InputError(path, found, f"allowed: a complete {container} file") from error
 
 
-#: Of a library that may hang; a recording of gigabytes takes minutes.
-_LIMITS = Limits(deadline=900.0, memory=math.inf)
+#: Of a library that may hang - s -, as a recording of gigabytes takes minutes; its memory - bytes -, and the times that
+#: it may hold what the file may expand to.
+_DEADLINE, _ITSELF, _TIMES = 900.0, 1 << 30, 4
 
 
 def apart(read: Callable[[Source], Recording]) -> Callable[[Source], Recording]:
@@ -70,7 +70,8 @@ def apart(read: Callable[[Source], Recording]) -> Callable[[Source], Recording]:
     def asked(source: Source) -> Recording:
         if watched():
             return read(source)
-        with WorkerProcess(partial(_told, read), _LIMITS) as process:
+        limits = Limits(_DEADLINE, _ITSELF + _TIMES * bounds().most(len(source.content)))
+        with WorkerProcess(partial(_told, read), limits) as process:
             found = process.do((source, bounds()))
         if isinstance(found, Failure):
             said = f"the file is truncated or damaged (what reads it: {found.reason})"

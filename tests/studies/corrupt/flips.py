@@ -65,7 +65,7 @@ def flipped(kept: str, count: int, seed: int, folder: Path) -> Counter[str]:
 def outcome(now: object, good: object) -> str:
     """One of OUTCOMES, or what happened that must not."""
     if isinstance(now, Failure):
-        return OUTCOMES[-1] if "SIG" in now.reason else now.reason
+        return OUTCOMES[-1] if "worker was killed" in now.reason else now.reason
     if isinstance(now, str):
         return "refused" if "\n" not in now else now
     assert isinstance(now, tuple) and isinstance(good, tuple)
