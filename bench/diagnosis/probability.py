@@ -73,9 +73,16 @@ class Probabilities:
 
     @property
     def chosen(self) -> NameSet:
-        """The likeliest set of names each of which is likelier than not."""
-        believed = {name for name, probability in self.names.items() if probability > 0.5}
-        return next(each for each in self.sets if each.names <= believed)
+        """The names that are likelier than not, or of sets without others the one that misses least of them.
+
+        It predicts best, though another set may be the likeliest (median probability model: M. M. Barbieri, J. O.
+        Berger, Annals of Statistics 32, 2004, 870-897): of A beside B, .46, and A beside C, .29, it is A.
+        """
+        sure = {name: probability - 0.5 for name, probability in self.names.items() if probability > 0.5}
+        return max(
+            (each for each in self.sets if each.names <= sure.keys()),
+            key=lambda each: sum(sure[name] for name in each.names),
+        )
 
     def instead_of(self, name: str) -> dict[str | None, float]:
         """What stands in the place of a chosen name in the sets without it; None: none of the catalogue."""
