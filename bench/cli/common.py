@@ -254,12 +254,13 @@ def warn(warnings: Iterable[str]) -> None:
 class Subject:
     """What a recording is of: an axis or a robot's joint, and how its recordings are read whole.
 
-    `poses` tells when a log of a robot has its joints where, by name.
+    `poses` tells when a log of a robot has its joints where, by name; `joint` is the one that it is of.
     """
 
     rig: bench.Rig
     read: Callable[[Path], bench.Trace]
     poses: Callable[[Path], tuple[Array, dict[str, Array]]] | None = None
+    joint: str | None = None
 
     @property
     def robot(self) -> bool:
@@ -312,7 +313,7 @@ def subject(
         warned.update(trace.notes)
         return trace
 
-    return Subject(within, read, lambda path: poses_along(path, within, robot, stands))
+    return Subject(within, read, lambda path: poses_along(path, within, robot, stands), joint)
 
 
 def one_joint(joints: Sequence[str] | None) -> str | None:

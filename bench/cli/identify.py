@@ -32,6 +32,7 @@ from bench.names import in_a_row
 if TYPE_CHECKING:
     from bench.cli.common import Subject
     from bench.fit.refine import Refinement
+    from bench.report.document import Section
 
 if TYPE_CHECKING:
     from bench.plant.robot import AddedBody
@@ -163,7 +164,8 @@ def diagnose(
     title, files = f"{axis.name}: {names}", []
     with nullcontext() if out is None else held(out):
         if out is not None:
-            files = write_diagnosis(out, found, title, basis, figures.ending)
+            moving = _moving(found, of, traces[0], mjcf, recordings[0])
+            files = write_diagnosis(out, found, title, basis, figures.ending, moving)
         common.write_json(json, lambda: diagnosis_json(found, basis))
     common.tell(diagnosis(found, title, basis), files, json)
 
@@ -233,3 +235,14 @@ def _require_answers(found: bench.IdentifiedRobot) -> None:
         raise InputError("none of the joints could be answered", f"{first.name}: {first.failed}", "see the table")
     reason = f"{first.name}: {next(iter(first.refused.values()))}"
     raise UndeterminedError("any joint", reason, first.record)
+
+
+def _moving(found: bench.Diagnosis, of: Subject, log: Path, mjcf: Path | None, trace: bench.Trace) -> list[Section]:
+    """The robot whose joint was diagnosed, along the first log; none of an axis, nor of a model that does not move."""
+    if of.poses is None or mjcf is None or of.joint is None:
+        return []
+    from bench.joints.motion import joint_motion
+    from bench.report.simulation import moving_section
+
+    motion = joint_motion(found, trace, of.rig, of.poses(log))
+    return [] if motion is None else [moving_section(mjcf, {of.joint: motion})]

@@ -129,26 +129,26 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
     try:
         robot = Robot.of(asked.mjcf, asked.joint, asked.added)
         rig = joint_rig(asked.rig, robot)
-        traces, left_out = _moving(asked, asked.logs, rig, robot)
+        used, left_out = _moving(asked, asked.logs, rig, robot)
+        traces = [*used.values()]
     except UndeterminedError as error:
         return IdentifiedJoint(asked.joint, refused={EFFECTS: error.reason}, record=error.record)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, failed=str(error))
-    unseen: list[Trace] = []
+    unseen: dict[Path, Trace] = {}
     if asked.holdout is not None:
         try:
             unseen, _ = _moving(asked, [asked.holdout], rig, robot)
         except BenchError as error:
             left_out[asked.holdout.name] = str(error)
     try:
-        found = diagnose(traces, rig, unseen[0] if unseen else None, asked.excluded)
+        found = diagnose(traces, rig, next(iter(unseen.values()), None), asked.excluded)
     except UndeterminedError as refusal:
         return _without_effects(asked.joint, traces, rig, refusal, left_out)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
     refused = {**found.refused, **_behind(rig)}
-    log = next(log for log in asked.logs if log.name == Path(traces[0].origin).name)
-    motion = joint_motion(found, traces[0], rig, poses_along(log, rig, robot, asked.stated), robot)
+    motion = joint_motion(found, traces[0], rig, poses_along(next(iter(used)), rig, robot, asked.stated))
     return IdentifiedJoint(asked.joint, rig, found, refused=refused, left_out=left_out, motion=motion)
 
 
@@ -158,14 +158,14 @@ def _behind(rig: Rig) -> dict[str, str]:
     return {ARMATURE: "the torque is measured on the joint's side, where the rotor is not in it"} if behind else {}
 
 
-def _moving(asked: JointLogs, logs: Sequence[Path], rig: Rig, robot: Robot) -> tuple[list[Trace], dict[str, str]]:
+def _moving(asked: JointLogs, logs: Sequence[Path], rig: Rig, robot: Robot) -> tuple[dict[Path, Trace], dict[str, str]]:
     """Recordings of the joint in which it moves, and why the others are none; raises as the first if none is one."""
-    traces, refused = [], list[tuple[Path, BenchError]]()
+    traces, refused = dict[Path, Trace](), list[tuple[Path, BenchError]]()
     for log in logs:
         try:
             trace = passed(read_log(log, rig, robot, asked.stated), rig).trace
             Rows.of(trace, rig)
-            traces.append(trace)
+            traces[log] = trace
         except (InputError, UndeterminedError) as error:
             refused.append((log, error))
     if not traces:

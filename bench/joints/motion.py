@@ -10,7 +10,6 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.diagnosis.let_free import BARE, HELD, otherwise, windows_of
 from bench.diagnosis.show import Diagnosis
-from bench.plant.robot import Robot
 from bench.rig.rig import Rig
 from bench.trace.motion import stretches_of
 from bench.trace.trace import Trace
@@ -44,7 +43,7 @@ class JointMotion:
 
 
 def joint_motion(
-    found: Diagnosis, trace: Trace, rig: Rig, poses: tuple[Array, Mapping[str, Array]], robot: Robot
+    found: Diagnosis, trace: Trace, rig: Rig, poses: tuple[Array, Mapping[str, Array]]
 ) -> JointMotion | None:
     """The motion of a diagnosed joint; None where its model does not move, or runs away from the log.
 
@@ -53,7 +52,6 @@ def joint_motion(
         trace: its log.
         rig: of it.
         poses: where the robot's joints were at times of the log - s, rad (m).
-        robot: around it.
     """
     course, count = found.courses[0], len(trace)
     held = {HELD: course.velocity_left[-1], BARE: course.velocity_left[0] if found.effects else None}
@@ -64,7 +62,7 @@ def joint_motion(
     few = np.linspace(trace.time[0], trace.time[-1], min(count, INSTANTS))
     return JointMotion(
         trace.origin,
-        robot.unit(robot.joint),
+        rig.axis_kind.length_unit,
         few,
         {name: np.interp(few, poses[0], one) for name, one in poses[1].items()},
         {how: np.interp(few, trace.time, one) / ratio for how, one in {**runs, **free}.items()},

@@ -158,7 +158,12 @@ def _experiment_json(found: Diagnosis) -> dict[str, Any] | None:
 
 
 def write_diagnosis(
-    out: Path, found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, ending: str = ".png"
+    out: Path,
+    found: Diagnosis,
+    title: str,
+    provenance: Mapping[str, Any] | None = None,
+    ending: str = ".png",
+    moving: Sequence[doc.Section] = (),
 ) -> list[Path]:
     """Write the page, `diagnosis.json`, two pictures, `model.toml` and, where MuJoCo has all of it, `model.xml`.
 
@@ -167,6 +172,7 @@ def write_diagnosis(
         found, title: the diagnosis, and its rig and recordings.
         provenance: of the files it came from.
         ending: of the pictures' files, one of `bench.report.figures.FORMATS`.
+        moving: of a robot's joint, the robot in motion.
 
     Returns:
         Paths written.
@@ -175,13 +181,21 @@ def write_diagnosis(
     if experiment is not None:
         kind = _kind(found)
         beside["next_experiment.csv"] = experiment.motion.csv(PERIOD, (kind.length_unit, 1.0), (kind.speed_unit, 1.0))
-    return write_document(out, diagnosis(found, title, provenance, _files(found, provenance)), ending, beside)
+    document = diagnosis(found, title, provenance, _files(found, provenance), moving)
+    return write_document(out, document, ending, beside)
 
 
 def diagnosis(
-    found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, files: Sequence[doc.File] = ()
+    found: Diagnosis,
+    title: str,
+    provenance: Mapping[str, Any] | None = None,
+    files: Sequence[doc.File] = (),
+    moving: Sequence[doc.Section] = (),
 ) -> doc.Document:
-    """The document of a diagnosis of what `title` names, with files to take along: the model, and all numbers."""
+    """The document of a diagnosis of what `title` names, with files to take along: the model, and all numbers.
+
+    `moving` shows a robot's joint in motion.
+    """
     tables = [parameters_table("The axis", found.parameters)]
     tables += [
         parameters_table(f"{sentence(words(one.name))}: {one.effect.summary}", one.parameters) for one in found.effects
@@ -189,6 +203,7 @@ def diagnosis(
     tables += recordings_table(found.recordings, found.between, found.parameters)
     sections = (
         _motion(found),
+        *moving,
         _where(found),
         doc.section("parameters", "Parameters", *tables),
         *_beside(found),

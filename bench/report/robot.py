@@ -6,14 +6,12 @@ As the contract's JSON (`bench.robot/1`) and as a document, which has the MJCF w
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import cycle
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
 from bench.joints.identified import EFFECTS, IdentifiedJoint
-from bench.joints.motion import JointMotion
 from bench.joints.robot import IdentifiedRobot
 from bench.names import in_a_row, readable, words
 from bench.parameter import Parameter
@@ -21,10 +19,10 @@ from bench.plant.model_file import joints_toml
 from bench.report import document as doc
 from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names
 from bench.report.numbers import interval, sentence, unit_text
-from bench.report.parts import one_panel, origin, parameters_table
+from bench.report.parts import origin, parameters_table
 from bench.report.publish import write_document
 from bench.report.serial import as_json, serialised
-from bench.report.simulation import robot_motion
+from bench.report.simulation import moving_section
 
 SCHEMA = "bench.robot/1"
 MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
@@ -110,28 +108,9 @@ def robot(
 
 
 def _moving(found: IdentifiedRobot) -> list[doc.Section]:
-    """The robot along the log that most joints were identified from, and how far off each is where nothing holds it."""
+    """All joints that have a model that moves."""
     motions = {name: joint.motion for name, joint in found.joints.items() if joint.motion is not None}
-    if not motions:
-        return []
-    origins = [motion.origin for motion in motions.values()]
-    along = max(origins, key=origins.count)
-    return [doc.section("moving", "Moving", robot_motion(found.mjcf, along, motions), *_free_charts(motions))]
-
-
-def _free_charts(motions: Mapping[str, JointMotion]) -> Iterator[doc.Chart]:
-    """A chart of the joints that turn, and one of those that slide."""
-    for unit, move in (("rad", "turn"), ("m", "slide")):
-        free = {name: one for name, one in motions.items() if one.unit == unit and one.off.size}
-        colours: Iterator[doc.Colour] = cycle(doc.COLOURS)
-        drawn = [doc.series(readable(name), "line", next(colours), one.horizon, one.off) for name, one in free.items()]
-        if drawn:
-            alternative = (
-                f"RMS of simulated less measured position of the joints that {move}, over the time since the model of"
-                " each was let free, driven by its recorded torque, beside the others as measured."
-            )
-            axes = ("time since it was let free", "s"), ("position off (RMS)", unit)
-            yield one_panel("Let free.", alternative, *axes, drawn)
+    return [moving_section(found.mjcf, motions)] if motions else []
 
 
 def _files(found: IdentifiedRobot, text: str, provenance: Mapping[str, Any] | None) -> list[doc.File]:

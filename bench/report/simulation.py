@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import cycle
 from pathlib import Path
 from typing import get_args
 
@@ -275,7 +276,29 @@ def motion_of(shown: SideBySide, robot: DrawnRobot | None = None) -> doc.Moving:
     )
 
 
-def robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) -> doc.Moving:
+def moving_section(mjcf: Path, motions: Mapping[str, JointMotion]) -> doc.Section:
+    """The robot along the log that most joints were identified from, and how far off each is where nothing holds it."""
+    origins = [motion.origin for motion in motions.values()]
+    along = max(origins, key=origins.count)
+    return doc.section("moving", "Moving", _robot_motion(mjcf, along, motions), *_free_charts(motions))
+
+
+def _free_charts(motions: Mapping[str, JointMotion]) -> Iterator[doc.Chart]:
+    """A chart of the joints that turn, and one of those that slide."""
+    for unit, move in (("rad", "turn"), ("m", "slide")):
+        free = {name: one for name, one in motions.items() if one.unit == unit and one.off.size}
+        colours: Iterator[doc.Colour] = cycle(doc.COLOURS)
+        drawn = [doc.series(readable(name), "line", next(colours), one.horizon, one.off) for name, one in free.items()]
+        if drawn:
+            alternative = (
+                f"RMS of simulated less measured position of the joints that {move}, over the time since the model of"
+                " each was let free, driven by its recorded torque, beside the others as measured."
+            )
+            axes = ("time since it was let free", "s"), ("position off (RMS)", unit)
+            yield one_panel("Let free.", alternative, *axes, drawn)
+
+
+def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) -> doc.Moving:
     """A robot along a log by its joints' motions, the first of which is told in numbers; those of other logs stand as
     measured in this one.
     """

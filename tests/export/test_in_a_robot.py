@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench.arrays import rms
 from tests.diagnosis.command import started
 from tests.export.held import followed
 from tests.export.two_links import HIDDEN, log, motion, ran, write_log
+from tests.report.test_view_page import floats
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
 COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
@@ -22,6 +24,15 @@ EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 def folder(tmp_path_factory):
     """Where the page's commands have run."""
     return ran(tmp_path_factory.mktemp("page"), COMMANDS)
+
+
+def test_the_page_of_a_joint_shows_the_robot_moving(folder):
+    """What the joint moves as measured beside its model, which is nearer with the cogging than without."""
+    page = json.loads((folder / "found" / "report.json").read_text())
+    moving = next(section for section in page["sections"] if section["key"] == "moving")["blocks"][0]
+    apart = {run["name"]: rms(floats(run["apart"])) for run in moving["runs"]}
+    assert apart["held softly"] < 0.2 * apart["held, without what was found"]
+    assert [joint["of"] for body in moving["robot"]["bodies"] for joint in body["joints"]] == [1, 0]
 
 
 def test_the_joints_hidden_physics_is_recovered(folder):
