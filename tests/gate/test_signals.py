@@ -5,7 +5,7 @@ import pytest
 
 from bench.gate import signals
 from bench.gate.check import Seen
-from bench.gate.gate import CHECKS, UnanswerableError, passed
+from bench.gate.gate import UnanswerableError, gate, passed
 from bench.trace.trace import Trace
 from tests.gate.damage import changed
 
@@ -13,7 +13,7 @@ from tests.gate.damage import changed
 def test_a_current_that_never_changes_is_refused(sound, rig):
     with pytest.raises(UnanswerableError, match=r"signal_moves.*current.*record instead") as told:
         passed(changed(sound, current=np.full(len(sound), 0.3)), rig)
-    assert len(told.value.checks) == len(CHECKS)
+    assert [check.name for check in told.value.checks] == [check.name for check in gate(sound, rig).checks]
 
 
 @pytest.mark.parametrize("name", ["position", "velocity", "current"])

@@ -17,6 +17,7 @@ from bench.report.document import (
     Heading,
     HeatMap,
     Intervals,
+    ModelRun,
     Moving,
     Panel,
     Paragraph,
@@ -50,7 +51,8 @@ def page_full_of(text):
         full_of(text, TimeCurve, role="measured", choice=None, samples=samples),
         full_of(text, TimeCurve, role="model", choice=0, samples=samples),
     )
-    moved = {"low": 0.0, "high": 1.0, "position": "AAAAAAAAgD8=", "apart": "AAAAAAAAAAA="}
+    runs = full_of(text, ModelRun, apart="AAAAAAAAAAA="), full_of(text, ModelRun, apart="AAAAAAAAgD8=")
+    moved = {"low": 0.0, "high": 1.0, "position": "AAAAAAAAgD8=", "runs": runs}
     series = full_of(text, Series, style="line", colour="ink", x=(0.0, 1.0), y=(0.0, 1.0))
     span = full_of(text, Span, colour="ink", value=3.0, low=-1.0, high=4.0)
     columns = full_of(text, Heading), full_of(text, Heading, number=True)
