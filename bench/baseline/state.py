@@ -297,8 +297,9 @@ class _Table:
 
     def plain(self, key: str, value: object) -> float:
         """A number that a key holds, alone or in a list."""
-        number = isinstance(value, float | int) and not isinstance(value, bool)
-        if not number or not (value == 0.0 or LEAST <= abs(value) <= MOST):
+        if isinstance(value, bool) or not isinstance(value, float | int):
+            raise self.error(key, f"found {value!r}", "allowed: a number")
+        if value != 0.0 and not LEAST <= abs(value) <= MOST:
             raise self.error(key, f"found {value!r}", "allowed: a number as one of an axis can be")
         return float(value)
 

@@ -78,9 +78,12 @@ ROBOT = """<mujoco model="arm"><compiler angle="degree"/><default><joint armatur
 
 
 def places(tree: Any) -> list[tuple[Any, Any]]:
-    """Every place below a tree's root: the branch that it is in, and its key there."""
+    """The places below a tree's root: the branch that each is in, and its key there.
+
+    Of a tree too large to be tried, as of a branch that was put into itself, only some more than MOST.
+    """
     found, left = [], [tree]
-    while left:
+    while left and len(found) <= MOST:
         branch = left.pop()
         for key in branch if isinstance(branch, dict) else range(len(branch)):
             found.append((branch, key))
