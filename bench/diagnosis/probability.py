@@ -104,11 +104,18 @@ class Probabilities:
         return replace(self, detected=self.detected | frozenset(names)) if names else self
 
     def without(self, names: frozenset[str]) -> Probabilities:
-        """Given that some names are wrong: what held-out motion spoke against."""
-        kept = [each for each in self.sets if not each.names & names]
-        whole = self.none + sum(each.probability for each in kept)
-        sets = (NameSet(each.names, each.probability / whole) for each in kept)
-        return Probabilities(tuple(sets), self.none / whole, self.detected - names)
+        """Given that something else is in the place of some names: what held-out motion spoke against.
+
+        Names beside them are as likely as before; what nothing else would be missing beside is none of the catalogue.
+        """
+        left: dict[frozenset[str], float] = {}
+        for each in self.sets:
+            left[each.names - names] = left.get(each.names - names, 0.0) + each.probability
+        bare = sum(each.probability for each in self.sets if not each.names)
+        lost = left.pop(frozenset(), 0.0) - bare
+        sets = [NameSet(frozenset(), bare), *(NameSet(*each) for each in left.items())]
+        sets.sort(key=lambda one: -one.probability)
+        return Probabilities(tuple(sets), self.none + lost, self.detected - names)
 
 
 def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy: Policy) -> Probabilities:

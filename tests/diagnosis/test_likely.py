@@ -43,10 +43,16 @@ def test_the_fewest_sets_that_hold_the_truth(level, count):
     assert THREE.holding(0.99)[2] is None
 
 
-def test_what_held_out_motion_speaks_against_leaves_the_others():
+def test_what_held_out_motion_speaks_against_leaves_the_others_as_likely():
     left = THREE.without(frozenset({"b"}))
-    assert left.names == pytest.approx({"a": 0.625, "c": 0.625})
-    assert left.none == pytest.approx(0.25)
+    assert left.names == pytest.approx({"a": 0.85, "c": 0.25})
+    assert (left.none, left.nothing) == pytest.approx((0.1, 0.05))
+
+
+def test_where_it_speaks_against_the_only_name_that_is_none_of_the_catalogue():
+    left = of([(("a",), 0.7), (("b",), 0.1), ((), 0.05)], 0.15).without(frozenset({"a"}))
+    assert left.names == pytest.approx({"b": 0.1})
+    assert (left.none, left.nothing) == pytest.approx((0.85, 0.05))
 
 
 def test_what_signals_show_is_known_from_them():
