@@ -10,6 +10,23 @@ from tests.studies.robot import measured, table
 
 
 @pytest.fixture(scope="module")
+def loose(tmp_path_factory):
+    """Of the same arm whose first gear has play, which shakes all its links where no encoder is."""
+    found = measured(tmp_path_factory.mktemp("loose"), play=0.01)
+    print(f"\n{table(found)}")
+    return found
+
+
+@pytest.mark.slow
+def test_play_in_the_first_gear_is_called_nothing_else(loose):
+    """That what is left is more than noise is told of every joint, and all true values are inside their intervals."""
+    for joint, one in loose["joints"].items():
+        assert not one["named"], joint
+        assert one["verdict"] == "unexplained_remainder", joint
+        assert all(one["inside"].values()), joint
+
+
+@pytest.fixture(scope="module")
 def figures(tmp_path_factory):
     """Of the study, which run once."""
     found = measured(tmp_path_factory.mktemp("ur5e"))

@@ -1,7 +1,8 @@
 """A UR5e by the recursive Newton-Euler equations, written out; its MJCF; and a log whose joints hide what that lacks.
 
-Links as robosuite's MJCF of the arm has them. The motion is given in closed form and the torque follows from it: no
-integrator and nothing of MuJoCo is in the log (J. J. Craig, Introduction to Robotics, 3rd ed., 2005, sec. 6.5).
+Links as robosuite's MJCF of the arm has them. The motion is given in closed form and the torque follows from it: nothing
+of MuJoCo is in the log, and an integrator, SciPy's, only where the first gear has play (J. J. Craig, Introduction to
+Robotics, 3rd ed., 2005, sec. 6.5).
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.interpolate import make_interp_spline
 
 GRAVITY = 9.81
 TURNED, PLAIN, TILTED = (0.5**0.5, 0.0, 0.5**0.5, 0.0), (1.0, 0.0, 0.0, 0.0), (0.5**0.5, 0.0, 0.0, 0.5**0.5)
@@ -165,10 +168,55 @@ def motion(duration=20.0, period=2e-3, seed=0, scale=1.0):
     return time, q, w, a
 
 
-def log(hidden=HIDDEN, links=LINKS, seed=0, noise=1.0, payload=None, **how):
-    """Columns of a log, by their names in its file, as the sensors have them."""
+def behind_play(time, q, w, a, play, payload=None, frequency=40.0, damping=0.2):
+    """Motion (3, n, 6) of the links where the first joint's gear has play - rad - and its motor moves as told.
+
+    About the vertical the links' momentum is M*w_1 + b, M and b of the other joints alone, and the gear's torque
+    changes it: M*a_1 + M'*w_1 + b' = T(p), p the motor's angle less the link's. The teeth are a spring of `frequency` -
+    Hz - between armature and median M, damped by `damping`, which push only.
+    """
+
+    def first(speed, acceleration):
+        put = np.array([speed, acceleration])[:, None, None] * (np.arange(6) == 0)
+        others = np.where(np.arange(6) == 0, 0.0, np.stack([w, a]))
+        return asked(q, *(others + put), payload=payload)[:, 0]
+
+    still = first(0.0, 0.0)
+    inertia, grows = first(0.0, 1.0) - still, first(1.0, 0.0) - still
+    of_time = make_interp_spline(time, np.column_stack([inertia, grows, still, q[:, 0], w[:, 0]]), k=5)
+    heavy, omega = float(np.median(inertia)), 2.0 * np.pi * frequency
+    both = heavy * HIDDEN[0].armature / (heavy + HIDDEN[0].armature)
+
+    def accelerated(moment, angle, speed):
+        own, growing, bias, place, rate = of_time(moment).T
+        apart = place - angle
+        deep = apart - np.clip(apart, -play / 2.0, play / 2.0)
+        pushed = both * (omega**2 * deep + 2.0 * damping * omega * (rate - speed) * (deep != 0.0))
+        pushed = np.where(pushed * deep > 0.0, pushed, 0.0)
+        return (pushed - growing * speed - bias) / own
+
+    found = solve_ivp(
+        lambda moment, state: [state[1], float(accelerated(moment, *state))],
+        (time[0], time[-1]),
+        [q[0, 0] - play / 2.0, w[0, 0]],
+        method="LSODA",
+        t_eval=time,
+        max_step=5e-4,
+        rtol=1e-7,
+        atol=1e-9,
+    )
+    moved = np.stack([q, w, a])
+    moved[:, :, 0] = *found.y, accelerated(time, *found.y)
+    return moved
+
+
+def log(hidden=HIDDEN, links=LINKS, seed=0, noise=1.0, payload=None, play=0.0, **how):
+    """Columns of a log, by their names in its file, as the sensors of the motors have them; `play` - rad - of the first
+    joint's gear.
+    """
     time, q, w, a = motion(seed=seed, **how)
-    rest, rng, columns = asked(q, w, a, links, payload), np.random.default_rng(seed), {"time [s]": time}
+    beyond = behind_play(time, q, w, a, play, payload) if play else (q, w, a)
+    rest, rng, columns = asked(*beyond, links, payload), np.random.default_rng(seed), {"time [s]": time}
     for k, (name, own) in enumerate(zip(NAMES, hidden, strict=True)):
         torque = own.torque(q[:, k], w[:, k], a[:, k], rest[:, k])
         loud = 0.05 if k < 3 else 0.02

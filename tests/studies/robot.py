@@ -16,6 +16,7 @@ import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -39,7 +40,7 @@ UNSEEN = (100, 200, 300)
 BODY = "link 6"
 
 
-def measured(folder: Path, mjcf: Path | None = None, body: str = BODY, seed: int = 0) -> dict:
+def measured(folder: Path, mjcf: Path | None = None, body: str = BODY, seed: int = 0, play: float = 0.0) -> dict:
     """All figures of one arm, in a folder that gets its files.
 
     Args:
@@ -47,18 +48,20 @@ def measured(folder: Path, mjcf: Path | None = None, body: str = BODY, seed: int
         mjcf: of an arm with the same joints and links; the plain one where none is given.
         body: its last link.
         seed: of motion and noise.
+        play: of the first joint's gear, in the place of what else it hides - rad.
     """
     if mjcf is None:
         mjcf = folder / "arm.xml"
         mjcf.write_text(ur5e.mjcf())
-    write_log(folder / "log.csv", ur5e.log(seed=seed, payload=PAYLOAD))
+    hidden = (replace(ur5e.HIDDEN[0], effect="") if play else ur5e.HIDDEN[0], *ur5e.HIDDEN[1:])
+    write_log(folder / "log.csv", ur5e.log(hidden, seed=seed, payload=PAYLOAD, play=play))
     began, before = time.monotonic(), os.times()
     command = ["robot", folder / "log.csv", "--mjcf", mjcf, "--payload", body, "--out", folder / "robot_id"]
     subprocess.run([sys.executable, "-m", "bench", *map(str, command)], check=True, stdout=subprocess.DEVNULL)
     after = os.times()
     spent = after.children_user + after.children_system - before.children_user - before.children_system
     found = json.loads((folder / "robot_id" / "robot.json").read_text())
-    figures = {name: of_joint(found["joints"][name], own) for name, own in zip(ur5e.NAMES, ur5e.HIDDEN, strict=True)}
+    figures = {name: of_joint(found["joints"][name], own) for name, own in zip(ur5e.NAMES, hidden, strict=True)}
     payload, moved = found["payload"], None
     if payload is not None:
         centre = float(np.linalg.norm(np.subtract(payload["center_of_mass"]["value"], PAYLOAD[1])))
@@ -87,7 +90,11 @@ def of_joint(found: dict, own: ur5e.Hidden) -> dict:
     }
     told = found["parameters"]
     off = {name: told[name]["value"] / value - 1.0 if name in told else np.nan for name, value in true.items()}
-    return {"named": names, "hidden": [own.effect] if own.effect else [], "off": off, "verdict": found["verdict"]}
+    held = {
+        name: told[name]["ci95"][0] <= value <= told[name]["ci95"][1] for name, value in true.items() if name in told
+    }
+    of = {"named": names, "hidden": [own.effect] if own.effect else [], "verdict": found["verdict"]}
+    return of | {"off": off, "inside": held}
 
 
 def models_found(folder: Path) -> dict[str, StoredModel]:
@@ -173,10 +180,13 @@ def main() -> None:
     parser.add_argument("--mjcf", type=Path, help="another MJCF of a UR5e whose joints have the same names")
     parser.add_argument("--body", default=BODY, help="its last link")
     parser.add_argument("--seed", type=int, default=0, help="of motion and noise")
+    parser.add_argument(
+        "--play", type=float, default=0.0, help="of the first joint's gear, instead of what else it hides - rad"
+    )
     parser.add_argument("--out", type=Path, required=True, help="folder that gets logs, MJCFs and figures.json")
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    figures = measured(given.out, given.mjcf, given.body, given.seed)
+    figures = measured(given.out, given.mjcf, given.body, given.seed, given.play)
     (given.out / "figures.json").write_text(json.dumps(figures, indent=1))
     print(table(figures))
 
