@@ -1,7 +1,7 @@
 """A UR5e by the recursive Newton-Euler equations, written out; its MJCF; and a log whose joints hide what that lacks.
 
-Links as robosuite's MJCF of the arm has them. The motion is given in closed form and the torque follows from it: nothing
-of MuJoCo is in the log, and an integrator, SciPy's, only where the first gear has play (J. J. Craig, Introduction to
+Links as robosuite's MJCF of the arm has them. The motion is given in closed form, torque follows from it: nothing of
+MuJoCo is in the log, and an integrator, SciPy's, only where the first gear has play (J. J. Craig, Introduction to
 Robotics, 3rd ed., 2005, sec. 6.5).
 """
 
