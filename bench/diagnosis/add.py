@@ -133,7 +133,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     found = suspects.searched.last
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
-    held_out = HeldOut.of(recordings, compared.same is not False, repeats)
+    held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
     recorded = [Recorded.of(RECORDING, recordings.trace, recordings.rig)]
     if recordings.holdout is not None:
         recorded.append(Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.diagnosis.model import HOLDOUT, RECORDING, Recorded
 from bench.diagnosis.recordings import Recordings
+from bench.effects.effect import Occasional
 from bench.fit.determined import INDEPENDENT_SHARE
 from bench.fit.fit import Fit
 from bench.fit.layout import lay_out
@@ -32,6 +33,8 @@ HELD_OUT = 1.0 / 3.0
 BLOCKS, REACHES = 24, 8
 #: Ranges of speed, and of position, of equally many rows each.
 RANGES = 3
+#: Share of its largest torque above which an event acts on a row.
+ACTS = 1e-3
 #: Names of fitted and of judging motion, if both are of one recording.
 REST, THIRD = "rest of the recording", "third of the recording that was held out"
 
@@ -55,17 +58,38 @@ class HeldOut:
     seen: Recorded
 
     @classmethod
-    def of(cls, recordings: Recordings, trusted: bool, events: bool) -> HeldOut:
-        """A holdout that is `trusted` to be of this axis, with the recording's events or not; else a third."""
+    def of(cls, recordings: Recordings, trusted: bool, events: bool, whole: Fit) -> HeldOut:
+        """A holdout that is `trusted` to be of this axis, with the recording's events or not; else a third.
+
+        Args:
+            whole: of the recording, whose events stay in the rest where that would lack one: of arbitrary size there,
+                it would judge all else.
+        """
         trace, rig, rows = recordings.trace, recordings.rig, recordings.rows
         if recordings.holdout is not None and recordings.holdout_rows is not None and trusted:
             recorded = Recorded.of(HOLDOUT, recordings.holdout, rig, events=events)
             return cls(rows, RECORDING, recordings.holdout_rows, recorded, Recorded.of(RECORDING, trace, rig))
-        parts = Parts.of(rows)
+        plain = cls.third(recordings, Parts.of(rows))
+        events_of = [k for k, term in enumerate(whole.terms) if isinstance(term.effect, Occasional)]
+        lacked = [k for k in events_of if plain.lacks(whole, k)]
+        if not lacked:
+            return plain
+        acts = np.abs(lay_out(rows, whole.hypothesis).columns[:, np.isin(whole.owners, lacked)])
+        return cls.third(recordings, Parts.of(rows, np.any(acts > ACTS * acts.max(axis=0), axis=1)))
+
+    @classmethod
+    def third(cls, recordings: Recordings, parts: Parts) -> HeldOut:
+        """A part of the recording, judging a fit to the rest."""
+        trace, rig, rows = recordings.trace, recordings.rig, recordings.rows
         held = parts.held(trace.time - trace.time[0])
         recorded, seen = Recorded.of(THIRD, trace, rig, held), Recorded.of(REST, trace, rig, ~held)
         fitted, judge = (rows.selected(lambda time, part=part: parts.apart(time, part)) for part in (False, True))
         return cls(fitted, REST, judge, recorded, seen)
+
+    def lacks(self, whole: Fit, index: int) -> bool:
+        """Whether the fitted rows do not tell the strengths of a term of a fit to the recording."""
+        own, columns = whole.owners == index, lay_out(self.fitted, whole.hypothesis).columns
+        return not _information(columns, own) > INDEPENDENT_SHARE * _information(whole.columns, own)
 
     def determines(self, judged: Fit, whole: Fit, index: int) -> bool:
         """Whether fitted and judging rows both tell the strengths of a term that have a column.
@@ -105,13 +129,14 @@ class Parts:
     reach: float
 
     @classmethod
-    def of(cls, rows: Rows) -> Parts:
-        """A third of every regime of the moving rows."""
+    def of(cls, rows: Rows, kept: NDArray[np.bool_] | bool = False) -> Parts:
+        """A third of every regime of the moving rows, in no block that holds one of those `kept` (m,)."""
         smooth, count = rows.conditioning.filter, rows.effort.size
         shortest = REACHES * smooth.margin // smooth.stride
         edges = np.linspace(0, count, int(np.clip(count // shortest, 3, BLOCKS)) + 1).astype(int)
         shown = np.add.reduceat(regimes(rows), edges[:-1], axis=0)
-        return cls(rows.time[edges[1:-1]], balanced(shown), smooth.margin * smooth.sample_period)
+        held = np.logical_or.reduceat(np.broadcast_to(kept, count), edges[:-1])
+        return cls(rows.time[edges[1:-1]], balanced(shown, ~held), smooth.margin * smooth.sample_period)
 
     def held(self, time: Array) -> NDArray[np.bool_]:
         """Times (n,) - s - that are held out."""
@@ -132,11 +157,11 @@ def regimes(rows: Rows) -> Array:
     return np.concatenate(found).T.astype(float)
 
 
-def balanced(shown: Array) -> NDArray[np.bool_]:
-    """Which of the blocks are held out, by how many rows of each regime each of them shows (b, r)."""
-    lacks, out = np.zeros(shown.shape[1]), np.zeros(shown.shape[0], dtype=bool)
+def balanced(shown: Array, free: NDArray[np.bool_] | bool = True) -> NDArray[np.bool_]:
+    """Which of the blocks that are `free` (b,) are held out, by how many rows of each regime each shows (b, r)."""
+    lacks, out = np.zeros(shown.shape[1]), np.array(np.broadcast_to(free, shown.shape[0]))
     for block, own in enumerate(shown):
         lacks = lacks + HELD_OUT * own
-        out[block] = 2.0 * own @ lacks > own @ own  # it brings the part nearer to its third
+        out[block] &= 2.0 * own @ lacks > own @ own  # it brings the part nearer to its third
         lacks = lacks - out[block] * own
     return out

@@ -56,7 +56,7 @@ def whole():
     fitted = fit(recordings.rows, Hypothesis((term("torsion_spring"),)))
     stage = Stage.of("torsion_spring", fitted, (), RIG, "recording")
     suspects = Suspects(Searched((Step(fitted),)), Probabilities((), 1.0), {}, False, Policy())
-    return recordings, HeldOut.of(recordings, False, True), stage, suspects
+    return recordings, HeldOut.of(recordings, False, True, fitted), stage, suspects
 
 
 def parameters(values):
