@@ -48,6 +48,7 @@ class Own:
         names, verdict: of its own diagnosis.
         taken: these names, and what it cannot tell from them.
         left, unit: RMS that it leaves, noise included, and its unit.
+        hidden: what is in it and is not named, where that is known, as of a simulated one.
     """
 
     host: Host
@@ -56,6 +57,7 @@ class Own:
     taken: frozenset[str]
     left: float
     unit: str
+    hidden: tuple[str, ...] = ()
 
 
 def own(trace: Trace, rig: Rig) -> Own:
@@ -169,7 +171,7 @@ def put_into(own: Own, name: str, strength: float, seed: int) -> Injection | Non
 
 def judged(case: Injection, own: Own, effect: Effect, found: Diagnosis) -> Injection:
     """The case with what a diagnosis says of it."""
-    named = Named.of(found.verdict, found.effects, (*own.names, case.effect))
+    named = Named.of(found.verdict, found.effects, (*own.names, *own.hidden, case.effect))
     is_named, remains = case.effect not in named.missed, found.verdict == UNEXPLAINED
     known = (PART if named.false else RIGHT) if is_named else ""
     fate = known or (WRONG if named.false else FLAGGED if remains else MISSED)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
@@ -19,6 +19,7 @@ from bench.trace.write import write
 from bench.validation.injection import INJECTABLE, injected
 from bench.validation.into import Injection, Own, own, put_into
 from bench.validation.severity import disturbance, drawn
+from tests.studies.blind.score import same, twins
 from tests.studies.injected.sources import Source
 
 #: Strengths over what the recording's own diagnosis leaves.
@@ -50,9 +51,12 @@ class Case:
 def itself(source: Source) -> Own | str:
     """What a recording says before anything is put into it, or why it says nothing."""
     try:
-        return own(*source.read())
+        found = own(*source.read())
     except BenchError as refusal:
         return " ".join(str(refusal).split())
+    named = same(found.names)
+    unnamed = tuple(name for name in source.hidden if twins(name) not in named)
+    return replace(found, taken=found.taken.union(*map(twins, unnamed)), hidden=unnamed)
 
 
 def draw(sources: Sequence[str], effects: Sequence[str], seed: int) -> list[Case]:
@@ -71,6 +75,7 @@ class Row:
         fate: as `bench.validation.into` has it, or UNABLE or FAILED.
         names, verdict, reason, probabilities, seconds: as there.
         quantities: true value, value, and both ends of the interval of 95 %, by name.
+        hidden: what is in the recording, too, and was not named before.
     """
 
     case: Case
@@ -81,15 +86,17 @@ class Row:
     probabilities: dict[str, float] = field(default_factory=dict)
     seconds: float = 0.0
     quantities: dict[str, tuple[float, float, float, float]] = field(default_factory=dict)
+    hidden: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, case: Case, found: Injection | None) -> Row:
+    def of(cls, case: Case, own: Own, found: Injection | None) -> Row:
         """Of what the bench says."""
         if found is None:
             return cls(case, UNABLE)
         told = {one.quantity: (one.true, one.parameter.value, *one.parameter.ci95) for one in found.scored}
         beliefs = dict(found.probabilities)
-        return cls(case, found.fate, found.names, found.verdict, found.reason, beliefs, found.seconds, told)
+        answer = found.names, found.verdict, found.reason, beliefs, found.seconds, told
+        return cls(case, found.fate, *answer, own.hidden)
 
     @property
     def believed(self) -> float:
@@ -111,7 +118,7 @@ class Row:
 def judged(item: tuple[Case, Own]) -> Row:
     """Put in, diagnosed and judged."""
     case, own = item
-    return Row.of(case, put_into(own, case.effect, case.strength, case.own_seed))
+    return Row.of(case, own, put_into(own, case.effect, case.strength, case.own_seed))
 
 
 def kept_in(seed: int) -> Path:
@@ -136,8 +143,8 @@ def kept(path: Path) -> Iterator[Row]:
         except json.JSONDecodeError:
             continue
         quantities = {key: tuple(values) for key, values in told.pop("quantities").items()}
-        names = tuple(told.pop("names"))
-        row = Row(**told | {"case": Case(**told["case"]), "names": names, "quantities": quantities})
+        names, hidden = tuple(told.pop("names")), tuple(told.pop("hidden"))
+        row = Row(**told | {"case": Case(**told["case"]), "names": names, "quantities": quantities, "hidden": hidden})
         if row.fate != FAILED:
             yield row
 
@@ -160,7 +167,7 @@ def write_case(folder: Path, case: Case, source: Source, own: Own) -> bool:
         "group": "injected",
         **asdict(case),
         "real": source.real,
-        "own": own.names,
+        "own": (*own.names, *own.hidden),
         "own_verdict": own.verdict,
         "left": own.left,
         "rms": whole,

@@ -32,6 +32,7 @@ class Source:
         path, rig: files.
         without: signal that its source spoiled (`real/README.md` says how), empty for none.
         real: whether nobody simulated it.
+        hidden: names of what is in a simulated one.
     """
 
     axis: str
@@ -40,6 +41,7 @@ class Source:
     rig: Path
     without: str = ""
     real: bool = True
+    hidden: tuple[str, ...] = ()
 
     def read(self) -> tuple[Trace, Rig]:
         """Recording and rig."""
@@ -79,5 +81,7 @@ def simulated(seed: int, count: int, jobs: int) -> list[Source]:
         bar = progress.add_task("recording", total=count)
         for done in realistic.recorded(folder, drawn, seed, pool):
             progress.advance(bar, done)
-    homes = [folder / case.name for case in drawn]
-    return [Source(one.name, one.name, one / "run1.csv.gz", one / "rig.toml", real=False) for one in homes]
+    return [
+        Source(one.name, one.name, one / "run1.csv.gz", one / "rig.toml", real=False, hidden=hidden)
+        for one, hidden in ((folder / case.name, tuple(each.name for each in case.hidden.effects)) for case in drawn)
+    ]

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from bench.validation.into import FATES, NONE, PART, RIGHT, WRONG, Own
+from tests.studies.blind.score import same, twins
 from tests.studies.injected.cases import FAILED, UNABLE, Row
 from tests.studies.injected.sources import Source
 
@@ -80,7 +81,8 @@ def grouped(rows: Sequence[Row], group: Callable[[Row], tuple[str, str]]) -> str
 
 def pairs(rows: Iterable[Row]) -> list[tuple[float, bool]]:
     """Probability of each new name, and whether it is there; what no catalogue holds never is."""
-    return [(p, name == row.case.effect) for row in rows for name, p in row.probabilities.items() if name != NONE]
+    there = [(row, same((row.case.effect, *row.hidden))) for row in rows]
+    return [(p, twins(name) in true) for row, true in there for name, p in row.probabilities.items() if name != NONE]
 
 
 def calibration_error(told: Sequence[tuple[float, bool]]) -> float:

@@ -61,6 +61,12 @@ def test_what_no_catalogue_holds_is_no_name():
     assert "| mean probability of the true name | 0.450 |" in headline([ROW, flagged])
 
 
+def test_what_a_simulated_recording_holds_besides_is_no_false_name():
+    said = {"cogging_torque": 0.9, "torque_offset": 0.6, "backlash": 0.2}
+    beside = replace(ROW, probabilities=said, hidden=("direction_dependent_friction",))  # the offset's twin
+    assert pairs([beside]) == [(0.9, True), (0.6, True), (0.2, False)]
+
+
 def test_names_are_compared_with_variants_and_other_rounds():
     sources = [Source("axis", f"axis/{name}", None, None) for name in ("r1", "r2")]
     said = {
