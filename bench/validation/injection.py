@@ -32,6 +32,8 @@ SAMPLES, WIDTH = 7, 12e-3
 SURE = 4.0
 #: Hooks through which an effect acts on the motion itself.
 MOVING = frozenset({"driven_current", "remember"})
+#: Hooks through which the reported effort is another one, whatever acts behind it.
+REPORTED = frozenset({"acting_current", "recorded_current", "true_current"})
 #: Steps in a swing of a load on its contact: its frequency is right to 0.7 %.
 STEPS = 16
 #: Steps in which what drives the axis is found, and the share of it that it is found to.
@@ -47,12 +49,16 @@ class Host:
         rig: of its axis, which says what drives it.
         axis: J, K_w, K_0, torque constant, peak current and the rest that effects refer to.
         load: torque of what a gear carries, as far as the recording knows it - N*m (N) (m,); None if not at all.
+        moved: the recording as the axis moved, where its sensors are known to err; None if they are not.
+        lag: by which torque and motion are known to follow the reported effort - s.
     """
 
     trace: Trace
     rig: Rig
     axis: Axis
     load: Array | None = None
+    moved: Trace | None = None
+    lag: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -98,7 +104,7 @@ class StandIn:
 
 def stand_in(host: Host, trace: Trace | None = None) -> StandIn:
     """The motion of a recording, or of what was made of it, by a local cubic through its samples."""
-    trace = trace or host.trace
+    trace = trace or host.moved or host.trace
     position, velocity, acceleration, direction = np.concatenate([_motion(trace, p) for p in trace.segments], axis=1)
     effort, time = host.rig.effort(trace)[0], trace.time - trace.time[0]
     peak = np.full(len(trace), host.axis.peak_current)
@@ -148,7 +154,10 @@ def injected(host: Host, effect: Effect) -> Trace:
         return _read_otherwise(host.trace, effect, acts)
     seen = stand_in(host)
     current = _reported(effect, acts, seen.driven_by(_needed(effect, acts, seen)))
-    return driven(host, effect.name, current * seen.torque_constant)
+    more = current * seen.torque_constant - seen.motor_torque
+    if host.lag and not acts & REPORTED:
+        more = np.concatenate([_ahead(more[part], host.trace.sample_period, host.lag) for part in seen.parts])
+    return driven(host, effect.name, seen.motor_torque + more)
 
 
 def _needed(effect: Effect, acts: set[str], seen: StandIn) -> Array:

@@ -12,7 +12,9 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
+from bench.effects.acting import MisreadMotion
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import MotionLag
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
@@ -63,7 +65,7 @@ class Own:
 def own(trace: Trace, rig: Rig) -> Own:
     """By a diagnosis of the recording as it is, which may refuse it as `diagnose` does."""
     found = diagnose(trace, rig)
-    plain = Host(trace, rig, axis_of(found, trace, rig))
+    plain = Host(trace, rig, axis_of(found, trace, rig), moved=_moved(trace, found), lag=_lag(trace, found))
     left, gap = found.torque.identify, found.torque
     assert left is not None
     taken = frozenset(name for one in found.effects for name in (one.name, *one.ambiguous_with))
@@ -97,6 +99,24 @@ def axis_of(found: Diagnosis, trace: Trace, rig: Rig) -> Axis:
         linear=not kind.turns,
     )
     return replace(axis, top_speed=float(np.abs(stand_in(Host(trace, rig, axis)).velocity).max()))
+
+
+def _moved(trace: Trace, found: Diagnosis) -> Trace | None:
+    """The recording without the errors of its sensors of motion that its diagnosis names; None without them."""
+    misread = [(one.effect, one.values) for one in found.effects if isinstance(one.effect, MisreadMotion)]
+    if not misread or not {"position", "velocity"} <= trace.signals.keys():
+        return None
+    position, velocity = trace["position"], trace["velocity"]
+    for effect, values in misread:
+        position, velocity = effect.unseen(values, position, velocity)
+    return trace.with_signals({"position": position, "velocity": velocity}, {})
+
+
+def _lag(trace: Trace, found: Diagnosis) -> float:
+    """By which the motion follows the reported effort, as its diagnosis names it - s."""
+    source = "position" if "position" in trace else "velocity"
+    lags = [(one.effect, one.values) for one in found.effects if isinstance(one.effect, MotionLag)]
+    return sum(effect.delays([values["time_constant"]], source)[0] for effect, values in lags)
 
 
 def _load(host: Host, found: Diagnosis) -> Array | None:

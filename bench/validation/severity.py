@@ -57,7 +57,8 @@ def modelled(host: Host) -> Host:
     """The axis alone, as it was found to move under J, K_w, K_0 and its load: what else a recording holds left out."""
     seen, axis = stand_in(host), host.axis
     torque = axis.inertia * seen.acceleration + axis.viscous * seen.velocity + axis.coulomb * seen.direction
-    return replace(host, trace=driven(host, "the axis", torque + (0.0 if host.load is None else host.load)))
+    plain = driven(host, "the axis", torque + (0.0 if host.load is None else host.load))
+    return replace(host, trace=plain, moved=None, lag=0.0)
 
 
 def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:

@@ -13,6 +13,7 @@ from bench.validation.independent import KINDS, Axis, Motion, Sensors, simulate
 from bench.validation.independent.effects import (
     Backlash,
     CoggingTorque,
+    CurrentGainAsymmetry,
     DirectionalLoadFriction,
     ElasticCoupling,
     LoadDependentFriction,
@@ -117,6 +118,28 @@ def test_cogging_is_a_sine_of_the_position():
     noisy = SWING + 1e-4 * np.random.default_rng(1).normal(size=TIME.size)
     torque = added(host_of(noisy, np.zeros(TIME.size)), CoggingTorque(0.05, 8.0, 0.3))
     assert torque == pytest.approx(0.05 * np.sin(8.0 * SWING + 0.3), abs=1e-3)
+
+
+def test_an_axis_whose_torque_acts_late_is_given_it_early():
+    late = replace(host_of(20.0 * TIME, np.zeros(TIME.size)), lag=2e-3)  # T*dM/dt + M of a sine at n*w = 80 rad/s
+    torque = added(late, CoggingTorque(0.05, 4.0, 0.3))[50:-50]
+    angle = (80.0 * TIME + 0.3)[50:-50]
+    assert torque == pytest.approx(0.05 * (np.sin(angle) + 0.16 * np.cos(angle)), abs=2e-4)
+
+
+def test_what_acts_on_the_reported_current_comes_behind_the_lag_that_the_axis_has():
+    host = host_of(SWING, 0.3 * np.sin(2.0 * np.pi * 3.0 * TIME))
+    assert added(replace(host, lag=2e-3), CurrentGainAsymmetry(0.02)) == pytest.approx(
+        added(host, CurrentGainAsymmetry(0.02))
+    )
+
+
+def test_torque_is_put_where_the_axis_is_and_not_where_its_sensor_errs():
+    host = host_of(SWING + 0.02 * np.sin(SWING), np.zeros(TIME.size))
+    true = replace(host, moved=host_of(SWING, np.zeros(TIME.size)).trace)
+    torque = added(true, CoggingTorque(0.05, 8.0, 0.3))
+    assert torque == pytest.approx(0.05 * np.sin(8.0 * SWING + 0.3), abs=1e-4)
+    assert rms(torque - added(host, CoggingTorque(0.05, 8.0, 0.3))) > 2e-3
 
 
 def test_a_motor_overcomes_the_friction_that_its_own_torque_makes():

@@ -134,3 +134,10 @@ def test_effects_are_put_in_named_and_told_beside_the_truth(recording):
 def test_a_name_that_cannot_be_put_in_is_refused(recording):
     with pytest.raises(InputError, match="--effect: found 'coging_torque', did you mean 'cogging_torque'"):
         inject(recording, RIG, ["coging_torque"])
+
+
+def test_what_a_simulated_recording_holds_besides_is_no_false_name():
+    known = replace(OWN, hidden=("backlash",))
+    named = found("explained", "unbalance", "cogging_torque", "backlash")
+    assert judged(CASE, known, CoggingTorque(0.05, 8.0), named).fate == "right"
+    assert judged(CASE, OWN, CoggingTorque(0.05, 8.0), named).fate == "part"
