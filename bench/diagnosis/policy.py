@@ -6,7 +6,7 @@ are more than chance saves in a search, and more than a share of the squares at 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,10 +49,12 @@ class Policy:
         large: residual over noise from which on it is no noise, even if noise is louder than the signals show: encoders
             that interpolate with an error left 1.1 to 4 without a coupling, a servo's gear behind a coarse speed 6.4 to
             7.8. Names beside which so much is left are likelier the nearest than the right ones.
+        finalists: candidates at most whose shapes are searched before they are compared.
         promising: of what is above noise: what a candidate takes even at a grid's shape, so that its own is searched;
             less than any effect needs, as the grid is coarse.
-        finalists: candidates at most whose shapes are searched before they are compared.
         explains: factor on the share of what is above noise that each effect states as needed of itself.
+        patience: factor on the last two shares of a search for many small effects at once.
+        nearly_all: of what is above noise: what those may leave together.
         needed: of what is above noise without it: what a name takes beside those that came after it.
         as_good: of what a name takes: what a candidate takes in its place, even at a grid's shape.
         odds: of a likelihood to that of what is nearly as good, beyond which that is no more weighed. At 24,000 to one
@@ -77,9 +79,11 @@ class Policy:
     chance: float = 40.0
     remainder: float = NOISE_ALONE
     large: float = 3.0
-    promising: float = 0.1
     finalists: int = 4
+    promising: float = 0.1
     explains: float = 1.0
+    patience: float = 0.4
+    nearly_all: float = 0.1
     needed: float = 0.02
     as_good: float = 0.9
     odds: float = 100.0
@@ -98,6 +102,11 @@ class Policy:
     none: float = -2.7
     most: int = 12
     members: int = 12
+
+    @property
+    def patient(self) -> Policy:
+        """Of a search for many small effects at once."""
+        return replace(self, explains=self.patience * self.explains, promising=self.patience * self.promising)
 
     def by_chance(self, fitted: Fit, numbers: int, noise: float | None = None) -> float:
         """Squares that so many numbers save by chance at most, of a fit's noise or of a power in a row - (N*m)**2."""

@@ -86,7 +86,17 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
     if policy.remains(found.last):
         for effect in (each for each in effects if isinstance(each, Replacing)):
             found = replacement(found, effect, effects, policy) or found
-    return found
+    return many_small(found, effects, policy) if policy.remains(found.last) else found
+
+
+def many_small(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
+    """The search with effects that each explain little of what is left, if together they explain nearly all of it.
+
+    Of seven small effects at once the last four took 11 to 18 % each, and all of it together. Where they do not end it,
+    as on real axes, each may be anything.
+    """
+    further = selected(found.steps[-1], found.steps[:-1], effects, policy.patient)
+    return further if further.last.excess < policy.nearly_all * found.last.excess else found
 
 
 def selected(start: Step, earlier: Sequence[Step], effects: Sequence[Effect], policy: Policy) -> Searched:

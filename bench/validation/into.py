@@ -166,7 +166,9 @@ class Injection:
         return self.fate in (RIGHT, PART)
 
 
-def put_into(own: Own, name: str, strength: float, seed: int) -> Injection | None:
+def put_into(
+    own: Own, name: str, strength: float, seed: int, made_with: Callable[[Host, Effect], Trace] = injected
+) -> Injection | None:
     """Put an effect into a recording and diagnose it; None if the axis cannot have it, or has it already.
 
     Args:
@@ -174,13 +176,15 @@ def put_into(own: Own, name: str, strength: float, seed: int) -> Injection | Non
         name: of the effect.
         strength: over what the recording leaves.
         seed: of its other parameters.
+        made_with: the recording, had the axis had an effect.
     """
     effect = None if name in own.taken else drawn(own.host, name, strength * own.left, seed)
     if effect is None:
         return None
-    made, known = injected(own.host, effect), catalogue()[name].quantities[0]
+    made, known = made_with(own.host, effect), catalogue()[name].quantities[0]
     size, unit = effect.quantities(own.host.axis)[known.name], own.host.rig.axis_kind.unit(known, own.unit)
-    case = Injection(name, strength, known.name, size, unit, disturbance(own.host, made)[0])
+    torque = disturbance(own.host, injected(own.host, effect))[0]
+    case = Injection(name, strength, known.name, size, unit, torque)
     began = time.process_time()
     try:
         found = diagnose(made, own.host.rig)

@@ -59,12 +59,12 @@ def owns_of(sources: Sequence[Source], jobs: int) -> tuple[dict[str, Own], dict[
     return {name: found[name] for name in names if name in found}, refused
 
 
-def rows_of(items: Sequence[tuple[Case, Own]], path: Path, jobs: int) -> dict[str, Row]:
+def rows_of(items: Sequence[tuple[Case, Source, Own]], path: Path, jobs: int) -> dict[str, Row]:
     """Rows of cases with their recordings, those that are kept already and the others."""
-    asked = {case.name for case, _ in items}
+    asked = {case.name for case, *_ in items}
     rows = {row.case.name: row for row in kept(path) if row.case.name in asked}
 
-    def tell(item: tuple[Case, Own], outcome: Row | Failure) -> str:
+    def tell(item: tuple[Case, Source, Own], outcome: Row | Failure) -> str:
         row = Row(item[0], FAILED, reason=outcome.reason) if isinstance(outcome, Failure) else outcome
         keep(path, row)
         rows[row.case.name] = row
@@ -131,7 +131,8 @@ def main(
     if write is not None:
         typer.echo(f"{written(chosen, cases, write, by_name, owns)} cases in {write}")
         return
-    rows = rows_of([(case, owns[case.source]) for case in chosen], kept_in(seed), jobs)
+    items = [(case, by_name[case.source], owns[case.source]) for case in chosen]
+    rows = rows_of(items, kept_in(seed), jobs)
     publish(markdown([rows[case.name] for case in chosen], by_name, owns, refused, command), out, "table.md")
 
 

@@ -16,6 +16,7 @@ import numpy as np
 import bench
 from bench.errors import BenchError
 from bench.trace.write import write
+from bench.validation.independent.effects import KINDS
 from bench.validation.injection import INJECTABLE, injected
 from bench.validation.into import Injection, Own, own, put_into
 from bench.validation.severity import disturbance, drawn
@@ -54,9 +55,18 @@ def itself(source: Source) -> Own | str:
         found = own(*source.read())
     except BenchError as refusal:
         return " ".join(str(refusal).split())
+    if source.drawn is None:
+        return found
     named = same(found.names)
-    unnamed = tuple(name for name in source.hidden if twins(name) not in named)
-    return replace(found, taken=found.taken.union(*map(twins, unnamed)), hidden=unnamed)
+    hidden = tuple(name for name in source.hidden if twins(name) not in named)
+    host = replace(found.host, axis=source.drawn.hidden.axis)
+    return replace(found, host=host, taken=found.taken.union(*map(twins, hidden)), hidden=hidden)
+
+
+def possible(effect: str, own: Own) -> bool:
+    """Whether an axis can have an effect beside what it has: it has one coupling, and one friction by its load."""
+    beside = {effect, *own.names, *own.hidden}
+    return not any(KINDS[name].never_beside in beside for name in beside)
 
 
 def draw(sources: Sequence[str], effects: Sequence[str], seed: int) -> list[Case]:
@@ -115,10 +125,12 @@ class Row:
         return f"| {' | '.join(cells)} |"
 
 
-def judged(item: tuple[Case, Own]) -> Row:
+def judged(item: tuple[Case, Source, Own]) -> Row:
     """Put in, diagnosed and judged."""
-    case, own = item
-    return Row.of(case, own, put_into(own, case.effect, case.strength, case.own_seed))
+    case, source, own = item
+    if not possible(case.effect, own):
+        return Row(case, UNABLE)
+    return Row.of(case, own, put_into(own, case.effect, case.strength, case.own_seed, source.made_with))
 
 
 def kept_in(seed: int) -> Path:
@@ -152,11 +164,12 @@ def kept(path: Path) -> Iterator[Row]:
 def write_case(folder: Path, case: Case, source: Source, own: Own) -> bool:
     """Write a case as other sets have them: run1.csv.gz, rig.toml, truth.json; whether the axis can have it."""
     host = own.host
-    effect = None if case.effect in own.taken else drawn(host, case.effect, case.strength * own.left, case.own_seed)
+    able = case.effect not in own.taken and possible(case.effect, own)
+    effect = drawn(host, case.effect, case.strength * own.left, case.own_seed) if able else None
     if effect is None:
         return False
-    made = injected(host, effect)
-    whole, beyond = disturbance(host, made)
+    made = source.made_with(host, effect)
+    whole, beyond = disturbance(host, injected(host, effect))
     folder.mkdir(parents=True, exist_ok=True)
     write(made, folder / "run1.csv.gz")
     # names of columns are the bench's own now

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.console import Console
@@ -13,10 +13,14 @@ from bench.assets import asset
 from bench.rig.rig import Rig, load_rig
 from bench.trace.read import read
 from bench.trace.trace import Trace
+from bench.validation.independent.effects import Effect
+from bench.validation.injection import Host, injected
+from tests.cases import record
 from tests.shared import SHARED
 from tests.studies.blind.__main__ import workers
+from tests.studies.blind.draw import Drawn
 from tests.studies.nuisance import realistic
-from tests.studies.nuisance.record import home
+from tests.studies.nuisance.record import LONGEST_STEP, home
 
 DATA = SHARED / "data"
 #: The pendulum servo at each of its gains.
@@ -31,8 +35,7 @@ class Source:
         axis, name: what it is of, and its own; recordings of one axis are rounds of it.
         path, rig: files.
         without: signal that its source spoiled (`real/README.md` says how), empty for none.
-        real: whether nobody simulated it.
-        hidden: names of what is in a simulated one.
+        drawn, seed: what a simulated one was simulated of; None of a real one.
     """
 
     axis: str
@@ -40,14 +43,32 @@ class Source:
     path: Path
     rig: Path
     without: str = ""
-    real: bool = True
-    hidden: tuple[str, ...] = ()
+    drawn: Drawn | None = None
+    seed: int = 0
+
+    @property
+    def real(self) -> bool:
+        """Whether nobody simulated it."""
+        return self.drawn is None
+
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """Names of what is in a simulated one."""
+        return () if self.drawn is None else tuple(effect.name for effect in self.drawn.hidden.effects)
 
     def read(self) -> tuple[Trace, Rig]:
         """Recording and rig."""
         rig = load_rig(self.rig)
         trace = read(self.path, rig.trace)
         return (trace.without(self.without) if self.without else trace), rig
+
+    def made_with(self, host: Host, effect: Effect) -> Trace:
+        """The recording, had the axis had an effect: a simulated one made once more, a real one changed."""
+        if self.drawn is None:
+            return injected(host, effect)
+        hidden = replace(self.drawn.hidden, effects=(*self.drawn.hidden.effects, effect))
+        ((first, _),) = record([hidden], self.seed, numbers=[self.drawn.number], longest_step=LONGEST_STEP)
+        return first.trace
 
 
 def _beside(axis: str, names: str, without: str = "") -> Iterator[Source]:
@@ -81,7 +102,5 @@ def simulated(seed: int, count: int, jobs: int) -> list[Source]:
         bar = progress.add_task("recording", total=count)
         for done in realistic.recorded(folder, drawn, seed, pool):
             progress.advance(bar, done)
-    return [
-        Source(one.name, one.name, one / "run1.csv.gz", one / "rig.toml", real=False, hidden=hidden)
-        for one, hidden in ((folder / case.name, tuple(each.name for each in case.hidden.effects)) for case in drawn)
-    ]
+    homes = [(case, folder / case.name) for case in drawn]
+    return [Source(one.name, one.name, one / "run1.csv.gz", one / "rig.toml", "", case, seed) for case, one in homes]

@@ -125,6 +125,7 @@ class DirectionalLoadFriction(Effect):
     """
 
     name: ClassVar[str] = "directional_load_friction"
+    never_beside: ClassVar[str] = "load_dependent_friction"
     motor_coefficient: float
     load_ratio: float
 
