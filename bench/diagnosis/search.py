@@ -86,7 +86,9 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
     if policy.remains(found.last):
         for effect in (each for each in effects if isinstance(each, Replacing)):
             found = replacement(found, effect, effects, policy) or found
-    return many_small(found, effects, policy) if policy.remains(found.last) else found
+    if policy.remains(found.last) and found.stopped is None:
+        found = many_small(found, effects, policy)
+    return found
 
 
 def many_small(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:

@@ -174,3 +174,21 @@ def test_what_the_limit_cut_off_is_a_remainder():
     others = frozenset(catalogue()) - {"torque_offset", "cogging_torque"}
     cut = diagnose(trace, RIG, excluded=others, policy=Policy(most=1))
     assert (cut.verdict, cut.stopped) == ("unexplained_remainder", LIMIT)
+
+
+#: Each of seven waves takes a seventh of what all leave, where an effect needs a quarter.
+NUMBERS = (3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 16.0)
+SEVEN = [wave(0.02, number) for number in NUMBERS]
+
+
+def test_many_small_effects_are_named_that_explain_it_together():
+    few = ("cogging_torque", "quadratic_drag", "stribeck_friction")
+    found = search(bare(recorded(MOTION, *SEVEN)), [catalogue()[name] for name in few], POLICY).last
+    assert sorted(term.shape[0] for term in found.terms) == [*NUMBERS]
+    assert found.chi < 1.1
+    assert len(sought(Policy(nearly_all=0.0), recorded(MOTION, *SEVEN), few)) < 3
+
+
+def test_small_effects_beside_a_remainder_are_not_named():
+    few = ("cogging_torque", "quadratic_drag", "stribeck_friction")
+    assert sought(POLICY, recorded(MOTION, *SEVEN, vibration(0.05, 3.3)), few) == ()
