@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.next_experiment import LONG_ENOUGH, motions
+from bench.diagnosis.next_experiment import LONG_ENOUGH, motions, one_direction
 from bench.diagnosis.recordings import Recordings
 from bench.plant.drive import References
 from bench.rig.rig import load_rig
@@ -95,6 +95,18 @@ def test_motion_in_one_direction_is_followed_by_reversals_that_tell(rig, recordi
     names = {"torque_offset" if e.name == "direction_dependent_friction" else e.name for e in second.effects}
     assert names == {effect.name for effect in HIDDEN[hidden]}
     assert second.parameters["coulomb_friction_torque"].value == pytest.approx(AXIS.coulomb, rel=0.1)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_what_may_be_friction_in_one_direction_acts_against_that(rig, recordings, followed, direction):
+    seen = recordings["nothing"]
+    turned = seen.with_signals({name: direction * values for name, values in seen.signals.items()}, {})
+    model = followed["nothing"][0].model.model
+    (alternatives,) = one_direction(Recordings.of(turned, rig, None), AXIS.coulomb, model)
+    friction, instead = alternatives.models
+    assert friction.parameters.coulomb_friction == AXIS.coulomb
+    assert instead.parameters.coulomb_friction == 0.0
+    assert dict(instead.effects[-1].values) == {"torque": direction * AXIS.coulomb}
 
 
 def test_names_that_no_motion_parts_have_no_experiment(rig, recordings):

@@ -111,6 +111,15 @@ def test_epos_example():
     assert trace.sample_period == pytest.approx(0.040) and len(trace) == 500
 
 
+def test_a_cell_of_an_epos_recording_that_is_no_number_is_found_on_its_line(tmp_path):
+    lines = ["EPOS Studio Version:;3", ";Velocity actual value;Torque actual value", "ms;rpm;%"]
+    lines += [f"{k};{k * k};1,5" for k in range(100)]
+    lines[41] = "38;x;1,5"
+    (tmp_path / "axis.csv").write_text("\r\n".join(lines), encoding="utf-8")
+    with pytest.raises(InputError, match="line 42, column 'Velocity actual value"):
+        read(tmp_path / "axis.csv")
+
+
 @pytest.mark.parametrize(("name", "remark"), [("1.csv", "was -8.9"), ("2.csv", "was -11.1"), ("n1.csv", "was 22.1")])
 def test_epos_samples_changed_by_hand_are_left_out_and_reported(name, remark):
     trace = read(shared("tro2021_screw", "driveNo3", "steady_state", "0.096kg", name))
