@@ -13,7 +13,7 @@ from bench.course.recordings import LabRecordings
 from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
 from bench.course.winding import identified_axis
 from bench.errors import InputError
-from bench.plant.axis_model import AxisParameters
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.drive import Cascade
 from bench.plant.plant import Plant
 from bench.plant.profiles import MotionLimits, plan
@@ -53,7 +53,7 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
     """
     rig, sources = recordings.rig, recordings.sources
     loads, rotor, cascade = feedforwards(rig, identified), motor_value(rig, "rotor_inertia"), Cascade.from_rig(rig)
-    plant = Plant(axis, cascade, cascade.control_period, emulated=True)
+    plant = Plant(AxisModel(axis), cascade, cascade.control_period, emulated=True)
     references = plan("fast_reversals", MotionLimits.from_rig(rig, axis, cascade.control_period))
     plants = [replace(plant, cascade=replace(cascade, inertia_feedforward=rotor + load)) for load in loads.values()]
     states = run(plants, [references] * len(plants))

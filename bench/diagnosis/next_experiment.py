@@ -179,7 +179,7 @@ def separation(
     cascade = replace(Cascade.from_rig(recordings.rig), control_period=references.period)
     states = []
     for model in models:
-        plant = Plant(model.parameters, cascade, references.period, effects=model.effects, winding=model.winding)
+        plant = Plant(model, cascade, references.period)
         states.append(reported_states(plant.model, run([plant], [references])))
     smooth = GaussianFilter(max(width, 1.5 * references.period), references.period)
     one, other = states

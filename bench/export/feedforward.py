@@ -118,8 +118,7 @@ def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Fe
     motion = references
     if feedforward is not None:
         cascade, motion = replace(cascade, inertia_feedforward=feedforward.inertia), feedforward.along(references)
-    plant = Plant.of(model, cascade)
-    states = run([plant], [motion])
+    states = run([Plant(model, cascade, cascade.control_period)], [motion])
     return Tracking(rms(references.position - states.position[:, 0]), rms(references.velocity - states.velocity[:, 0]))
 
 

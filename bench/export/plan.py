@@ -68,7 +68,7 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[PlannedMotion]:
     """
     effects = [] if wanted is None else [wanted]
     plant = Plant.from_rig(rig, effects)
-    limits = MotionLimits.from_rig(rig, plant.parameters, plant.cascade.control_period)
+    limits = MotionLimits.from_rig(rig, plant.axis.parameters, plant.cascade.control_period)
     effect = None if wanted is None else wanted.effect
     if effect is not None and not (isinstance(effect, Columns) or effect.shapes):
         raise InputError(f"--for {effect.name}", "is none of the torque balance", "allowed: an effect that has columns")

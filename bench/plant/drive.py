@@ -59,26 +59,6 @@ class Cascade:
         return cls(torque_limit=peak_torque(rig), **dict(rig.drive))
 
 
-@dataclass(frozen=True)
-class FrictionEmulation:
-    """Friction that the drive's software makes, as in the lab; numbers, or arrays of shape (axes,).
-
-    Attributes:
-        viscous_friction_coefficient: K_w - N*m*s/rad (N*s/m on a linear axis).
-        coulomb_friction: K_0 - N*m (N).
-        inertia: what the drive takes the axis' inertia to be - kg*m**2 (kg).
-    """
-
-    viscous_friction_coefficient: Values
-    coulomb_friction: Values
-    inertia: Values
-
-    @classmethod
-    def of(cls, parameters: AxisParameters) -> FrictionEmulation:
-        """All the friction of an axis."""
-        return cls(parameters.viscous_friction_coefficient, parameters.coulomb_friction, parameters.inertia)
-
-
 def peak_torque(rig: Rig) -> float:
     """Torque at the motor's peak current - N*m (N on a linear axis); infinite where the rig states none."""
     constant, current = rig.motor.torque_per_ampere, rig.motor.peak_current
@@ -90,10 +70,11 @@ def peak_torque(rig: Rig) -> float:
 class CascadeDrive:
     """The cascade ticked in software, for any number of axes at once. It starts at rest on its references.
 
-    References are signals of shape (ticks, axes); friction is made in software where there is an `emulation`.
+    References are signals of shape (ticks, axes). Where axes are `emulated` - their values numbers, or (axes,) -,
+    software makes their friction, for the inertia that they are taken to have.
     """
 
-    def __init__(self, cascade: Cascade, references: References, emulation: FrictionEmulation | None = None) -> None:
+    def __init__(self, cascade: Cascade, references: References, emulated: AxisParameters | None = None) -> None:
         period = cascade.control_period
         self._position_gain = cascade.position_gain
         # The velocity error is integrated by the trapezoidal rule: half of this tick's error, all of those before.
@@ -105,7 +86,7 @@ class CascadeDrive:
         self._feedforward = _by_ticks(references.feedforward(cascade.inertia_feedforward))
         self._integral: Values = 0.0
         start = per_axis(references.velocity[0])
-        self._friction = None if emulation is None else _EmulatedFriction(emulation, period, start)
+        self._friction = None if emulated is None else _EmulatedFriction(emulated, period, start)
 
     def tick(self, k: int, position: Values, velocity: Values) -> tuple[Values, Values]:
         """Torque from tick k to the next of what is measured at it - N*m (N): set-point, and the motor's.
@@ -126,24 +107,27 @@ class CascadeDrive:
 
 @dataclass(frozen=True, eq=False)
 class FollowReferences(Controller):
-    """The drive of one axis along references (ticks,), which sees what the encoder does and may emulate friction."""
+    """The drive of one axis along references (ticks,), which sees what the encoder does.
+
+    Where it is `emulated`, software makes the axis' friction.
+    """
 
     cascade: Cascade
     references: References
-    emulation: FrictionEmulation | None = None
+    emulated: AxisParameters | None = None
 
     @classmethod
     def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Tick:
         """See `Controller`."""
         drives = [each.controller for each in loops if isinstance(each.controller, cls)]
-        cascades, emulation = [drive.cascade for drive in drives], None
+        cascades, emulated = [drive.cascade for drive in drives], None
         period = cascades[0].control_period
         cascade = Cascade(**stacked(cascades, without="control_period"), control_period=period)
-        if any(drive.emulation is not None for drive in drives):  # null on axes that have friction in their mechanics
-            null = [FrictionEmulation.of(loop.axis.parameters.frictionless) for loop in loops]
-            made = [drive.emulation or none for drive, none in zip(drives, null, strict=True)]
-            emulation = FrictionEmulation(**stacked(made))
-        together = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulation)
+        if any(drive.emulated for drive in drives):  # without friction on axes that have theirs in their mechanics
+            null = (loop.axis.parameters.frictionless for loop in loops)
+            made = [drive.emulated or none for drive, none in zip(drives, null, strict=True)]
+            emulated = AxisParameters(**stacked(made, without="kind"))
+        together = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulated)
         encoders = on_axes([loop.axis for loop in loops], MisreadMotion)
 
         def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number, Number]:
@@ -175,9 +159,9 @@ class _EmulatedFriction:
     slips. The load is what the last tick's change of speed tells: M_load = M_motor - J*(w - w_last)/T.
     """
 
-    def __init__(self, emulation: FrictionEmulation, period: float, velocity: Values) -> None:
-        viscous, inertia = emulation.viscous_friction_coefficient, emulation.inertia
-        self._upper = emulation.coulomb_friction
+    def __init__(self, axes: AxisParameters, period: float, velocity: Values) -> None:
+        viscous, inertia = axes.viscous_friction_coefficient, axes.inertia
+        self._upper = axes.coulomb_friction
         self._lower = -self._upper
         self._momentum_rate = inertia / period
         self._stopping = inertia / period - viscous / 2.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import mujoco
@@ -12,11 +12,10 @@ import numpy as np
 from bench.arrays import Array
 from bench.effects.acting import Friction
 from bench.effects.present import Present
-from bench.effects.signals import Winding
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
 from bench.plant.closed_loop import ClosedLoop, Controller, Listed
-from bench.plant.drive import Cascade, FollowReferences, FrictionEmulation, References, add_pid, pid_inputs
+from bench.plant.drive import Cascade, FollowReferences, References, add_pid, pid_inputs
 from bench.rig.rig import Rig
 
 
@@ -25,20 +24,16 @@ class Plant:
     """An axis with its drive.
 
     Attributes:
-        parameters: of the equation of motion; friction in them acts wherever `emulated` says.
+        axis: with its effects; its friction acts wherever `emulated` says.
         cascade: of the drive.
         timestep: of the integration, a whole part of the control period - s.
         emulated: whether the drive's software makes the friction instead of the mechanics.
-        effects: beyond the equation of motion.
-        winding: of the motor, for effects that need it.
     """
 
-    parameters: AxisParameters
+    axis: AxisModel
     cascade: Cascade
     timestep: float
     emulated: bool = False
-    effects: tuple[Present, ...] = ()
-    winding: Winding | None = None
 
     def __post_init__(self) -> None:
         period = self.cascade.control_period
@@ -55,19 +50,14 @@ class Plant:
         """The simulated axis that a rig describes; InputError where `[drive]` or `[simulation]` lack or contradict."""
         parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
         timestep = rig.simulated.timestep or cascade.control_period
-        emulated = rig.simulated.friction == "drive"
-        return cls(parameters, cascade, timestep, emulated, tuple(effects), winding_of(rig))
-
-    @classmethod
-    def of(cls, model: AxisModel, cascade: Cascade) -> Plant:
-        """A model under a drive, in steps of the drive's control period."""
-        return cls(model.parameters, cascade, cascade.control_period, effects=model.effects, winding=model.winding)
+        axis = AxisModel(parameters, tuple(effects), float(cascade.torque_limit), winding_of(rig))
+        return cls(axis, cascade, timestep, rig.simulated.friction == "drive")
 
     @cached_property
     def model(self) -> AxisModel:
-        """The axis without its drive; friction as the mechanics have it."""
-        parameters = self.parameters.frictionless if self.emulated else self.parameters
-        return AxisModel(parameters, self.effects, float(self.cascade.torque_limit), self.winding)
+        """The axis without its drive, whose limit is its peak effort; friction as the mechanics have it."""
+        parameters = self.axis.parameters.frictionless if self.emulated else self.axis.parameters
+        return replace(self.axis, parameters=parameters, peak_effort=float(self.cascade.torque_limit))
 
     @property
     def substeps(self) -> int:
@@ -90,8 +80,7 @@ class Plant:
 
     def ticked_loop(self, references: References) -> ClosedLoop:
         """The axis with its drive ticked in Python."""
-        emulation = FrictionEmulation.of(self.parameters) if self.emulated else None
-        drive = FollowReferences(self.cascade, references, emulation)
+        drive = FollowReferences(self.cascade, references, self.axis.parameters if self.emulated else None)
         return self._loop(self._mechanics, drive, references.time, references)
 
     def _loop(self, compiled: mujoco.MjModel, drive: Controller, time: Array, references: References) -> ClosedLoop:

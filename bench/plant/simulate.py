@@ -82,7 +82,7 @@ def simulate(
         profile = f"motion of {profile.origin}" if isinstance(profile, Trace) else "given speeds"
     profile = str(profile)
     if references is None:
-        references = plan(profile, MotionLimits.from_rig(rig, plant.parameters, period))
+        references = plan(profile, MotionLimits.from_rig(rig, plant.axis.parameters, period))
     steps = float(references.time[-1]) / plant.timestep
     if steps > MOST_TICKS:
         allowed = f"allowed: up to {MOST_TICKS:g} for this motion"
@@ -91,14 +91,14 @@ def simulate(
     origin = f"simulation of {rig.name}, {profile}, seed {seed}"
     trace = sensors.record(reported_states(plant.model, states), references, np.random.default_rng(seed), origin)
     friction = "drive" if plant.emulated else "mechanics"
-    truth = Truth(rig.name, plant.parameters, friction, sensors, profile, seed, plant.model.effects)
+    truth = Truth(rig.name, plant.axis.parameters, friction, sensors, profile, seed, plant.model.effects)
     return Simulated(trace, truth, states, references)
 
 
 def _require_possible(plant: Plant) -> None:
     """InputError where an effect has a value that it cannot have on this axis."""
-    axis, kind = plant.model.axis, plant.parameters.kind
-    for present in plant.effects:
+    axis, kind = plant.model.axis, plant.axis.parameters.kind
+    for present in plant.axis.effects:
         for name, least in present.effect.least(axis).items():
             value, unit = effect_values(present, kind).get(name, (math.inf, ""))
             if value < least:

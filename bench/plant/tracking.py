@@ -262,7 +262,7 @@ def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
     if stride < 1 or abs(stride * period / sampled - 1.0) > 1e-3:
         allowed = f"allowed: a multiple of the control period of {period:g} s"
         raise InputError(trace.origin, f"found samples every {sampled:g} s", allowed)
-    plant = Plant.of(model, cascade)
+    plant = Plant(model, cascade, period)
     states = reported_states(plant.model, run([plant], [references_of(trace, period, stride)]))
     rows = slice(None, None, stride)
     return Followed(states.position[rows, 0], states.velocity[rows, 0], states.torque[rows, 0])

@@ -100,7 +100,7 @@ def along_profile(path: str | Path, rig: Rig, profile: str) -> SideBySide:
     if kind is not rig.axis_kind:
         raise InputError(f"{path}: kind", f"found '{kind.name}'", f"allowed: '{rig.kind}', as {rig.source} says")
     asked = plan(profile, MotionLimits.from_rig(rig, stored.model.parameters, cascade.control_period))
-    plant = Plant.of(stored.model, cascade)
+    plant = Plant(stored.model, cascade, cascade.control_period)
     states = reported_states(plant.model, run([plant], [asked]))
     return SideBySide(
         kind=kind,

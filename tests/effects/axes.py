@@ -86,7 +86,7 @@ def model(*names: str) -> AxisModel:
 
 def plant(*names: str) -> Plant:
     """The axis with effects under its drive."""
-    return Plant(PARAMETERS, CASCADE, PERIOD, effects=tuple(present(name) for name in names), winding=WINDING)
+    return Plant(model(*names), CASCADE, PERIOD)
 
 
 #: The same without friction, for closed forms.
@@ -106,7 +106,7 @@ def pushed(
     still = np.zeros_like(time)
     references = References(time, still + position, still + velocity, still + torque)
     open_loop = Cascade(0.0, 0.0, 0.0, 1.0, AXIS.peak_torque, PERIOD)
-    return Plant(parameters, open_loop, PERIOD, effects=tuple(effects), winding=WINDING), references
+    return Plant(AxisModel(parameters, tuple(effects), winding=WINDING), open_loop, PERIOD), references
 
 
 def moved(

@@ -56,7 +56,7 @@ def test_every_effect_of_the_catalogue_is_tried():
 
 @pytest.mark.parametrize("name", EFFECTS)
 def test_null_values_leave_the_trajectory_as_it_is(name):
-    bare, null = plant(), replace(plant(), effects=(with_null(name),))
+    bare, null = plant(), replace(plant(), axis=model().with_effects([with_null(name)]))
     assert null.model.effects == ()
     np.testing.assert_array_equal(run([null], [SHORT]).velocity, run([bare], [SHORT]).velocity)
 
@@ -133,7 +133,8 @@ def test_columns_agree_with_the_simulation(name):
         values["bristle_damping"] = 0.0
     if name == "friction_warmup":
         values["relative_amplitude"] = 0.4
-    states = run([replace(plant(), effects=(Present.of(name, values),))], [Reversals(0.6).references()])
+    axis = model().with_effects([Present.of(name, values)])
+    states = run([replace(plant(), axis=axis)], [Reversals(0.6).references()])
     gap, columns, shape = balance(effect, values, states)
     strengths, *_ = np.linalg.lstsq(columns, gap, rcond=None)
     off = gap - columns @ strengths

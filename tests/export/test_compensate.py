@@ -61,9 +61,9 @@ def test_tracking_errors_are_at_least_halved_with_a_model_that_is_off():
     effects = [Present.of(name, values) for name, values in HIDDEN.items()]
     plant = Plant.from_rig(RIG, effects)
     known = replace(
-        plant.parameters,
-        inertia=0.97 * plant.parameters.inertia,
-        coulomb_friction=1.03 * plant.parameters.coulomb_friction,
+        plant.axis.parameters,
+        inertia=0.97 * plant.axis.parameters.inertia,
+        coulomb_friction=1.03 * plant.axis.parameters.coulomb_friction,
     )
     off = [Present.of(name, perturbed(values, 0.97)) for name, values in HIDDEN.items()]
     guess = replace(plant.model, parameters=known, effects=tuple(off))

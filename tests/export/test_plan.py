@@ -13,7 +13,7 @@ from bench.plant.profiles import MotionLimits
 from bench.rig.rig import load_rig
 
 RIG = load_rig(asset("data", "rigs", "sh30701p.toml"))
-LIMITS = MotionLimits.from_rig(RIG, Plant.from_rig(RIG).parameters, 250e-6)
+LIMITS = MotionLimits.from_rig(RIG, Plant.from_rig(RIG).axis.parameters, 250e-6)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 from bench.effects.acting import Friction
 from bench.effects.catalogue import catalogue
 from bench.effects.present import Present
-from bench.plant.axis_model import AxisParameters
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.drive import Cascade
 from bench.plant.plant import Plant
 from bench.plant.run import run
@@ -27,7 +27,7 @@ def drawn(seed, effects=()):
     gain = inertia * rng.uniform(50.0, 200.0)
     cascade = Cascade(rng.uniform(5.0, 40.0), gain, gain * rng.uniform(5.0, 20.0), inertia, 1e3, PERIOD)
     axis = AxisParameters(inertia, viscous, coulomb, motor_inertia=inertia * rng.uniform(0.1, 0.5))
-    return Plant(axis, cascade, PERIOD, effects=tuple(effects), winding=WINDING)
+    return Plant(AxisModel(axis, tuple(effects), winding=WINDING), cascade, PERIOD)
 
 
 def disturbed(name, seed):
@@ -46,7 +46,7 @@ def taken(states, inertia):
 @pytest.mark.parametrize("seed", range(6))
 def test_the_motors_work_is_kinetic_energy_and_heat(seed):
     plant = drawn(seed)
-    axis, states = plant.parameters, run([plant], [MOTION])
+    axis, states = plant.axis.parameters, run([plant], [MOTION])
     left, work = taken(states, axis.inertia)
     middle = (states.velocity[1:] + states.velocity[:-1]) / 2.0
     heat = axis.viscous_friction_coefficient * middle**2 + axis.coulomb_friction * np.abs(middle)
@@ -60,8 +60,9 @@ def test_the_motors_work_is_kinetic_energy_and_heat(seed):
 def test_friction_only_takes(name):
     """Under the drive too, which moves the axis and brakes it: at no step has the axis more than the motor gave."""
     plants = [drawn(seed, [disturbed(name, seed)]) for seed in range(4)]
-    inertia = np.array([plant.parameters.inertia for plant in plants])
-    states, bare = (run(each, [MOTION] * 4) for each in (plants, [replace(plant, effects=()) for plant in plants]))
+    inertia = np.array([plant.axis.parameters.inertia for plant in plants])
+    without = [replace(plant, axis=plant.axis.with_effects([])) for plant in plants]
+    states, bare = (run(each, [MOTION] * 4) for each in (plants, without))
     left, less = taken(states, inertia)[0], taken(bare, inertia)[0]
     print(f"\n{name}: takes {left[-1]} J, {less[-1]} J without it")
     one_way = np.sign(states.velocity[1:-1]) == np.sign(states.velocity[2:])

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from bench.plant.axis_model import AxisParameters
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.drive import Cascade
 from bench.plant.plant import Plant
 from bench.rig.rig import Rig, load_rig
@@ -31,7 +31,7 @@ coulomb_friction = "85 mN*m"
 @pytest.fixture
 def plant() -> Plant:
     cascade = Cascade(70.0, 0.9, 55.0, 2.2e-3, 3.5, 250e-6)
-    return Plant(AxisParameters(2.2e-3, 1.1e-3, 0.085, motor_inertia=2.5e-5), cascade, 250e-6)
+    return Plant(AxisModel(AxisParameters(2.2e-3, 1.1e-3, 0.085, motor_inertia=2.5e-5)), cascade, 250e-6)
 
 
 @pytest.fixture

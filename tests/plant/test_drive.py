@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bench.effects.present import Present
-from bench.plant.axis_model import AxisParameters
-from bench.plant.drive import Cascade, CascadeDrive, FrictionEmulation, References
+from bench.plant.axis_model import AxisModel, AxisParameters
+from bench.plant.drive import Cascade, CascadeDrive, References
 from bench.plant.plant import Plant
 from bench.plant.run import run, run_native, run_ticked
 
@@ -59,7 +59,7 @@ def written_law(plant, r):
         if torque == wanted:
             integral += error * h
         out.append((q, w, torque))
-        w, q = exact_step(w, q, torque, plant.parameters, h)
+        w, q = exact_step(w, q, torque, plant.axis.parameters, h)
     return np.array(out).T
 
 
@@ -91,7 +91,7 @@ def test_plant_moves_as_the_written_law_on_an_exact_axis(plant, speed):
 
 def reversal_error(plant):
     """A step in which the axis reverses has friction against the new direction all along: up to 2*K_0*h/J - rad/s."""
-    return 2.0 * plant.parameters.coulomb_friction * plant.timestep / plant.parameters.inertia
+    return 2.0 * plant.axis.parameters.coulomb_friction * plant.timestep / plant.axis.parameters.inertia
 
 
 def test_torque_never_exceeds_the_limit_and_integrator_holds(plant):
@@ -123,8 +123,8 @@ def test_friction_by_the_drive_moves_as_friction_in_the_mechanics(plant):
     friction = (emulated.torque - emulated.motor_torque)[:-1]
     middle = (emulated.velocity[1:] + emulated.velocity[:-1]) / 2.0
     moving = np.abs(middle) > 1.0
-    expected = plant.parameters.coulomb_friction * np.sign(middle)
-    expected = expected + plant.parameters.viscous_friction_coefficient * middle
+    expected = plant.axis.parameters.coulomb_friction * np.sign(middle)
+    expected = expected + plant.axis.parameters.viscous_friction_coefficient * middle
     np.testing.assert_allclose(friction[moving], expected[moving], atol=1e-9)
 
 
@@ -132,8 +132,8 @@ def test_friction_by_the_drive_moves_as_friction_in_the_mechanics(plant):
 def test_emulated_friction_holds_a_standing_axis(plant, load_torque):
     """A drive that only holds by friction: no gains. Load and friction settle; the axis stays."""
     weak = Cascade(0.0, 0.0, 0.0, 0.0, 3.5, 250e-6)
-    parameters = dataclasses.replace(plant.parameters, load_torque=load_torque)
-    states = run([Plant(parameters, weak, 250e-6, emulated=True)], [standstill(250e-6, 1.0)])
+    parameters = dataclasses.replace(plant.axis.parameters, load_torque=load_torque)
+    states = run([Plant(AxisModel(parameters), weak, 250e-6, emulated=True)], [standstill(250e-6, 1.0)])
     print(f"held by emulated friction against {load_torque:+} N*m: {np.abs(states.velocity[-1]).max():.1e} rad/s")
     assert np.abs(states.velocity[100:]).max() < 1e-9
     assert states.motor_torque[-1, 0] == pytest.approx(load_torque, abs=1e-9)
@@ -141,8 +141,8 @@ def test_emulated_friction_holds_a_standing_axis(plant, load_torque):
 
 def test_emulated_friction_slips_beyond_breakaway(plant):
     weak = Cascade(0.0, 0.0, 0.0, 0.0, 3.5, 250e-6)
-    parameters = dataclasses.replace(plant.parameters, load_torque=-0.1)
-    states = run([Plant(parameters, weak, 250e-6, emulated=True)], [standstill(250e-6, 1.0)])
+    parameters = dataclasses.replace(plant.axis.parameters, load_torque=-0.1)
+    states = run([Plant(AxisModel(parameters), weak, 250e-6, emulated=True)], [standstill(250e-6, 1.0)])
     rate = parameters.viscous_friction_coefficient / parameters.inertia
     final = (0.1 - parameters.coulomb_friction) / parameters.viscous_friction_coefficient
     np.testing.assert_allclose(states.velocity[:, 0], -final * np.expm1(-rate * states.time), atol=2e-2)
@@ -179,7 +179,7 @@ def test_substeps_leave_the_motion_as_it_is(plant):
 def test_substeps_act_as_often_as_they_are(plant):
     """What is reported is the mean over a tick, whose steps make one tick's motion."""
     effect = Present.of("torque_ripple", {"relative_amplitude": 0.2, "harmonic": 3.0})
-    coarse = dataclasses.replace(plant, effects=(effect,))
+    coarse = dataclasses.replace(plant, axis=plant.axis.with_effects([effect]))
     references = reversals(duration=0.5)
     whole, half = (run([dataclasses.replace(coarse, timestep=step)], [references]) for step in (250e-6, 125e-6))
     assert worst(half, whole)["velocity"] < reversal_error(plant)
@@ -188,9 +188,8 @@ def test_substeps_act_as_often_as_they_are(plant):
 
 
 def test_axes_that_differ_run_side_by_side_as_alone(plant):
-    heavy = Plant(
-        AxisParameters(5e-3, 3e-3, 0.2, load_torque=0.1), dataclasses.replace(plant.cascade, velocity_gain=2.0), 250e-6
-    )
+    other = AxisModel(AxisParameters(5e-3, 3e-3, 0.2, load_torque=0.1))
+    heavy = Plant(other, dataclasses.replace(plant.cascade, velocity_gain=2.0), 250e-6)
     emulated = dataclasses.replace(plant, emulated=True)
     plants, references = [plant, heavy, emulated, heavy], [reversals(speed=s, duration=0.5) for s in (60, 40, 60, 30)]
     loops = [one.ticked_loop(motion) for one, motion in zip(plants, references, strict=True)]
@@ -202,7 +201,7 @@ def test_axes_that_differ_run_side_by_side_as_alone(plant):
 
 
 def test_emulation_values_are_what_it_takes():
-    emulation = FrictionEmulation(0.0, 0.3, 1e-3)
+    emulation = AxisParameters(1e-3, 0.0, 0.3)
     r = standstill(1e-3, 2e-3)
     drive = CascadeDrive(
         Cascade(0.0, 0.0, 0.0, 0.0, np.inf, 1e-3),

@@ -48,7 +48,7 @@ def test_divergence_is_an_error_not_a_motion(plant, emulated, capfd, tmp_path, m
     monkeypatch.chdir(tmp_path)
     wild = Cascade(70.0, 60.0, 55.0, 2.2e-3, np.inf, 250e-6)
     with pytest.raises(SimulationError, match="diverged"):
-        run([Plant(plant.parameters, wild, 250e-6, emulated)], [reversals()])
+        run([Plant(plant.axis, wild, 250e-6, emulated)], [reversals()])
     assert capfd.readouterr() == ("", "")
     assert not list(tmp_path.iterdir())
 
@@ -66,7 +66,7 @@ def test_refuses_periods_that_do_not_fit(plant):
 def test_a_lone_axis_diverges_as_axes_side_by_side_do(plant):
     """Its values are numbers, and a Stribeck velocity of nothing divides by it all the same."""
     effect = Present.of("stribeck_friction", {"static_friction": 0.2, "stribeck_velocity": 0.0})
-    axis = dataclasses.replace(plant, effects=(effect,))
+    axis = dataclasses.replace(plant, axis=plant.axis.with_effects([effect]))
     for count in (1, 2):
         with np.errstate(all="ignore"), pytest.raises(SimulationError, match="diverged"):
             run([axis] * count, [reversals(duration=0.05)] * count)
