@@ -19,8 +19,9 @@ from bench.cli.common import REPLACED, WRITTEN
 from bench.course.grade import SEALED, seal
 from bench.course.submission import find_submissions, read_submission
 from bench.errors import InputError
-from bench.export.mjcf import link_inertia, read_mjcf
+from bench.export.mjcf import link_inertia
 from bench.files import held, keeping, read_bytes, sha256, whole, write_text
+from bench.plant.mjcf_file import read_mjcf
 from bench.plant.robot import Robot
 from tests.command import bench
 from tests.hostile import RIG, ROOT, assert_one_line, columns, csv_of, run

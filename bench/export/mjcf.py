@@ -35,7 +35,7 @@ from bench.errors import InputError
 from bench.files import read_text
 from bench.names import nearest, plain
 from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_inertia
-from bench.plant.mjcf_file import read_spec, require_compiles
+from bench.plant.mjcf_file import read_mjcf
 from bench.plant.model_file import StoredModel
 from bench.plant.robot import AddedBody, add_body, link_about_centre
 from bench.plant.run import silenced
@@ -170,16 +170,6 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
     joint.classname = kept
     compiled(spec)
     return commented(spec, (*carried.lines, _mass_of(body, stored))), carried
-
-
-def read_mjcf(path: Path) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
-    """Editable model of an MJCF file, and what is left out of it in sentences: meshes that are not there.
-
-    InputError if there is no such file, or MuJoCo makes no model of it.
-    """
-    require_compiles(path)
-    with silenced():
-        return read_spec(str(path))
 
 
 def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
@@ -57,7 +56,7 @@ def _fault(path: str) -> str:
     """Why an MJCF is none; empty if it is one."""
     with silenced():
         try:
-            model, _ = compiled(path)
+            model = read_spec(path)[0].compile()
             mujoco.mj_forward(model, mujoco.MjData(model))
         except (ValueError, OSError, RuntimeError, mujoco.FatalError, UnicodeError) as error:
             return " ".join(str(error).split())
@@ -65,13 +64,11 @@ def _fault(path: str) -> str:
     return f"{wrong[0]} is not finite" if wrong else ""
 
 
-def compiled(
-    path: str, change: Callable[[mujoco.MjSpec], None] = lambda spec: None
-) -> tuple[mujoco.MjModel, tuple[str, ...]]:
-    """The model of an MJCF or URDF, changed where that is asked, and what is left out; ValueError as `read_spec`."""
-    spec, notes = read_spec(path)
-    change(spec)
-    return spec.compile(), notes
+def read_mjcf(path: Path) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
+    """What an MJCF or URDF says that MuJoCo makes a model of, as `read_spec`; InputError as `require_compiles`."""
+    require_compiles(path)
+    with silenced():
+        return read_spec(str(path))
 
 
 def read_spec(path: str) -> tuple[mujoco.MjSpec, tuple[str, ...]]:

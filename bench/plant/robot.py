@@ -26,7 +26,7 @@ from bench.arrays import Array, rms
 from bench.errors import InputError
 from bench.names import nearest
 from bench.plant.axis_model import NO_MASS
-from bench.plant.mjcf_file import compiled, require_compiles
+from bench.plant.mjcf_file import read_mjcf
 from bench.plant.run import silenced
 from bench.rig.rig import JointNotes, Load, Rig
 from bench.trace.channel import Channel, Recording
@@ -44,8 +44,8 @@ TOGETHER = 4096
 ASIDE = 1e-4
 #: A joint that moves so far - rad (m) - and asks less than what is left was not what pushed.
 FAR = 1.0
-#: Joints of one coordinate.
-SIMPLE = (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
+#: Joints of one coordinate, and its unit.
+UNITS = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
 #: What inverse dynamics leaves out: what is no property of the links.
 DISABLED = (
     mujoco.mjtDisableBit.mjDSBL_CONSTRAINT,
@@ -77,20 +77,16 @@ class AddedBody:
 def joint_units(path: Path) -> dict[str, str]:
     """Names of the hinges and slides of an MJCF file with the units of their positions; InputError as `Robot.of`."""
     model, _ = _loaded(path)
-    units = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
-    found = {model.joint(k).name: units.get(int(model.jnt_type[k])) for k in range(model.njnt)}
+    found = {model.joint(k).name: UNITS.get(int(model.jnt_type[k])) for k in range(model.njnt)}
     return {name: unit for name, unit in found.items() if name and unit is not None}
 
 
 def _loaded(path: Path, added: Sequence[AddedBody] = ()) -> tuple[mujoco.MjModel, tuple[str, ...]]:
-    require_compiles(path)
-
-    def add(spec: mujoco.MjSpec) -> None:
-        for k, one in enumerate(added):
-            add_body(spec, f"added {k}", one, path)
-
+    spec, notes = read_mjcf(path)
+    for k, one in enumerate(added):
+        add_body(spec, f"added {k}", one, path)
     with silenced():
-        model, notes = compiled(str(path), add)
+        model = spec.compile()
     for k, one in enumerate(added):  # a compiler wants inertias as bodies have them, and a change may be of either sign
         model.body_inertia[model.body(f"added {k}").id] = 0.0, 0.0, one.inertia
     return model, notes
@@ -148,11 +144,10 @@ class Robot:
         trees = model.dof_treeid[model.jnt_dofadr]
         joints = tuple(int(k) for k in np.flatnonzero(trees == trees[model.joint(joint).id]))
         for k in joints:
-            if model.jnt_type[k] not in [int(kind) for kind in SIMPLE]:
+            if int(model.jnt_type[k]) not in UNITS:
                 found = "found a free or ball joint, whose motion no log of joints tells"
-                raise InputError(
-                    f"{path}: joint '{names[k]}'", found, "allowed: hinges and slides on a base that stands"
-                )
+                allowed = "allowed: hinges and slides on a base that stands"
+                raise InputError(f"{path}: joint '{names[k]}'", found, allowed)
         for reason in _bound(model, model.joint(joint).id):
             found = f"found {reason}, whose torque no log tells"
             raise InputError(f"{path}: joint '{joint}'", found, "allowed: a joint that moves by its motor alone")
@@ -171,7 +166,7 @@ class Robot:
 
     def unit(self, joint: str) -> str:
         """Of a joint's position."""
-        return "rad" if self.model.jnt_type[self.model.joint(joint).id] == int(mujoco.mjtJoint.mjJNT_HINGE) else "m"
+        return UNITS[int(self.model.joint(joint).type[0])]
 
     @property
     def turns(self) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.plant.mjcf_file import compiled
+from bench.plant.mjcf_file import read_spec
 
 #: Triangles of a whole robot, 12 bytes each with its vertices: some 50 kB of a page.
 BUDGET = 3000
@@ -90,7 +90,7 @@ class DrawnRobot:
     @classmethod
     def of(cls, source: Path, joint: str, ratio: float, times: Array, poses: Mapping[str, Array]) -> DrawnRobot:
         """From an MJCF, a joint of it, its gear, and where the robot's joints were at times - s, rad (m) (n,)."""
-        model, _ = compiled(str(source))
+        model = read_spec(str(source))[0].compile()
         even = np.linspace(times[0], times[-1], min(times.size, INSTANTS))
         found = {name: np.interp(even, times, values) for name, values in poses.items() if name != joint}
         return cls(_bodies(model), joint, ratio, even, found)

@@ -17,9 +17,9 @@ from bench.export.mjcf import (
     joint_alone,
     link_inertia,
     onto,
-    read_mjcf,
     robot_with,
 )
+from bench.plant.mjcf_file import read_mjcf
 from bench.plant.model_file import model_xml
 from bench.plant.run import silenced
 from tests.export.arms import ARM, PARAMETERS, stored

@@ -34,13 +34,14 @@ from bench.baseline.check import Allowed, compare
 from bench.baseline.observe import Observed
 from bench.baseline.state import read_baseline
 from bench.errors import BenchError
-from bench.export.mjcf import joint_alone, link_inertia, read_mjcf
+from bench.export.mjcf import joint_alone, link_inertia
 from bench.files import write_text
 from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.fleet import tabulate
 from bench.fleet.manifest import read_manifest
 from bench.fleet.store import Store
 from bench.fleet.summary import summarise
+from bench.plant.mjcf_file import read_mjcf
 from bench.plant.model_file import load_model
 from bench.plant.robot import Robot
 from bench.report.check import check_document, check_json, findings
