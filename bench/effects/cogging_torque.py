@@ -18,8 +18,6 @@ from bench.units import Quantity
 
 
 class CoggingTorque(Harmonic, Repeatable, Native):
-    """See the module."""
-
     name = "cogging_torque"
     summary = "torque periodic in position, independent of current"
     shapes = (harmonics(2, 80),)

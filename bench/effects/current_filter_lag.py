@@ -18,8 +18,6 @@ from bench.effects.signals import Scope, Signals
 
 
 class CurrentFilterLag(EffortLag, Distortion, FilteredSignal):
-    """See the module."""
-
     name = "current_filter_lag"
     summary = "reported current is filtered: it shows torque later than it acts"
     signal = "current"

@@ -25,8 +25,6 @@ MOST = 0.1
 
 
 class CurrentGainAsymmetry(CopiesTorque, MisreadEffort):
-    """See the module."""
-
     name = "current_gain_asymmetry"
     summary = "amperes per reading differ between positive and negative current"
     quantities = (Quantity("gain_difference", "d", "dimensionless", lower=-1.0, upper=1.0, null=0.0),)

@@ -16,8 +16,6 @@ from bench.effects.signals import Number, Scope, Signals, Values
 
 
 class CurrentLoopLag(MotionLag, Distortion, TorqueLag):
-    """See the module."""
-
     name = "current_loop_lag"
     summary = "torque acts later than the reported current"
 

@@ -20,8 +20,6 @@ from bench.units import Quantity
 
 
 class CurrentOffsetDrift(Columns, MisreadEffort):
-    """See the module."""
-
     name = "current_offset_drift"
     summary = "the zero of the current sensor drifts during the recording"
     quantities = (Quantity("rate", "r", "N*m/s", null=0.0),)

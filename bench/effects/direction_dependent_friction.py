@@ -19,8 +19,6 @@ from bench.units import Quantity
 
 
 class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTorque):
-    """See the module."""
-
     name = "direction_dependent_friction"
     summary = "friction differs between the two directions"
     quantities = (

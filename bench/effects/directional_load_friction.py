@@ -27,8 +27,6 @@ RATIOS = tuple(float(ratio) for ratio in np.geomspace(0.1, 10.0, 25))
 
 
 class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
-    """See the module."""
-
     name = "directional_load_friction"
     summary = "friction by transmitted torque differs between driving and being driven"
     quantities = (

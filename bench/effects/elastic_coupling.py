@@ -42,8 +42,6 @@ TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
 
 
 class ElasticCoupling(Coupling, FiltersMotion, Native):
-    """See the module."""
-
     name = "elastic_coupling"
     summary = "motor and load are joined by a spring and damper"
     quantities = (

@@ -28,8 +28,6 @@ STEPS = 5
 
 
 class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
-    """See the module."""
-
     name = "encoder_eccentricity"
     summary = "measured position errs once per revolution"
     quantities = (Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5, null=0.0), PHASE)

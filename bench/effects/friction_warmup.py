@@ -22,8 +22,6 @@ ALL = 1.0
 
 
 class FrictionWarmup(ScalesFriction, ResistingTorque):
-    """See the module."""
-
     name = "friction_warmup"
     summary = "friction decays over time as the axis warms up"
     quantities = (

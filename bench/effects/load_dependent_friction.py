@@ -18,8 +18,6 @@ from bench.units import Quantity
 
 
 class LoadDependentFriction(CopiesTorque, RaisesFriction):
-    """See the module."""
-
     name = "load_dependent_friction"
     summary = "friction grows with the magnitude of the transmitted torque"
     quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),)

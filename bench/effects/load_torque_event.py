@@ -42,8 +42,6 @@ FEW = 4
 
 
 class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
-    """See the module."""
-
     name = "load_torque_event"
     summary = "an external torque acts for a stretch of time"
     quantities = (

@@ -15,8 +15,6 @@ from bench.units import Quantity
 
 
 class PositionDependentFriction(OncePerRevolution, ScalesFriction):
-    """See the module."""
-
     name = "position_dependent_friction"
     summary = "friction level varies with position"
     quantities = (

@@ -15,8 +15,6 @@ from bench.units import Quantity
 
 
 class PositionDependentInertia(Harmonic, VaryingInertia, ResistingTorque):
-    """See the module."""
-
     name = "position_dependent_inertia"
     summary = "inertia varies with position, with its velocity-squared torque"
     shapes = (harmonics(1, 4),)

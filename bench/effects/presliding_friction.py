@@ -29,8 +29,6 @@ SLIDES = 10.0
 
 
 class PreslidingFriction(CarriesFriction, Native):
-    """See the module."""
-
     name = "presliding_friction"
     summary = "bristle-like hysteresis before breakaway and after reversal (Dahl, LuGre)"
     quantities = (

@@ -17,8 +17,6 @@ from bench.units import Quantity
 
 
 class QuadraticDrag(OfSpeed, OuterTorque, Native):
-    """See the module."""
-
     name = "quadratic_drag"
     summary = "resisting torque grows with velocity*|velocity|"
     quantities = (Quantity("quadratic_drag", "k_q", "N*m*s**2/rad**2", lower=0.0, null=0.0),)

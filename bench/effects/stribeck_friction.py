@@ -24,8 +24,6 @@ RISE = 0.2
 
 
 class StribeckFriction(OfSpeed, RaisesFriction):
-    """See the module."""
-
     name = "stribeck_friction"
     summary = "friction rises as speed falls towards zero"
     quantities = (

@@ -25,8 +25,6 @@ MOST = 0.3
 
 
 class TorqueConstantDrift(CopiesTorque, MisreadEffort):
-    """See the module."""
-
     name = "torque_constant_drift"
     summary = "torque per ampere changes during the recording"
     quantities = (Quantity("rate", "r", "1/s", null=0.0),)

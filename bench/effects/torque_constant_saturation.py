@@ -16,8 +16,6 @@ from bench.units import Quantity
 
 
 class TorqueConstantSaturation(CopiesTorque, TorqueLoss):
-    """See the module."""
-
     name = "torque_constant_saturation"
     summary = "torque per ampere falls at high current"
     quantities = (Quantity("drop_at_peak", "d", "dimensionless", lower=0.0, upper=1.0 / 3.0, null=0.0),)

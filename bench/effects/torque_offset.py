@@ -16,8 +16,6 @@ from bench.units import Quantity
 
 
 class TorqueOffset(ConstantTorque, Native):
-    """See the module."""
-
     name = "torque_offset"
     summary = "a constant torque"
     quantities = (Quantity("torque", "M_0", "N*m", null=0.0),)

@@ -18,8 +18,6 @@ from bench.units import Quantity
 
 
 class TorqueRipple(Harmonic, CopiesTorque, Repeatable, ScalesTorque):
-    """See the module."""
-
     name = "torque_ripple"
     summary = "torque periodic in position, proportional to current"
     shapes = (harmonics(1, 40),)

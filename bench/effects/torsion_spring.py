@@ -15,8 +15,6 @@ from bench.units import Quantity
 
 
 class TorsionSpring(OuterTorque, Spring, Native):
-    """See the module."""
-
     name = "torsion_spring"
     summary = "a torque proportional to position"
     quantities = (Quantity("stiffness", "c", "N*m/rad", lower=0.0, null=0.0),)

@@ -16,8 +16,6 @@ from bench.units import Quantity
 
 
 class Unbalance(OncePerRevolution, OuterTorque, LoadTorque, Native):
-    """See the module."""
-
     name = "unbalance"
     summary = "an eccentric mass under gravity, once per revolution"
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), PHASE)

@@ -30,8 +30,6 @@ MENDED = 0.1
 
 
 class VelocityFilterLag(MotionLag, Detectable, FilteredSignal):
-    """See the module."""
-
     name = "velocity_filter_lag"
     summary = "reported velocity lags the motion"
     signal = "velocity"

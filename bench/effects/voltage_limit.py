@@ -36,8 +36,6 @@ LONGEST, SHORTEST = 3.0, 0.5
 
 
 class VoltageLimit(DriveLimit):
-    """See the module."""
-
     name = "voltage_limit"
     summary = "the drive runs out of voltage at speed"
     quantities = (Quantity("voltage", "U_max", "V", lower=0.0, null=np.inf),)
