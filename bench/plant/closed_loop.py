@@ -88,11 +88,6 @@ class States:
     torque: Array
     motor_torque: Array
 
-    @classmethod
-    def of_one(cls, time: Array, position: Array, velocity: Array, torque: Array) -> States:
-        """Motion of one axis without emulated friction, from signals of shape (ticks,)."""
-        return cls(time, position[:, None], velocity[:, None], torque[:, None], torque[:, None])
-
     def axis(self, index: int, ticks: int | None = None) -> States:
         """Motion of one axis, over its first ticks; signals stay two-dimensional."""
         return States(self.time[:ticks], *(signal[:ticks, index : index + 1] for signal in self.signals))

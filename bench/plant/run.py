@@ -110,7 +110,7 @@ def run_native(loop: ClosedLoop) -> States:
     mujoco.mj_getState(model, data, state[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
     qpos, qvel, torque = 1 + joint.qposadr[0], 1 + model.nq + joint.dofadr[0], model.sensor(TORQUE).adr[0]
     time = loop.time[::every]
-    found = np.full((3, time.size), np.nan)
+    found = np.full((3, time.size, 1), np.nan)
     for start, stop in blocks(loop.ticks, 8 * (model.nu + state.size + model.nsensordata)):
         *held, effort, known = loop.controller.between(start, stop).T
         planned, inputs = np.column_stack([*held, effort - known]), np.zeros((1, stop - start, model.nu))
@@ -122,9 +122,9 @@ def run_native(loop: ClosedLoop) -> States:
             break
         position, velocity = (np.append(state[0, at], after[0, :-1, at]) for at in (qpos, qvel))
         rows, recorded = slice(-start % every, None, every), slice(-(-start // every), -(-stop // every))
-        found[:, recorded] = np.stack([position - half * velocity, velocity, sensors[0, :, torque]])[:, rows]
+        found[:, recorded, 0] = np.stack([position - half * velocity, velocity, sensors[0, :, torque]])[:, rows]
         state = after[:, -1].copy()
-    return States.of_one(time, *found)
+    return States(time, *found, found[-1])
 
 
 def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> States:

@@ -18,7 +18,7 @@ SATURATING = TorqueConstant.from_datasheet(1.4, 1.8, 3.5, 5.7)
 def motion(torque=None, n=8000):
     r = reversals(duration=n * 250e-6)
     torque = 1.2 * np.sin(7.0 * r.time) if torque is None else torque
-    return States.of_one(r.time, r.position, r.velocity, torque), r
+    return States(r.time, *(each[:, None] for each in (r.position, r.velocity, torque, torque))), r
 
 
 def record(sensors, seed=0, torque=None):
