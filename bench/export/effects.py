@@ -127,7 +127,7 @@ class Effects:
             own = [one if isinstance(one, Mapping) else dict.fromkeys(self.models, one) for one in models]
         time = batch.bind("time")
         simulations = Simulations(
-            batch.model, batch.nsim, lambda: time, batch.bind, batch.expand, batch.forward, batch.step
+            batch.model, batch.nsim, lambda: time, cache(batch.bind), cache(batch.expand), batch.forward, batch.step
         )
         return Worlds(self.models, simulations, own)
 
@@ -152,8 +152,8 @@ class Effects:
             model,
             count,
             lambda: time,
-            lambda name: view(getattr(warp_data, name)),
-            field,
+            cache(lambda name: view(getattr(warp_data, name))),
+            cache(field),
             lambda: mujoco_warp.forward(warp_model, warp_data),
             lambda: mujoco_warp.step(warp_model, warp_data),
         )
@@ -174,10 +174,11 @@ class Effects:
         return AtJoints(models, step, bristled(models), made_like(like))
 
 
+@dataclass(frozen=True)
 class Simulations:
     """Simulations of one model side by side, whose state and parameters may be read and written in place.
 
-    Args:
+    Attributes:
         model: of all of them.
         count: how many.
         time: gives that of each - s - (count,).
@@ -187,18 +188,13 @@ class Simulations:
         advance: goes on by a step.
     """
 
-    def __init__(
-        self,
-        model: mujoco.MjModel,
-        count: int,
-        time: Callable[[], Number],
-        state: Callable[[str], Number],
-        field: Callable[[str], Number],
-        forward: Callable[[], object],
-        advance: Callable[[], object],
-    ) -> None:
-        self.model, self.count, self.forward, self.advance = model, count, forward, advance
-        self.time, self.state, self.field = time, cache(state), cache(field)
+    model: mujoco.MjModel
+    count: int
+    time: Callable[[], Number]
+    state: Callable[[str], Number]
+    field: Callable[[str], Number]
+    forward: Callable[[], object]
+    advance: Callable[[], object]
 
 
 class Worlds:
@@ -297,8 +293,8 @@ class _Running(Worlds):
                 model,
                 1,
                 lambda: np.array([data.time]),
-                lambda name: getattr(data, name)[None],
-                lambda name: getattr(model, name)[None],
+                cache(lambda name: getattr(data, name)[None]),
+                cache(lambda name: getattr(model, name)[None]),
                 lambda: mujoco.mj_forward(model, data),
                 lambda: mujoco.mj_step(model, data),
             ),
