@@ -107,11 +107,7 @@ KINDS = (ROTARY, LINEAR)
 
 
 def axis_kind(name: object, where: object) -> AxisKind:
-    """The kind of a name that stands in a file or an argument.
-
-    Raises:
-        InputError: there is none; names `where`.
-    """
+    """The kind of a name that stands in a file or an argument; InputError that names `where` if there is none."""
     for kind in KINDS:
         if kind.name == name:
             return kind

@@ -53,11 +53,7 @@ class Present:
         return catalogue()[self.name]
 
     def resolved(self, axis: Axis) -> dict[str, float]:
-        """All quantities, those that are not given by their defaults - SI.
-
-        Raises:
-            InputError: one is not given and has no default.
-        """
+        """All quantities, those that are not given by their defaults - SI; InputError where one has none."""
         defaults = {key: float(value) for key, value in self.effect.defaults(axis).items()}
         values = {**defaults, **dict(self.values)}
         for quantity in self.effect.quantities:
@@ -72,11 +68,7 @@ class Present:
 
 
 def named(name: str, where: str = "effect") -> Effect:
-    """The effect of a name.
-
-    Raises:
-        InputError: there is none.
-    """
+    """The effect of a name; InputError where there is none."""
     if name not in catalogue():
         names = sorted(catalogue())
         raise InputError(where, f"found '{name}'{nearest(name, names)}", f"allowed: {', '.join(names)}")
@@ -84,16 +76,11 @@ def named(name: str, where: str = "effect") -> Effect:
 
 
 def known_quantity(effect: Effect, key: str, where: str) -> Quantity:
-    """The quantity of an effect under a name.
-
-    Raises:
-        InputError: it has none of that name.
-    """
+    """The quantity of an effect under a name; InputError where it has none of that name."""
     names = [quantity.name for quantity in effect.quantities]
     if key not in names:
-        raise InputError(
-            f"{where}: {effect.name}", f"found '{key}'{nearest(key, names)}", f"allowed: {', '.join(names)}"
-        )
+        found = f"found '{key}'{nearest(key, names)}"
+        raise InputError(f"{where}: {effect.name}", found, f"allowed: {', '.join(names)}")
     return effect.quantities[names.index(key)]
 
 
@@ -117,11 +104,7 @@ def parse_effect(text: str, kind: AxisKind = ROTARY) -> Present:
 
 
 def parse_value(text: str, unit: str, where: str) -> float:
-    """A number in SI, or a number with a unit.
-
-    Raises:
-        InputError: neither.
-    """
+    """A number in SI, or a number with a unit; InputError where it is neither."""
     try:
         value = float(text)
     except ValueError:
