@@ -76,8 +76,6 @@ DRAWS = 400
 
 
 class Backlash(Replacing, Coupling, Contact, Native):
-    """See the module."""
-
     name = "backlash"
     summary = "motor and load are joined through a dead zone"
     quantities = (
@@ -129,8 +127,25 @@ class Backlash(Replacing, Coupling, Contact, Native):
         return {"gap": gap, "contact_stiffness": stiffness, "contact_damping": 2.0 * ratio * stiffness / contact}
 
     def spread(self, fitted: Fitted, shape: Sequence[float]) -> Array:
-        """Of resampled recordings: along the ridge of softer contacts and wider gaps curvature tells nothing."""
-        return contact_spread(fitted, np.array(shape), int(fitted.places(Backlash)[0]))
+        """Of gap, frequency and damping (3, 3), by resampled recordings.
+
+        Along the ridge of softer contacts and wider gaps curvature tells nothing.
+        """
+        contact, spring_rate = np.array(shape[:3]), shape[3]
+        offsets = np.stack([m.ravel() for m in np.meshgrid(*AROUND, indexing="ij")], axis=1)
+        shapes = np.column_stack([contact * np.exp(offsets), np.full(len(offsets), spring_rate)])
+        others, place, time = fitted.columns.T.copy(), int(fitted.places(Backlash)[0]), fitted.time
+        edges = np.unique(np.searchsorted(time, np.arange(time[0], time[-1], STRETCH)))
+        misfits = []
+        for column in _columns(fitted, shapes).T:
+            others[place] = column
+            misfits.append(np.add.reduceat(cauchy(others, fitted.effort, SCALE * fitted.floor)[1], edges))
+        rng = np.random.default_rng(0)
+        drawn = rng.multinomial(edges.size, np.full(edges.size, 1.0 / edges.size), size=DRAWS)
+        likeliest = offsets[np.argmin(np.stack(misfits) @ drawn.T, axis=0)]
+        step = np.array([axis[1] - axis[0] for axis in AROUND])
+        relative = likeliest.T @ likeliest / DRAWS + np.diag(step**2 / 12.0 + SHARED**2)
+        return relative * np.outer(contact, contact)
 
     def defaults(self, axis: Axis) -> Mapping[str, Number]:
         """A contact that resonates at CONTACT_FREQUENCY; recordings of an axis hardly tell it."""
@@ -274,7 +289,9 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
 
     travel = fitted.scope.rms_speed * fitted.scope.width
     contacts = contacts_of(fitted.scope)
-    axes = [np.array(contacts), np.array(GAPS) * travel, np.array([DAMPING]), np.array(sorted(_spring_rates(fitted)))]
+    load = fitted.base.inertia - fitted.scope.rotor_inertia
+    pulled = max(_stiffness(fitted, fitted.theta), 0.0) / load if load > 0.0 else 0.0  # by a spring on the load's side
+    axes = [np.array(contacts), np.array(GAPS) * travel, np.array([DAMPING]), np.unique([0.0, pulled])]
     grid = np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1)[:, [1, 0, 2, 3]]
     softest_first = np.split(grid, len(contacts))  # each in steps of its own, of which a soft one needs few
     if not any(promises(float(fitted.gains(_columns(fitted, part), 1).max())) for part in softest_first):
@@ -293,25 +310,6 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
     return tuple(float(value) for value in starts[0].shape)
 
 
-def contact_spread(fitted: Fitted, shape: Array, place: int) -> Array:
-    """Covariance (3, 3) of gap, frequency and damping of a fit's dead zone, of a shape (4,) and a column's place."""
-    offsets = np.stack([m.ravel() for m in np.meshgrid(*AROUND, indexing="ij")], axis=1)
-    shapes = np.column_stack([shape[:3] * np.exp(offsets), np.full(len(offsets), shape[3])])
-    others, effort = fitted.columns.T.copy(), fitted.effort
-    time = fitted.time
-    edges = np.unique(np.searchsorted(time, np.arange(time[0], time[-1], STRETCH)))
-    misfits = []
-    for column in _columns(fitted, shapes).T:
-        others[place] = column
-        misfits.append(np.add.reduceat(cauchy(others, effort, SCALE * fitted.floor)[1], edges))
-    rng = np.random.default_rng(0)
-    drawn = rng.multinomial(edges.size, np.full(edges.size, 1.0 / edges.size), size=DRAWS)
-    likeliest = offsets[np.argmin(np.stack(misfits) @ drawn.T, axis=0)]
-    step = np.array([axis[1] - axis[0] for axis in AROUND])
-    relative = likeliest.T @ likeliest / DRAWS + np.diag(step**2 / 12.0 + SHARED**2)
-    return relative * np.outer(shape[:3], shape[:3])
-
-
 def _columns(fitted: Fitted, shapes: Array) -> Array:
     """Columns (m, k) of many shapes, few at a time where the recording is long."""
     few = max(1, TOGETHER // max(fitted.time.size, 1))
@@ -324,12 +322,6 @@ def contacts_of(scope: Scope) -> list[float]:
     """Frequencies of contact that a search begins with - rad/s: one that swings faster than samples follow is rigid."""
     fastest = np.pi / scope.sample_period
     return sorted({min(contact, fastest) for contact in extended(CONTACTS, FREQUENCY.factor(scope))})
-
-
-def _spring_rates(fitted: Fitted) -> set[float]:
-    """Stiffness over load inertia of a spring on the load's side, 0 for none - 1/s**2: where a search begins."""
-    stiffness, load = _stiffness(fitted, fitted.theta), fitted.base.inertia - fitted.scope.rotor_inertia
-    return {0.0, max(stiffness, 0.0) / load} if load > 0.0 else {0.0}
 
 
 def _stiffness(fitted: Fitted, theta: Array) -> float:
