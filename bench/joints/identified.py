@@ -105,14 +105,11 @@ class IdentifiedJoint:
         """Of the joint for MuJoCo; without armature where that is not told; None without friction."""
         if self.diagnosis is not None and self.diagnosis.model is not None:
             return self.diagnosis.model
-        kind = None if self.rig is None else self.rig.axis_kind
-        if (
-            self.rig is None
-            or kind is None
-            or not {kind.parameter(VISCOUS), kind.parameter(COULOMB)} <= {*self.parameters}
-        ):
+        if self.rig is None:
             return None
-        mounting = Mounting.of(self.rig)
+        kind, mounting = self.rig.axis_kind, Mounting.of(self.rig)
+        if not {kind.parameter(VISCOUS), kind.parameter(COULOMB)} <= {*self.parameters}:
+            return None
         links = mounting.link_inertia / mounting.gear_ratio**2
         inertia = self.parameters[kind.inertia].value if kind.inertia in self.parameters else 0.0
         inertia = inertia if inertia > 0.0 or ARMATURE in self.parameters else links

@@ -20,7 +20,7 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special
+from scipy import linalg, special
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.effects.signals import Signals
@@ -146,18 +146,17 @@ def of_joints(
 
 def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
     """Strengths of columns: of some of them by their number, or of combinations of all (all, k)."""
-    own, every = OWN, products[0].shape[1] - OWN - 1
+    every = products[0].shape[1] - OWN - 1
     mix = np.asarray(chosen, dtype=float) if np.ndim(chosen) == 2 else np.eye(every)[:, list(chosen)]
-    turn = np.zeros((products[0].shape[1], own + mix.shape[1] + 1))
-    turn[:own, :own], turn[own:-1, own:-1], turn[-1, -1] = np.eye(own), mix, 1.0
+    turn = linalg.block_diag(np.eye(OWN), mix, 1.0)
     parts = [turn.T @ each @ turn for each in products]
-    reduced = np.array([_reduced(part.sum(axis=0), own) for part in parts])
+    reduced = np.array([_reduced(part.sum(axis=0)) for part in parts])
     lefts = [float(each[-1, -1]) for each in reduced]
     for _ in range(ROUNDS - 1):
         strengths, _, _ = _solved(reduced, lefts)
-        lefts = [_scores(part, own, strengths)[1] for part in parts]
+        lefts = [_scores(part, strengths)[1] for part in parts]
     strengths, inverse, weights = _solved(reduced, lefts)
-    scores, lefts = zip(*(_scores(part, own, strengths) for part in parts), strict=True)
+    scores, lefts = zip(*(_scores(part, strengths) for part in parts), strict=True)
     stretches = max(len(part) for part in parts)
     summed = np.zeros((stretches, strengths.size))
     for score, weight in zip(scores, weights, strict=True):
@@ -176,20 +175,20 @@ def _solved(reduced: Array, lefts: Sequence[float]) -> tuple[Array, Array, Array
     return inverse @ np.tensordot(weights, reduced[:, :-1, -1], 1), inverse, weights
 
 
-def _reduced(product: Array, own: int) -> Array:
+def _reduced(product: Array) -> Array:
     """Products of the other columns and the effort, beyond what a joint's own columns explain."""
-    beside = product[:own, own:]
-    return product[own:, own:] - beside.T @ np.linalg.lstsq(product[:own, :own], beside, rcond=1e-12)[0]
+    beside = product[:OWN, OWN:]
+    return product[OWN:, OWN:] - beside.T @ np.linalg.lstsq(product[:OWN, :OWN], beside, rcond=1e-12)[0]
 
 
-def _scores(part: Array, own: int, strengths: Array) -> tuple[Array, float]:
+def _scores(part: Array, strengths: Array) -> tuple[Array, float]:
     """Scores of the strengths by stretch (s, k) of a joint, and the sum of squares that it leaves."""
     whole = part.sum(axis=0)
-    projection = np.linalg.lstsq(whole[:own, :own], whole[:own, own:], rcond=1e-12)[0]
+    projection = np.linalg.lstsq(whole[:OWN, :OWN], whole[:OWN, OWN:], rcond=1e-12)[0]
     theta = projection[:, -1] - projection[:, :-1] @ strengths
     away = np.concatenate([-theta, -strengths, [1.0]])
     felt = part @ away
-    scores = felt[:, own:-1] - felt[:, :own] @ projection[:, :-1]
+    scores = felt[:, OWN:-1] - felt[:, :OWN] @ projection[:, :-1]
     return scores, float(away @ whole @ away)
 
 
@@ -263,7 +262,7 @@ def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
         return []
     determined = [k for k in range(len(work)) if _tells(products, k)]
     chosen: list[int] = []
-    left = sum(float(np.log(_scores(_only(one, []), OWN, np.zeros(0))[1])) for one in products)
+    left = sum(float(np.log(_scores(_only(one, []), np.zeros(0))[1])) for one in products)
     while determined and len(chosen) < MOST:
         tried = {k: shared(products, [*chosen, k]) for k in determined if k not in chosen}
         best = min(tried, key=lambda k: tried[k].left, default=None)
@@ -273,24 +272,19 @@ def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
         if np.abs(found.strengths[-1]) < SURE * deviation[-1]:
             break
         chosen, left = [*chosen, best], found.left
-    return list(_doubted(work, products, chosen))
+    return list(_doubted(work, shared(products, chosen), chosen)) if chosen else []
 
 
-def _doubted(work: Sequence[JointLogs], products: Sequence[Array], chosen: Sequence[int]) -> Iterator[DoubtedLink]:
-    if not chosen:
-        return
-    found = shared(products, chosen)
-    for place, k in enumerate(chosen):
+def _doubted(work: Sequence[JointLogs], found: Common, chosen: Sequence[int]) -> Iterator[DoubtedLink]:
+    for k, more, deviation in zip(chosen, found.strengths, np.sqrt(np.diag(found.covariance)), strict=True):
         own = Robot.of(work[k].mjcf, work[k].joint, work[k].added).link_inertia
-        more, deviation = found.strengths[place], float(np.sqrt(found.covariance[place, place]))
         factor = found.parameter(1.0 + more / own, deviation / own, "dimensionless")
         yield DoubtedLink(work[k].joint, factor, float(more))
 
 
 def _only(product: Array, kept: Sequence[int]) -> Array:
     """Products of a joint's own columns, some of the others and the effort."""
-    own = OWN
-    places = [*range(own), *(own + k for k in kept), product.shape[1] - 1]
+    places = [*range(OWN), *(OWN + k for k in kept), product.shape[1] - 1]
     return product[:, places][:, :, places]
 
 
@@ -298,7 +292,7 @@ def _tells(products: Sequence[Array], k: int) -> bool:
     """Whether any joint shows a column apart from its own terms."""
     for product in products:
         whole = _only(product, [k]).sum(axis=0)
-        if whole[-2, -2] > 0.0 and _reduced(whole, OWN)[0, 0] > LEAST * whole[-2, -2]:
+        if whole[-2, -2] > 0.0 and _reduced(whole)[0, 0] > LEAST * whole[-2, -2]:
             return True
     return False
 
