@@ -71,10 +71,6 @@ class Armature:
     origin: str
 
 
-#: Of a joint whose motor is not known: the body has all of the inertia.
-UNKNOWN = Armature(0.0, "as the motor's inertia is not known")
-
-
 @dataclass(frozen=True)
 class Carried:
     """What went onto a joint.
@@ -157,8 +153,9 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
     turns = model.parameters.kind.turns
     joint = body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_HINGE if turns else mujoco.mjtJoint.mjJNT_SLIDE)
     joint.axis = [1.0, 0.0, 0.0]
-    known = model.parameters.motor_inertia > 0.0 or mounting.link_inertia
-    armature = armature_of(stored) if known else UNKNOWN
+    armature = Armature(0.0, "as the motor's inertia is not known")  # the body has all of it
+    if model.parameters.motor_inertia > 0.0 or mounting.link_inertia:
+        armature = armature_of(stored)
     beyond = model.parameters.inertia * mounting.gear_ratio**2 - armature.value
     body.explicitinertial, body.ipos, body.iquat = True, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     body.mass = (mounting.load_mass or NO_MASS) if turns else beyond

@@ -273,9 +273,9 @@ class AxisModel:
         """What is built into the model; models of one structure run side by side."""
         return tuple(present.name for present in self.native)
 
-    def spec(self, timestep: float, load: Load | None = None) -> mujoco.MjSpec:
-        """Editable MuJoCo model with all that is native in it; arguments as `build_spec`."""
-        spec = build_spec(self.parameters, timestep, load)
+    def spec(self, timestep: float) -> mujoco.MjSpec:
+        """Editable MuJoCo model with all that is native in it; `timestep` - s."""
+        spec = build_spec(self.parameters, timestep)
         for count, present in enumerate(self.native):
             assert isinstance(present.effect, Native)
             present.effect.add(spec, f"{present.name} {count}", dict(present.values), self.axis)

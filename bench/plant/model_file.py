@@ -68,10 +68,6 @@ class Mounting:
         return {f.name: getattr(self, f.name) for f in fields(self) if getattr(self, f.name) != f.default}
 
 
-#: Of an axis without gear and robot, and of an unknown load.
-DIRECT = Mounting()
-
-
 @dataclass(frozen=True)
 class StoredModel:
     """A model with what is needed to compare it with a recording.
@@ -80,13 +76,13 @@ class StoredModel:
         name: of the axis.
         model: the axis with its effects, on the motor's side.
         misalignment: by how much recordings of it report the effort late - s.
-        mounting: how the axis sits in its machine.
+        mounting: how the axis sits in its machine; by default without gear and robot, under an unknown load.
     """
 
     name: str
     model: AxisModel
     misalignment: float = 0.0
-    mounting: Mounting = DIRECT
+    mounting: Mounting = Mounting()
 
 
 def model_xml(stored: StoredModel) -> str:
