@@ -148,7 +148,7 @@ def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
     """Strengths of columns: of some of them by their number, or of combinations of all (all, k)."""
     every = products[0].shape[1] - OWN - 1
     mix = np.asarray(chosen, dtype=float) if np.ndim(chosen) == 2 else np.eye(every)[:, list(chosen)]
-    turn = linalg.block_diag(np.eye(OWN), mix, 1.0)
+    turn = np.array(linalg.block_diag(np.eye(OWN), mix, 1.0), dtype=np.float64)
     parts = [turn.T @ each @ turn for each in products]
     reduced = np.array([_reduced(part.sum(axis=0)) for part in parts])
     lefts = [float(each[-1, -1]) for each in reduced]

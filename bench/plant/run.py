@@ -124,7 +124,7 @@ def run_native(loop: ClosedLoop) -> States:
         rows, recorded = slice(-start % every, None, every), slice(-(-start // every), -(-stop // every))
         found[:, recorded, 0] = np.stack([position - half * velocity, velocity, sensors[0, :, torque]])[:, rows]
         state = after[:, -1].copy()
-    return States(time, *found, found[-1])
+    return States(time, found[0], found[1], found[2], found[2])
 
 
 def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> States:
