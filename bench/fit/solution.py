@@ -7,8 +7,8 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 from numpy.typing import NDArray
-from scipy import special
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
@@ -49,7 +49,7 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
     covariance = inverse @ middle @ inverse * independent / degrees
     variance, floor = np.diag(covariance), least * np.diag(inverse)
     widened = np.sqrt(np.where(variance > 0.0, np.maximum(variance, floor) / np.maximum(variance, 1e-300), 1.0))
-    return covariance * np.outer(widened, widened), float(special.stdtrit(degrees, 0.975))
+    return covariance * np.outer(widened, widened), float(scipy.special.stdtrit(degrees, 0.975))
 
 
 def misfit(columns: Array, residual: Array, floor: float) -> Array:
@@ -100,7 +100,7 @@ def _without_each(columns: Array, residual: Array, cuts: list[tuple[NDArray[np.i
     whole = np.repeat([part.sum(axis=0) for part in np.split(grams, np.cumsum(counts)[:-1])], counts, axis=0)
     moved = np.einsum("gij,gj->gi", symmetric_inverse(whole - grams, 1e-10), scores) ** 2
     reaches = [
-        special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * squares.sum(axis=0))
+        scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * squares.sum(axis=0))
         for count, squares in zip(counts, np.split(moved, np.cumsum(counts)[:-1]), strict=True)
     ]
     return np.max(reaches, axis=0)

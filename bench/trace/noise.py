@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy import special
+import scipy  # its special functions load when first used: 0.2 s
 
 from bench.arrays import Array
 from bench.trace.filter import GaussianFilter
@@ -69,7 +69,7 @@ def white_noise(*stretches: Array) -> float:
     top = slice(int((1.0 - TOP) * frequency.size), -1)
     shape = (2.0 * np.sin(frequency[top] / 2.0)) ** 4
     degrees = shape.size / CORRELATION
-    median = special.gammaincinv(degrees, 0.5) / degrees
+    median = scipy.special.gammaincinv(degrees, 0.5) / degrees
     return float(np.sqrt(np.median(np.mean(power[:, top] / shape, axis=1)) / median))
 
 
