@@ -176,9 +176,8 @@ class Fit:
 
     def gains(self, columns: Array, width: int) -> Array:
         """Squares that groups of columns (m, groups*width) would take beyond what is fitted (groups,)."""
-        return gains(
-            columns if self.determined.all() else columns * self.determined[:, None], width, self.residual, self.span
-        )
+        sure = columns if self.determined.all() else columns * self.determined[:, None]
+        return _taken(_own(sure, width), sure.T @ self._targets, self._targets)
 
     def worth(self, effects: Sequence[Columns]) -> list[float]:
         """Squares that effects without shapes would each take - (N*m)**2 (N**2)."""
@@ -329,15 +328,6 @@ def explained(before: Fit, after: Fit) -> float:
     return before.squares - after.squares - damped
 
 
-def gains(columns: Array, width: int, residual: Array, basis: Array) -> Array:
-    """Squares that groups of columns take from a residual (m,) beyond what an orthonormal basis (m, p) spans (groups,).
-
-    Columns (m, groups*width) stand group by group; squares are in the residual's unit squared.
-    """
-    targets = np.column_stack([basis, residual])
-    return _taken(_own(columns, width), columns.T @ targets, targets)
-
-
 def _own(columns: Array, width: int) -> Array:
     """Inner products of the columns (m, groups*width) of each group (groups, width, width)."""
     groups = np.ascontiguousarray(columns.T).reshape(-1, width, columns.shape[0])
@@ -345,9 +335,12 @@ def _own(columns: Array, width: int) -> Array:
 
 
 def _taken(own: Array, products: Array, targets: Array) -> Array:
-    """See `gains`: of inner products of each group (groups, width, width) and with an orthonormal basis and a residual.
+    """Squares that groups of columns take from a residual beyond what an orthonormal basis spans (groups,).
 
-    The products (groups*width, p + 1) are those with the targets (m, p + 1).
+    Args:
+        own: inner products of each group's columns (groups, width, width).
+        products: of all columns, group by group, with the targets (groups*width, p + 1).
+        targets: the basis and, last, the residual (m, p + 1), in whose unit squared the squares are.
     """
     beside, left = np.split(products.reshape(*own.shape[:2], -1), [-1], axis=2)
     full = np.sqrt(np.einsum("gii->gi", own))

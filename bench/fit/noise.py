@@ -116,13 +116,18 @@ def noise_power(rows: Rows, hypothesis: Hypothesis, layout: Layout, theta: Array
                 kinetic = kinetic + theta[layout.owners == index][0] * s * transfer
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         late = (1.0 + shift * s) * (1.0 + effort_lag(hypothesis) * s)
-        effort = conditioning.effort_noise**2 * np.abs(late) ** 2
+        effort = conditioning.effort_noise**2 * _square(late)
         rate = (1.0 + moving * s) * s
         both = 2.0 * conditioning.known_shared * (kinetic * rate.conj()).real
-        known = conditioning.known_noise**2 * np.abs(rate) ** 2
-        return effort + np.maximum(known + both + source * np.abs(kinetic) ** 2, 0.0)
+        known = conditioning.known_noise**2 * _square(rate)
+        return effort + np.maximum(known + both + source * _square(kinetic), 0.0)
 
     return power
+
+
+def _square(values: NDArray[np.complex128]) -> Array:
+    """Squared magnitudes, whose root NumPy would draw first."""
+    return values.real**2 + values.imag**2
 
 
 def colour(
@@ -147,12 +152,18 @@ def colour(
     spectra = np.abs(np.fft.rfft(windows * taper, axis=1)[:, read]) ** 2 / np.sum(taper**2)
     known = np.maximum(white, np.convolve(lines(omega), HANN, "same") / smooth.stride)[read]
     ratio = np.quantile(spectra, QUIET, axis=0) / _quiet_level(count) / known
-    corners = np.geomspace(omega[read[0]], BEYOND * omega[read[-1]], CORNERS)
-    shapes = 1.0 / (1.0 + (omega[read] / corners[:, None]) ** 2)
-    levels = np.log1p(EXCESSES[:, None, None] * shapes)
+    corners, levels = _levels(tuple(read.tolist()))
     misfit = np.sum(np.abs(levels - np.log(ratio)), axis=2)  # a sharp line sways a sum of magnitudes little
     excess, corner = np.unravel_index(int(np.argmin(misfit)), misfit.shape)
-    return float(EXCESSES[excess]), float(corners[corner])
+    return float(EXCESSES[excess]), float(corners[corner] * omega[1])
+
+
+@lru_cache(maxsize=8)
+def _levels(read: tuple[int, ...]) -> tuple[Array, Array]:
+    """Corners tried (c,) in bins, and by each excess and corner the logarithm of the colour at bins (e, c, bins)."""
+    corners = np.geomspace(read[0], BEYOND * read[-1], CORNERS)
+    shapes = 1.0 / (1.0 + (np.array(read) / corners[:, None]) ** 2)
+    return corners, np.log1p(EXCESSES[:, None, None] * shapes)
 
 
 def _quiet_level(count: int) -> float:

@@ -314,7 +314,7 @@ def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
 
 
 def _table(stretches: Sequence[Stretch], smooth: GaussianFilter, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
-    parts = [smooth.columns(columns(part.signals), lag).take(part.places, axis=1) for part in stretches]
+    parts = [smooth.columns(columns(part.signals), lag, part.places) for part in stretches]
     return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
 
 

@@ -148,7 +148,7 @@ SURE = 3.0
 
 def equations_of(rows: Rows, laid: Layout) -> NormalEquations:
     """Normal equations of columns that are laid out and, behind them, a constant."""
-    columns = np.column_stack([laid.columns, np.ones(laid.effort.size)])
+    columns = np.vstack([laid.columns.T, np.ones(laid.effort.size)]).T
     noise, width = np.pad(laid.noise, (0, 1)), rows.conditioning.filter.width
     return normal_equations([*laid.owners, OFFSET], columns, laid.effort, rows.time, noise, width)
 

@@ -59,6 +59,8 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
         if effect.sought(fitted.scope) and fitted.hypothesis.admits(effect)
     ]
     gains = dict(zip(linear, fitted.worth(linear), strict=True))
+    if max(gains.values(), default=0.0) <= SURE**2 * fitted.rows.correlation * fitted.noise.white**2:
+        return None  # a floor in colour, which takes long, is no lower
     least = SURE**2 * fitted.rows.correlation * fitted.floor**2
     for effect in sorted((effect for effect in linear if gains[effect] > least), key=lambda effect: -gains[effect]):
         beside = fit(fitted.rows, fitted.hypothesis.plus(Term(effect)))

@@ -11,9 +11,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array
 
@@ -61,7 +62,7 @@ class GaussianFilter:
         """Frequency of half power - Hz."""
         return math.sqrt(math.log(2.0)) / (2.0 * math.pi * self.width)
 
-    @property
+    @cached_property
     def margin(self) -> int:
         """Samples at each end that the filter cannot serve, a multiple of the stride."""
         return self.stride * math.ceil(REACH * self.width / self.sample_period / self.stride)
@@ -84,24 +85,40 @@ class GaussianFilter:
         """
         return self.columns([[(values, order)] for order in orders], lag)
 
-    def columns(self, columns: Sequence[Column], lag: float | Sequence[float] = 0.0) -> Array:
+    def columns(
+        self,
+        columns: Sequence[Column],
+        lag: float | Sequence[float] = 0.0,
+        places: NDArray[np.intp] | None = None,
+    ) -> Array:
         """Filtered sums of derivatives of several signals (columns, m).
 
         Args:
             columns: each a sum of terms, samples (n,) and the order of the derivative to be taken of them.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
+            places: of the rows that are wanted (m,); all of them by default.
         """
         count = columns[0][0][0].size
         size, blocks = self._layout(count)
-        found = np.zeros((len(columns), blocks, size // self.stride))
-        padded = np.zeros((blocks + 1) * size)
-        for row, column, late in zip(found, columns, np.broadcast_to(lag, len(columns)).tolist(), strict=True):
-            for values, order in column:
-                padded[:count] = values
-                windows, passed = padded.reshape(blocks + 1, size), self._passed(order, late)
-                row += windows[:-1] @ passed[:size]
-                row += windows[1:] @ passed[size:]
-        return found.reshape(len(columns), -1)[:, : self._rows(count)]
+        rows = self._rows(count)
+        found = np.empty((len(columns), rows if places is None else places.size))
+        windows, row = np.zeros((blocks + 1, size)), np.empty((blocks, size // self.stride))
+        padded, laid = windows.reshape(-1), None
+        passed: dict[tuple[int, float], Array] = {}
+        for out, column, late in zip(found, columns, np.broadcast_to(lag, len(columns)).tolist(), strict=True):
+            for place, (values, order) in enumerate(column):
+                if values is not laid:
+                    padded[:count] = laid = values
+                if (order, late) not in passed:
+                    passed[order, late] = self._passed(order, late)
+                ahead, behind = passed[order, late][:size], passed[order, late][size:]
+                if place:
+                    row += windows[:-1] @ ahead
+                else:
+                    np.matmul(windows[:-1], ahead, out=row)
+                row += windows[1:] @ behind
+            out[:] = row.ravel()[:rows] if places is None else row.take(places)
+        return found
 
     def backwards(self, targets: Array, count: int, order: int, lag: float = 0.0) -> Array:
         """The transpose of `columns`: products (t, n) with `count` samples that filtered they have with targets (t, m).

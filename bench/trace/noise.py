@@ -32,6 +32,8 @@ TOP = 0.3
 CORRELATION = 35.0 / 18.0
 #: Samples a distinct value at least, on average, in a signal of whose steps anything can be told.
 REPEATED = 4
+#: Samples that mostly tell that there is no step of which all distances are multiples.
+FEW = 512
 #: Share of a step below which a distance is rounding of numbers, not a step.
 TOLERANCE = 1e-3
 #: Widths of the recording's filter over which the way is smoothed, so that lines within its band are not taken for it.
@@ -56,27 +58,28 @@ def white_noise(*stretches: Array) -> float:
             window, or the signal never changes.
     """
     samples = sum(values.size for values in stretches)
-    cut = {window: _windows(stretches, window) for window in WINDOWS}
-    held = (window for window in WINDOWS if cut[window].size >= HELD * samples)
-    window = next(held, WINDOWS[-1])
-    differences = cut[window]
+    sizes = {window: sum(max(values.size - 2, 0) // window * window for values in stretches) for window in WINDOWS}
+    window = next((window for window, size in sizes.items() if size >= HELD * samples), WINDOWS[-1])
+    differences = _windows(stretches, window)
     differences = differences[differences.any(axis=1)]
     if not differences.size:
         return 0.0
     taper = np.hanning(window)
-    power = np.abs(np.fft.rfft(differences * taper, axis=1)) ** 2 / np.sum(taper**2)
     frequency = np.linspace(0.0, np.pi, window // 2 + 1)
     top = slice(int((1.0 - TOP) * frequency.size), -1)
-    shape = (2.0 * np.sin(frequency[top] / 2.0)) ** 4
+    shape = (2.0 * np.sin(frequency[top] / 2.0)) ** 4 * np.sum(taper**2)
+    power = np.abs(np.fft.rfft(differences * taper, axis=1)[:, top]) ** 2
     degrees = shape.size / CORRELATION
     median = scipy.special.gammaincinv(degrees, 0.5) / degrees
-    return float(np.sqrt(np.median(np.mean(power[:, top] / shape, axis=1)) / median))
+    return float(np.sqrt(np.median(power @ (1.0 / shape)) / shape.size / median))
 
 
 def _windows(stretches: tuple[Array, ...], window: int) -> Array:
     """Second differences of the stretches in whole windows that span no hole (k, window)."""
     parts = [np.diff(values, 2) for values in stretches if values.size >= window + 2]
     rows = [part[: part.size // window * window].reshape(-1, window) for part in parts]
+    if len(rows) == 1:
+        return rows[0]
     return np.concatenate(rows) if rows else np.empty((0, window))
 
 
@@ -85,6 +88,8 @@ def resolution(values: Array) -> float:
 
     The median, as steps that no sample fell on are missing, and a torque of a saturating motor has uneven ones.
     """
+    if np.unique(values[: 2 * values.size // REPEATED]).size > values.size / REPEATED:
+        return 0.0  # which half of them tell in half the time
     levels = np.unique(values)
     return float(np.median(np.diff(levels))) if 1 < levels.size <= values.size / REPEATED else 0.0
 
@@ -94,10 +99,13 @@ def common_step(values: Array, least: float) -> float:
 
     By Euclid's algorithm on all distances at once, so that steps that no sample fell on do no harm.
     """
-    levels = np.unique(values)
-    distances = np.diff(levels)
     precise = 8.0 * np.finfo(float).eps * float(np.abs(values).max(initial=0.0))
-    distances = distances[distances > precise]
+    distances = np.empty(0)
+    for some in (values[:FEW], values):
+        distances = np.diff(np.unique(some))
+        distances = distances[distances > precise]
+        if np.any(distances <= least):
+            return 0.0
     while distances.size:
         step = float(distances.min())
         if step <= max(least, precise):
