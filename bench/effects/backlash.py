@@ -93,11 +93,15 @@ class Backlash(Replacing, Coupling, Contact, Native):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Load's acceleration less the motor's."""
-        return dead_zone_columns(signals, np.array([shape]))
+        return self.columns_of(signals, [shape])
 
     def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
         """The same; of what acts on the load, a spring's share is a shape of its own."""
-        return dead_zone_columns(signals, np.array(shapes))
+        return dead_zone_columns([signals], np.array(shapes))[0]
+
+    def tables_of(self, stretches: Sequence[Signals], shapes: Shapes) -> list[list[Column]]:
+        """The same, integrated side by side."""
+        return dead_zone_columns(stretches, np.array(shapes))
 
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array:
         """The load does not follow it."""
@@ -113,7 +117,7 @@ class Backlash(Replacing, Coupling, Contact, Native):
         for k, factor in enumerate(INDISTINCT):
             shapes[2 * k + 1, k] *= factor
             shapes[2 * k + 2, k] /= factor
-        columns = fitted.seen(lambda signals: dead_zone_columns(signals, shapes), of_motion=True)
+        columns = fitted.seen(dead_zone_columns(fitted.stretches, shapes), of_motion=True)
         return np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
 
     def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
@@ -168,41 +172,62 @@ class Backlash(Replacing, Coupling, Contact, Native):
         joint.solimp_limit = list(IMPEDANCE)
 
 
-def load_positions(angle: Array, sample_period: float, shapes: Array) -> Array:
-    """Positions of the load behind several dead zones - rad (m) - (n, k).
+def load_positions(angles: Sequence[Array], sample_period: float, shapes: Array) -> list[Array]:
+    """Positions of the load behind several dead zones in stretches of a recording - rad (m) - (n, k) each.
 
-    The motor moves along a cubic spline through its samples. The recording is cut into windows that are integrated side
-    by side, each from where the one before it ended in the sweep before, until starts and ends agree: a contact forgets
-    how it was entered, so few sweeps do. The load starts with the motor, in the middle of the gap.
+    The motor moves along a cubic spline through its samples. A stretch is cut into windows that are integrated side by
+    side, as those of stretches with windows as long are, each from where the one before it ended in the sweep before,
+    until starts and ends agree: a contact forgets how it was entered, so few sweeps do. The load starts with the motor,
+    in the middle of the gap.
 
     Args:
-        angle: of the motor - rad (m) - (n,).
+        angles: of the motor - rad (m) - (n,) each.
         sample_period: s.
         shapes: (k, 4): gap, contact's frequency and damping, spring's rate.
     """
+    lengths = np.array([max(SHORTEST, -(-(angle.size - 1) // WINDOWS)) for angle in angles])
+    found: dict[int, Array] = {}
+    for length in np.unique(lengths).tolist():
+        alike = np.flatnonzero(lengths == length).tolist()
+        twists = _twists([angles[k] for k in alike], length, sample_period, shapes)
+        found |= {k: angles[k][:, None] - twist for k, twist in zip(alike, twists, strict=True)}
+    return [found[k] for k in range(len(angles))]
+
+
+def _twists(angles: Sequence[Array], length: int, sample_period: float, shapes: Array) -> list[Array]:
+    """Angles of the motor (n,) less the load's (n, k) in windows of so many samples; see `load_positions`."""
     substeps = max(2, int(np.ceil(sample_period * shapes[:, 1].max() * STEPS_PER_RADIAN)))
-    between, slopes = splined(angle, substeps)
-    length = max(SHORTEST, -(-(angle.size - 1) // WINDOWS))
-    count, size = -(-(angle.size - 1) // length), len(shapes)
-    fine = np.pad(between, (0, count * length * substeps + 1 - between.size), mode="edge")
-    windows = fine[np.arange(length * substeps + 1)[:, None] + length * substeps * np.arange(count)]
-    twist = np.zeros((count, size))
-    travel = np.repeat((slopes[substeps * length * np.arange(count)] / substeps)[:, None], size, axis=1)
-    found = np.empty((length, count, size))
-    window, shape = (pairs.ravel() for pairs in np.indices((count, size)))
+    cut = [_windows(angle, length, substeps) for angle in angles]
+    windows = np.concatenate([between for between, _ in cut], axis=1)
+    ends, size = np.cumsum([starts.size for _, starts in cut]), len(shapes)
+    goes_on = ~np.isin(np.arange(ends[-1]), ends - 1)
+    twist = np.zeros((ends[-1], size))
+    travel = np.repeat(np.concatenate([starts for _, starts in cut])[:, None], size, axis=1)
+    found = np.empty((length, ends[-1], size))
+    window, shape = (pairs.ravel() for pairs in np.indices(twist.shape))
     while window.size:
         start = twist[window, shape], travel[window, shape]
         twists, last, way = _run(windows, window, shapes[shape], start, sample_period / substeps, substeps)
         found[:, window, shape] = twists
-        inside = window + 1 < count
+        inside = goes_on[window]
         window, shape, last, way = window[inside] + 1, shape[inside], last[inside], way[inside]
         away = np.abs(way - travel[window, shape]) * (substeps / sample_period) / shapes[shape, 1]
         away = np.maximum(away, np.abs(last - twist[window, shape]))
         twist[window, shape], travel[window, shape] = last, way
         apart = away > CLOSED * shapes[shape, 0]
         window, shape = window[apart], shape[apart]
-    samples = found.transpose(1, 0, 2).reshape(count * length, size)
-    return angle[:, None] - np.concatenate([np.zeros((1, size)), samples[: angle.size - 1]])
+    samples = [part.transpose(1, 0, 2).reshape(-1, size) for part in np.split(found, ends[:-1], axis=1)]
+    first = np.zeros((1, size))
+    return [np.concatenate([first, part[: angle.size - 1]]) for angle, part in zip(angles, samples, strict=True)]
+
+
+def _windows(angle: Array, length: int, substeps: int) -> tuple[Array, Array]:
+    """Angles between samples (n,) in windows of so many (length*substeps + 1, w), and the way of a step there (w,)."""
+    between, slopes = splined(angle, substeps)
+    count, step = -(-(angle.size - 1) // length), length * substeps
+    fine = np.pad(between, (0, count * step + 1 - between.size), mode="edge")
+    starts = step * np.arange(count)
+    return fine[np.arange(step + 1)[:, None] + starts], slopes[starts] / substeps
 
 
 def _run(
@@ -251,22 +276,29 @@ def _beyond(twist: Array, below: Array, above: Array, out: Array) -> None:
     np.subtract(twist, out, out=out)
 
 
-def dead_zone_columns(signals: Signals, shapes: Array) -> list[Column]:
-    """Load's acceleration less the motor's behind several dead zones, with the spring's share of it.
+def dead_zone_columns(stretches: Sequence[Signals], shapes: Array) -> list[list[Column]]:
+    """Load's acceleration less the motor's behind several dead zones, with the spring's share of it, in each stretch.
 
     Where the speed is the source, the motor's angle is its integral, whose noise no resolution of an encoder adds to.
 
     Args:
-        signals: of one stretch.
+        stretches: of a recording.
         shapes: (k, 4), see `load_positions`.
     """
-    angle = signals.position
-    if signals.source == "velocity":
-        speed = signals.velocity
-        steps = 0.5 * signals.sample_period * (speed[1:] + speed[:-1])
-        angle = angle[0] + np.concatenate([[0.0], np.cumsum(steps)])
-    twist = (load_positions(angle, signals.sample_period, shapes) - angle[:, None]).T
-    return [[(load, 2), (rate * load, 0)] for load, rate in zip(twist, shapes[:, 3], strict=True)]
+    angles = [_angle(signals) for signals in stretches]
+    positions = load_positions(angles, stretches[0].sample_period, shapes)
+    twists = [(position - angle[:, None]).T for position, angle in zip(positions, angles, strict=True)]
+    rates = shapes[:, 3]
+    return [[[(load, 2), (rate * load, 0)] for load, rate in zip(twist, rates, strict=True)] for twist in twists]
+
+
+def _angle(signals: Signals) -> Array:
+    """Of the motor (n,) - rad (m)."""
+    if signals.source != "velocity":
+        return signals.position
+    speed = signals.velocity
+    steps = 0.5 * signals.sample_period * (speed[1:] + speed[:-1])
+    return signals.position[0] + np.concatenate([[0.0], np.cumsum(steps)])
 
 
 @dataclass(frozen=True)
@@ -320,7 +352,7 @@ def _columns(fitted: Fitted, shapes: Array) -> Array:
     """Columns (m, k) of many shapes, few at a time where the recording is long."""
     few = max(1, TOGETHER // max(fitted.time.size, 1))
     parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
-    made = [fitted.seen(lambda signals, part=part: dead_zone_columns(signals, part), of_motion=True) for part in parts]
+    made = [fitted.seen(dead_zone_columns(fitted.stretches, part), of_motion=True) for part in parts]
     return np.concatenate(made, axis=1)
 
 

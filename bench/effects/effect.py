@@ -72,6 +72,10 @@ class Detected:
     mends: bool = True
 
 
+#: Columns of raw signals of a stretch, or of each of a recording's stretches.
+ColumnsOf = Callable[[Signals], Sequence[Column]] | Sequence[Sequence[Column]]
+
+
 class Fitted(Protocol):
     """A torque balance fitted to a recording, as far as effects may use it; see `bench.fit.fit.Fit`."""
 
@@ -94,7 +98,9 @@ class Fitted(Protocol):
     @property
     def span(self) -> Array: ...  # noqa: D102
     def places(self, kind: type[Effect]) -> NDArray[np.intp]: ...  # noqa: D102
-    def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array: ...  # noqa: D102
+    @property
+    def stretches(self) -> Sequence[Signals]: ...  # noqa: D102
+    def seen(self, columns: ColumnsOf, of_motion: bool) -> Array: ...  # noqa: D102
     def gains(self, columns: Array, width: int) -> Array: ...  # noqa: D102
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]: ...  # noqa: D102
 
@@ -247,6 +253,10 @@ class Coupling(Columns):
     def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
         """The same; `loads` act on the load, as far as it lets them."""
         return super().columns_of(signals, shapes)
+
+    def tables_of(self, stretches: Sequence[Signals], shapes: Shapes) -> list[list[Column]]:
+        """The same in each of several stretches of a recording."""
+        return [self.columns_of(signals, shapes) for signals in stretches]
 
     @abstractmethod
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array | NDArray[np.complex128]:

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.acting import Friction
-from bench.effects.effect import Columns, Contact, CopiesTorque, Coupling, Effect, Proposal
+from bench.effects.effect import Columns, ColumnsOf, Contact, CopiesTorque, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.hypothesis import Hypothesis, Term, terms_interact, with_found_strengths, with_friction, with_load
 from bench.fit.layout import DIGIT, Layout, by_model, delays, lay_out, rounding, seen_by
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import bounded, solved
-from bench.fit.rows import ColumnsOf, Rows
+from bench.fit.rows import Rows
 from bench.trace.filter import Column
 
 #: Rounds in which levels of dry friction that multiply, and torque that is copied, are brought in line, and change of
@@ -170,7 +170,12 @@ class Fit:
     def _modelled(self) -> Rows:
         return by_model(seen_by(self.rows, self.hypothesis), self.residual)
 
-    def seen(self, columns: Callable[[Signals], Sequence[Column]], of_motion: bool) -> Array:
+    @property
+    def stretches(self) -> list[Signals]:
+        """Raw signals as one term more would see them."""
+        return [part.signals for part in self.beside.stretches]
+
+    def seen(self, columns: ColumnsOf, of_motion: bool) -> Array:
         """Columns (m, k) of raw signals as one term more would see them; `of_motion`: accelerations or speeds."""
         return self.beside.table(columns, delays(self.rows, self.hypothesis)[0 if of_motion else 1])
 
@@ -237,7 +242,7 @@ class Fit:
         return np.column_stack([self.span, self.residual])
 
     @cached_property
-    def _against(self) -> Callable[[ColumnsOf], Array]:
+    def _against(self) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
         return self._modelled.against(self._targets, delays(self.rows, self.hypothesis)[1])
 
 

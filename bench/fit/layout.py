@@ -15,7 +15,7 @@ Source: B. Widrow, I. Kollar, Quantization Noise, 2008 (characteristic function 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -166,11 +166,13 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, left: A
     if loads:
         return seen.table(lambda s: effect.columns_of(s, [term.shape], loads), lag)
 
-    def integrated(signals: Signals) -> Sequence[Column]:
-        made_of = (effect.columns_of, term.shape, seen.motion, signals.began, float(signals.time[0]))
-        return seen.memory.get(made_of, lambda: effect.columns_of(signals, [term.shape]))
+    made_of, stretches = (effect.tables_of, term.shape), [part.signals for part in seen.stretches]
 
-    return seen.kept((effect.columns_of, term.shape), integrated, lag)
+    def table() -> Array:
+        made = seen.memory.get((*made_of, seen.motion), lambda: effect.tables_of(stretches, [term.shape]))
+        return seen.table(made, lag)
+
+    return seen.memory.get((made_of, lag, seen.made_by), table)
 
 
 def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, left: Array) -> Array:

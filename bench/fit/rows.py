@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import AxisKind
+from bench.effects.effect import ColumnsOf
 from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
@@ -31,10 +32,9 @@ ONE_WAY = 0.02
 #: Bytes of columns kept: on a recording of 8 s at 1 kHz some hundred, of 600 s what one hypothesis needs. With 96 MB
 #: less than that was kept there, and 600 s took 2.8 times as long as 300 s; with 160 MB 2.0 times.
 KEPT = 160 * 2**20
-#: Columns of raw signals; a lag of all of them, or of each - s.
-ColumnsOf = Callable[[Signals], Sequence[Column]]
+#: A lag of all columns, or of each - s.
 Lag = float | tuple[float, ...]
-Made = TypeVar("Made", Array, Sequence[Column])
+Made = TypeVar("Made", Array, Sequence[Sequence[Column]])
 
 
 class Memory:
@@ -53,7 +53,7 @@ class Memory:
         if isinstance(made, np.ndarray):
             made.flags.writeable, size = False, made.nbytes
         else:
-            size = sum(values.nbytes for column in made for values, _ in column)
+            size = sum(values.nbytes for table in made for column in table for values, _ in column)
         self._kept[made_of] = made, size
         self._bytes += size
         while self._bytes > KEPT and len(self._kept) > 1:
@@ -245,12 +245,12 @@ class Rows:
         """Filtered columns at the used rows (m, k).
 
         Args:
-            columns: of the raw signals.
+            columns: of the raw signals of a stretch, or of each stretch.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
         """
         return _table(self.stretches, self.conditioning.filter, columns, lag)
 
-    def against(self, targets: Array, lag: float = 0.0) -> Callable[[ColumnsOf], Array]:
+    def against(self, targets: Array, lag: float = 0.0) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
         """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself."""
         smooth = self.conditioning.filter
         own = np.split(targets.T, np.cumsum([part.places.size for part in self.stretches])[:-1], axis=1)
@@ -264,7 +264,7 @@ class Rows:
                 back[number, order] = smooth.backwards(spread[number], values.size, order, lag)
             return back[number, order] @ values
 
-        def products(columns: ColumnsOf) -> Array:
+        def products(columns: Callable[[Signals], Sequence[Column]]) -> Array:
             tables = enumerate(columns(part.signals) for part in self.stretches)
             parts = [[np.sum([product(at, *t) for t in column], axis=0) for column in table] for at, table in tables]
             return np.sum(np.array(parts), axis=0)
@@ -314,7 +314,8 @@ def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
 
 
 def _table(stretches: Sequence[Stretch], smooth: GaussianFilter, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
-    parts = [smooth.columns(columns(part.signals), lag, part.places) for part in stretches]
+    tables = [columns(part.signals) for part in stretches] if callable(columns) else columns
+    parts = [smooth.columns(table, lag, part.places) for table, part in zip(tables, stretches, strict=True)]
     return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
 
 

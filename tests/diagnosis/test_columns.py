@@ -25,7 +25,7 @@ def signals(position, velocity):
 def test_a_load_without_a_gap_follows_the_motor():
     time = np.arange(4000) * PERIOD
     position = 10.0 * (1.0 - np.cos(3.0 * time))
-    found = load_positions(position, PERIOD, np.array([[1e-9, 400.0, 0.7, 0.0]]))[:, 0]
+    found = load_positions([position], PERIOD, np.array([[1e-9, 400.0, 0.7, 0.0]]))[0][:, 0]
     assert np.gradient(np.gradient(found, PERIOD), PERIOD)[200:-2] == pytest.approx(
         90.0 * np.cos(3.0 * time[200:-2]), abs=0.02
     )
@@ -34,7 +34,7 @@ def test_a_load_without_a_gap_follows_the_motor():
 def test_a_load_within_the_gap_feels_nothing():
     time = np.arange(1000) * PERIOD
     position = 0.01 * (1.0 - np.cos(20.0 * time))
-    found = load_positions(position, PERIOD, np.array([[0.1, 400.0, 0.5, 0.0]]))
+    found = load_positions([position], PERIOD, np.array([[0.1, 400.0, 0.5, 0.0]]))[0]
     assert np.abs(found - found[0]).max() < 1e-6
 
 
@@ -57,7 +57,7 @@ def test_a_load_thrown_across_the_gap_is_the_contacts_equation_integrated():
         a = slopes(k * step, x, v)
         b = slopes((k + 0.5) * step, x + 0.5 * step * a[0], v + 0.5 * step * a[1])
         x, v = x + step * b[0], v + step * b[1]
-    found = load_positions(position, PERIOD, np.array([[gap, frequency, damping, 0.0]]))[:, 0]
+    found = load_positions([position], PERIOD, np.array([[gap, frequency, damping, 0.0]]))[0][:, 0]
     assert found == pytest.approx(expected, abs=0.01 * gap)
 
 
