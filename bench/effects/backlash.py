@@ -320,8 +320,7 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
     None where no shape of the first grid takes squares that promise more.
     """
 
-    def likeliest(shapes: Array) -> list[Likely]:
-        columns = _columns(fitted, shapes)
+    def likeliest(shapes: Array, columns: Array) -> list[Likely]:
         found = (_likely(fitted, shape, column) for shape, column in zip(shapes, columns.T, strict=True))
         return sorted(found, key=lambda likely: likely.misfit)
 
@@ -331,16 +330,17 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
     pulled = max(_stiffness(fitted, fitted.theta), 0.0) / load if load > 0.0 else 0.0  # by a spring on the load's side
     axes = [np.array(contacts), np.array(GAPS) * travel, np.array([DAMPING]), np.unique([0.0, pulled])]
     grid = np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1)[:, [1, 0, 2, 3]]
-    softest_first = np.split(grid, len(contacts))  # each in steps of its own, of which a soft one needs few
-    if not any(promises(float(fitted.gains(_columns(fitted, part), 1).max())) for part in softest_first):
+    # each contact in steps of its own, of which a soft one needs few
+    columns = np.concatenate([_columns(fitted, part) for part in np.split(grid, len(contacts))], axis=1)
+    if not promises(float(fitted.gains(columns, 1).max())):
         return None
-    tried = likeliest(grid)
+    tried = likeliest(grid, columns)
     starts = [next(found for found in tried if found.shape[1] == contact) for contact in contacts]
     starts = sorted(starts, key=lambda likely: likely.misfit)[:STARTS]
     for level in range(1, ROUNDS):
         offsets = np.exp(OFFSETS * np.array(SPREAD) * 0.6 ** (level - 1))
         around = np.concatenate([start.around(offsets) for start in starts])
-        tried, size = likeliest(around), len(offsets)
+        tried, size = likeliest(around, _columns(fitted, around)), len(offsets)
         groups = [{row.tobytes() for row in around[k * size : (k + 1) * size]} for k in range(len(starts))]
         refined = [next(found for found in tried if found.shape.tobytes() in group) for group in groups]
         starts = [min(pair, key=lambda likely: likely.misfit) for pair in zip(starts, refined, strict=True)]
