@@ -45,6 +45,12 @@ def lstsq() -> list[Table]:
     return measured()
 
 
+def before() -> list[Table]:
+    from tests.studies.benchmarks.beside_before import measured
+
+    return measured()
+
+
 def stepping() -> list[Table]:
     from tests.studies.benchmarks.beside_stepping import measured
 
@@ -73,6 +79,7 @@ def growing() -> list[Table]:
 BENCHMARKS: dict[str, tuple[str, Callable[[], list[Table]]]] = {
     "sysid": ("Identification beside mujoco.sysid", sysid),
     "lstsq": ("Least squares beside NumPy's", lstsq),
+    "before": ("CPU time of an identification beside an earlier one", before),
     "stepping": ("Simulation beside bare stepping", stepping),
     "reading": ("Reading beside pyarrow", reading),
     "diagnosing": ("CPU time of a diagnosis", diagnosing),

@@ -44,6 +44,14 @@ def test_a_diagnosis_is_timed(tmp_path):
 
 
 @pytest.mark.slow
+def test_beside_an_earlier_commit_both_identify():
+    from tests.studies.benchmarks import beside_before
+
+    (table,) = beside_before.measured(2.0, 1)
+    assert [row[0] for row in table.rows] == [beside_before.BEFORE, "today", "ratio"]
+
+
+@pytest.mark.slow
 def test_beside_sysid_both_find_the_axis():
     pytest.importorskip("tabulate", reason="pip install -e '.[benchmarks]'")
     from tests.studies.benchmarks import beside_sysid
