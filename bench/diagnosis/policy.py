@@ -69,9 +69,10 @@ class Policy:
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
             the blind set's cases that are explained 2.5 at most, nine in ten 1.6.
         beside_event: of the squares that an event takes which stands out of a remainder: what may be left around it.
-        left, over, each, number, event, outside, none: weights of a probability (`bench.diagnosis.probability`): of
-            what is left, over what the bare axis leaves and over noise, of an effect more, of a number fitted more, of
-            an event beside a remainder, of an effect from outside the catalogue, and of what was not tried.
+        left, over, number, outside, none: weights of a probability (`bench.diagnosis.probability`): of what is left,
+            over what the bare axis leaves and over noise, of a number fitted more, of an effect from outside the
+            catalogue, and of what was not tried. Two more, of an effect more and of an event beside a remainder, made
+            the right answers no likelier (`docs/certainty.md`).
         most: effects at most; a family of harmonics is one of them.
         members: of a family at most: more waves or events draw anything.
     """
@@ -93,13 +94,11 @@ class Policy:
     determined: float = 0.5
     holdout_gap: float = 3.0
     beside_event: float = 0.25
-    left: float = 4.6
-    over: float = 1.7
-    each: float = 2.5
-    number: float = 0.3
-    event: float = 1.6
+    left: float = 4.0
+    over: float = 1.4
+    number: float = 1.4
     outside: float = 2.2
-    none: float = -2.7
+    none: float = -1.85
     most: int = 12
     members: int = 12
 

@@ -1,6 +1,6 @@
 """How likely each set of names is, and that none of the catalogue's is right.
 
-    ln P = -left*max(U, LEAST) - over*min(V, MUCH) - each*names - number*numbers - event*events*min(V, MUCH) + constant
+    ln P = -left*max(U, LEAST) - over*min(V, MUCH) - number*numbers + constant
 
 U, V - logarithms of what a set leaves beyond noise, over what the bare axis leaves and over noise; numbers - fitted
 (`bench.diagnosis.score`). What holds an effect from outside the catalogue weighs `outside` less and, together with a
@@ -137,11 +137,9 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
 
 def _log(one: Contender, policy: Policy) -> float:
     """Logarithm of a hypothesis' weight."""
-    over = min(one.over, MUCH)
     return (
         -policy.left * max(one.left, LEAST)
-        - (policy.over + policy.event * one.events) * over
-        - policy.each * len(set(one.fitted.hypothesis.names))  # all harmonics of a wave are one effect
+        - policy.over * min(one.over, MUCH)
         - policy.number * one.numbers
         - policy.outside * one.outside
     )

@@ -59,11 +59,6 @@ class Contender:
     numbers: int
     outside: bool
 
-    @property
-    def events(self) -> int:
-        """Effects that come once, and so draw anything that is left."""
-        return sum(isinstance(term.effect, Occasional) for term in self.fitted.terms)
-
 
 def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) -> Iterator[Fit]:
     """The steps of a search, its result less each effect, the next best beside it and in place of each, and rivals.

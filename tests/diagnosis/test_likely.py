@@ -68,7 +68,7 @@ def contender(left, over, *terms, numbers=0, outside=False):
 def test_the_logarithm_is_the_sum_of_what_speaks_for_and_against():
     bare, spring = contender(0.0, 2.0), contender(-4.0, 1.0, SPRING, numbers=1)
     found = probabilities([bare, spring], frozenset(), POLICY)
-    ahead = 4.0 * POLICY.left + 1.0 * POLICY.over - POLICY.each - POLICY.number
+    ahead = 4.0 * POLICY.left + 1.0 * POLICY.over - POLICY.number
     assert math.log(found.names["torsion_spring"] / found.nothing) == pytest.approx(ahead)
     assert math.log(found.none / found.nothing) == pytest.approx(POLICY.none + 2.0 * POLICY.over)
     assert found.nothing + found.none + found.names["torsion_spring"] == pytest.approx(1.0)

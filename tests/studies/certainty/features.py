@@ -26,9 +26,7 @@ class Hypothesis:
     names: tuple[str, ...]
     left: float
     over: float
-    effects: int
     numbers: int
-    events: int
     outside: bool
 
 
@@ -85,15 +83,7 @@ def known(folder: Path, withheld: bool) -> Known | None:
     effects = [effect for name, effect in catalogue().items() if name not in excluded]
     searched = search(fit_bare(recordings.rows), effects, POLICY)
     hypotheses = [
-        Hypothesis(
-            one.fitted.hypothesis.names,
-            one.left,
-            one.over,
-            len(set(one.fitted.hypothesis.names)),
-            one.numbers,
-            one.events,
-            one.outside,
-        )
+        Hypothesis(one.fitted.hypothesis.names, one.left, one.over, one.numbers, one.outside)
         for one in scored([*neighbourhood(searched, excluded, POLICY)], None, POLICY)
     ]
     detected = {effect.name for effect in recordings.detected}

@@ -25,6 +25,8 @@ from tests.studies.injected.sources import Source
 
 #: Strengths over what the recording's own diagnosis leaves.
 STRENGTHS = (2.0, 5.0)
+#: Lags of which a recording shows the difference alone.
+OPPOSED = {"current_loop_lag", "current_filter_lag"}
 #: Fates beside those of the bench: the axis cannot have the effect so large, and work that gave no result.
 UNABLE, FAILED = "unable", "failed"
 
@@ -64,9 +66,9 @@ def itself(source: Source) -> Own | str:
 
 
 def possible(effect: str, own: Own) -> bool:
-    """Whether an axis can have an effect beside what it has: it has one coupling, and one friction by its load."""
+    """Whether an axis can have an effect beside what it has, and show it: one coupling, one friction by its load."""
     beside = {effect, *own.names, *own.hidden}
-    return not any(KINDS[name].never_beside in beside for name in beside)
+    return not beside >= OPPOSED and not any(KINDS[name].never_beside in beside for name in beside)
 
 
 def draw(sources: Sequence[str], effects: Sequence[str], seed: int) -> list[Case]:

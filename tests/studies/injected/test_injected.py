@@ -8,15 +8,18 @@ import pytest
 
 import bench
 from bench.trace.trace import Trace
+from bench.validation.independent.effects import LoadDependentFriction, TorqueOffset
 from bench.validation.injection import INJECTABLE
 from bench.validation.into import NONE
 from tests.shared import needs_shared
-from tests.studies.injected.cases import FAILED, STRENGTHS, Case, Row, draw, keep, kept, write_case
+from tests.studies.injected.cases import FAILED, STRENGTHS, Case, Row, draw, keep, kept, possible, write_case
 from tests.studies.injected.sources import Source, real
 from tests.studies.injected.stability import HALVES, NOISE, WHOLE, compared, markdown, variants
 from tests.studies.injected.table import calibration_error, headline, pairs
+from tests.studies.nuisance.realistic import one
 from tests.validation.test_into import OWN
 
+LOADED = LoadDependentFriction(0.1)
 CASE = Case("axis/r1", "cogging_torque", 2.0, 7)
 ROW = Row(
     CASE, "right", ("cogging_torque",), "explained", "", {"cogging_torque": 0.9}, 1.5, {"amplitude": (1, 2, 0, 3)}
@@ -112,3 +115,25 @@ def test_a_case_is_written_with_its_truth(tmp_path):
 @needs_shared
 def test_the_real_recordings_are_there():
     assert [source.name for source in real() if not source.path.exists() or not source.rig.exists()] == []
+
+
+def test_an_axis_has_one_coupling_and_shows_one_lag_of_its_current():
+    own = replace(OWN, names=("backlash",), hidden=("current_loop_lag",))
+    assert not possible("elastic_coupling", own)
+    assert not possible("current_filter_lag", own)
+    assert possible("cogging_torque", own)
+    assert possible("elastic_coupling", OWN)
+
+
+def test_a_simulated_axis_is_recorded_once_more_with_the_effect():
+    """Friction by the load carries an offset that is put in, too; put into the recording it would not."""
+    drawn = one(3, 0)
+    source = Source("made", "made", None, None, "", replace(drawn, hidden=replace(drawn.hidden, effects=(LOADED,))), 3)
+    assert source.hidden == ("load_dependent_friction",)
+    axis = drawn.hidden.axis
+    made = source.made_with(None, TorqueOffset(0.5 * axis.coulomb))
+    both, alone = (source.made_with(None, TorqueOffset(value)) for value in (0.0, 0.0))
+    assert np.array_equal(both["current"], alone["current"])
+    assert np.mean(made["current"] - alone["current"]) * axis.torque_constant == pytest.approx(
+        0.5 * axis.coulomb, rel=0.2
+    )
