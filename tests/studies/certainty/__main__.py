@@ -26,6 +26,7 @@ from bench.diagnosis.policy import POLICY
 from bench.diagnosis.probability import LEAST, MUCH
 from bench.files import write_text
 from tests.studies.blind.__main__ import workers
+from tests.studies.blind.score import same
 from tests.studies.certainty.features import Hypothesis, Known, folders, kept, known
 
 WEIGHTS = ("left", "over", "number", "outside", "none")
@@ -95,12 +96,12 @@ def fitted(table: Table, start: Mapping[str, float], held: frozenset[str] = froz
 
 
 def names_of(case: Known, shares: Array) -> dict[str, float]:
-    """Probability of each name of a case."""
-    found: dict[str, float] = {}
+    """Probability of each name of a case; of two that no recording tells apart, of either."""
+    found: dict[frozenset[str], float] = {}
     for one, share in zip(case.hypotheses, shares.tolist(), strict=False):
-        for name in set(one.names) if not one.outside else ():
+        for name in same(one.names) if not one.outside else ():
             found[name] = found.get(name, 0.0) + share
-    return found
+    return {min(name): share for name, share in found.items()}
 
 
 def reliability(cases: Sequence[Known], shares: Array) -> tuple[list[str], float]:
