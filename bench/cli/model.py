@@ -19,12 +19,11 @@ from bench.plant.profile_names import DEFAULT, NAMES
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from bench.arrays import Array
     from bench.cli.common import Subject
     from bench.diagnosis.let_free import FreeRun
     from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
-    from bench.view.side_by_side import SideBySide
+    from bench.view.side_by_side import RobotAlong, SideBySide
 
 ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
 #: Name of a joint that no other is given for, as `load_models` has it.
@@ -113,27 +112,25 @@ def view(
         from bench.view.scene import Scene
         from bench.view.video import write_video
 
-        scene = Scene.of(shown, of.rig.load) if robot is None else Scene.of_robot(*robot)
+        scene = Scene.of(shown, of.rig.load) if robot is None else Scene.of_robot(robot)
         with progress(f"rendering {video.name}") as done:
             write_video(video, shown, scene, slowed, done)
     from bench.report.simulation import view as document_of
-    from bench.view.drawn import DrawnRobot
 
-    drawn = None if robot is None else DrawnRobot.of(*robot)
     along = readable(profile if trace is None else trace.name)
-    common.write_page(out, document_of(shown, model, along, warnings, free, drawn))
+    common.write_page(out, document_of(shown, model, along, warnings, free, robot))
     common.list_files([out, video])
     common.warn(warnings)
 
 
-def _robot(
-    of: Subject, trace: Path | None, mjcf: Path | None, joint: str | None
-) -> tuple[Path, str, float, Array, dict[str, Array]] | None:
-    """Of a robot along its log: MJCF, joint, gear, and where its joints were at times - s, rad (m); None of an axis."""
+def _robot(of: Subject, trace: Path | None, mjcf: Path | None, joint: str | None) -> RobotAlong | None:
+    """The robot along its log; None of an axis."""
+    from bench.view.side_by_side import RobotAlong
+
     if of.poses is None or trace is None or mjcf is None or joint is None:
         return None
     ratio = of.rig.load.gear_ratio if of.rig.load is not None else 1.0
-    return mjcf, joint, ratio, *of.poses(trace)
+    return RobotAlong(mjcf, joint, ratio, *of.poses(trace))
 
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:

@@ -7,9 +7,11 @@ Every command makes one document of its result, in one file of `bench/report`. `
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
+from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
 
 from bench.arrays import Array
@@ -245,6 +247,11 @@ class HeatMap(Part):
         whole = len(self.counts) == len(self.rows) and all(len(row) == len(self.columns) for row in self.counts)
         _require(whole, "a count for each row and column")
         return self
+
+
+def packed(values: NDArray[Any], kind: str = "<f4") -> str:
+    """Numbers of any shape in base 64: 32-bit floats, or of another kind as NumPy has it."""
+    return base64.b64encode(values.astype(kind).tobytes()).decode("ascii")
 
 
 class Samples(Part):

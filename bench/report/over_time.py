@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.report.document import Samples, TimeCurve, TimeGraph, TimePanel
+from bench.report.document import Samples, TimeCurve, TimeGraph, TimePanel, packed
 from bench.report.numbers import unit_text
 
 Values = NDArray[np.floating]
@@ -67,15 +67,15 @@ class Grid:
         return Samples(
             offset=middle,
             scale=scale,
-            low=_packed(low if not self.single else 0.5 * (low + high), middle, scale),
-            high=None if self.single else _packed(high, middle, scale),
+            low=_stepped(low if not self.single else 0.5 * (low + high), middle, scale),
+            high=None if self.single else _stepped(high, middle, scale),
         )
 
 
-def _packed(values: Array, middle: float, scale: float) -> str:
+def _stepped(values: Array, middle: float, scale: float) -> str:
     """16-bit steps from the middle of the range, little endian, in base 64."""
     steps = np.clip(np.rint((values - middle) / scale), -STEPS // 2, STEPS // 2)
-    return base64.b64encode(np.where(np.isnan(steps), NOTHING, steps).astype("<i2").tobytes()).decode("ascii")
+    return packed(np.where(np.isnan(steps), NOTHING, steps), "<i2")
 
 
 def unpacked(samples: Samples) -> tuple[Array, Array]:

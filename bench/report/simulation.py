@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import base64
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
 from typing import get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA, AxisKind
@@ -26,9 +24,9 @@ from bench.report import document as doc
 from bench.report.numbers import effort_word, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import model_section, one_panel, origin, values_table, warnings_sections
+from bench.report.robot_drawing import robot_drawing
 from bench.trace.noise import white_noise
-from bench.view.drawn import DrawnBody, DrawnRobot
-from bench.view.side_by_side import SideBySide
+from bench.view.side_by_side import RobotAlong, SideBySide
 
 #: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
 MOST = 40_000
@@ -164,7 +162,7 @@ def view(
     along: str,
     warnings: Sequence[str] = (),
     free: FreeRun | None = None,
-    robot: DrawnRobot | None = None,
+    robot: RobotAlong | None = None,
 ) -> doc.Document:
     """The document of a model's file in motion beside its ghost, along a recording or profile of a name.
 
@@ -238,7 +236,7 @@ def _let_free(free: FreeRun, kind: AxisKind) -> tuple[doc.Chart, doc.Chart]:
     )
 
 
-def motion_of(shown: SideBySide, robot: DrawnRobot | None = None) -> doc.Moving:
+def motion_of(shown: SideBySide, robot: RobotAlong | None = None) -> doc.Moving:
     """The motion at instants of equal distance, each as of the sample next to it; nan in holes."""
     time = shown.time
     period = float(np.median(np.diff(time)))
@@ -270,9 +268,9 @@ def motion_of(shown: SideBySide, robot: DrawnRobot | None = None) -> doc.Moving:
         low=low,
         high=high,
         slowed=slowed,
-        position=_packed(ghost),
-        runs=tuple(doc.ModelRun(name=how, apart=_packed(values)) for how, values in apart.items()),
-        robot=None if robot is None else _drawn(robot),
+        position=doc.packed(ghost),
+        runs=tuple(doc.ModelRun(name=how, apart=doc.packed(values)) for how, values in apart.items()),
+        robot=None if robot is None else robot_drawing(robot),
     )
 
 
@@ -304,7 +302,7 @@ def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) ->
     """
     here = {name: one for name, one in motions.items() if one.origin == along}
     first, motion = next(iter(here.items()))
-    robot = DrawnRobot.of(mjcf, first, 1.0, motion.time, motion.measured)
+    robot = RobotAlong(mjcf, first, 1.0, motion.time, motion.measured)
     told = dict.fromkeys(how for one in here.values() for how in one.runs)
     runs = sorted(told, key=lambda how: [HELD, BARE, how].index(how))
 
@@ -327,54 +325,14 @@ def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) ->
         count=motion.time.size,
         low=low,
         high=max(high, low + 1e-9),
-        position=_packed(measured),
+        position=doc.packed(measured),
         runs=tuple(
             doc.ModelRun(
                 name=how,
-                apart=_packed(apart(first, how)),
-                others=tuple(_packed(apart(name, how)) for name in robot.poses),
+                apart=doc.packed(apart(first, how)),
+                others=tuple(doc.packed(apart(name, how)) for name in motion.measured if name != first),
             )
             for how in runs
         ),
-        robot=_drawn(robot),
+        robot=robot_drawing(robot),
     )
-
-
-def _drawn(robot: DrawnRobot) -> doc.RobotDrawing:
-    """A robot for a page, its joints numbered as their poses are."""
-    names = [robot.joint, *robot.poses]
-    return doc.RobotDrawing(
-        bodies=tuple(_body(one, names) for one in robot.bodies),
-        ratio=robot.ratio,
-        start=float(robot.times[0]),
-        step=float(robot.times[1] - robot.times[0]),
-        poses=tuple(_packed(values) for values in robot.poses.values()),
-    )
-
-
-def _body(body: DrawnBody, names: Sequence[str]) -> doc.Body:
-    joints = (
-        doc.Pivot(
-            of=names.index(one.name) if one.name in names else None,
-            axis=rounded(one.axis),
-            anchor=rounded(one.anchor),
-            slides=one.slides,
-            zero=one.zero,
-        )
-        for one in body.joints
-    )
-    shapes = (
-        doc.Triangles(colour=rounded(one.colour), vertices=_packed(one.vertices), faces=_packed(one.faces, "<u2"))
-        for one in body.shapes
-    )
-    place, turn = rounded(body.place), rounded(body.turn)
-    return doc.Body(parent=body.parent, place=place, turn=turn, joints=tuple(joints), shapes=tuple(shapes))
-
-
-def rounded(values: Iterable[float]) -> tuple[float, ...]:
-    """As a page has them: to a hundredth of a millimetre."""
-    return tuple(round(float(value), 6) for value in values)
-
-
-def _packed(values: NDArray[np.generic], kind: str = "<f4") -> str:
-    return base64.b64encode(values.astype(kind).tobytes()).decode("ascii")

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -14,7 +12,7 @@ from bench.effects.acting import AXIS, MOTOR
 from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.mjcf_file import read_spec
 from bench.rig.rig import Load
-from bench.view.side_by_side import SideBySide
+from bench.view.side_by_side import RobotAlong, SideBySide
 
 #: Names of the ghost's parts begin with it.
 GHOST = "ghost "
@@ -74,18 +72,10 @@ class Scene:
         return cls(model, mujoco.MjData(model), axis, ghost, middle, scale)
 
     @classmethod
-    def of_robot(cls, source: Path, joint: str, ratio: float, times: Array, poses: Mapping[str, Array]) -> Scene:
-        """The robot of an MJCF with its meshes, and the measured one as its ghost.
-
-        Args:
-            source: the MJCF.
-            joint: that the motion is of, whose motor turns `ratio` times as far.
-            ratio: of its gear.
-            times: when the robot was somewhere - s - (n,).
-            poses: where its joints were then, by name - rad (m) - (n,).
-        """
-        (spec, _), (other, _) = read_spec(str(source)), read_spec(str(source))
-        carried = other.joint(joint).parent.find_all("geom")  # the rest stands where it does in both
+    def of_robot(cls, robot: RobotAlong) -> Scene:
+        """A robot with its meshes, and the measured one as its ghost."""
+        (spec, _), (other, _) = read_spec(str(robot.mjcf)), read_spec(str(robot.mjcf))
+        carried = other.joint(robot.joint).parent.find_all("geom")  # the rest stands where it does in both
         for geom in other.geoms:
             geom.material, geom.rgba = "", COLOUR if geom in carried else UNSEEN
         spec.attach(other, prefix=GHOST, frame=spec.worldbody.add_frame())
@@ -95,12 +85,12 @@ class Scene:
             sky = spec.add_texture(name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=64, height=64)
             sky.builtin, sky.rgb1, sky.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT, SKY, SKY
         model = spec.compile()
-        others = np.tile(model.qpos0, (times.size, 1))
-        for name, values in poses.items():
+        others = np.tile(model.qpos0, (robot.times.size, 1))
+        for name, values in robot.poses.items():
             for each in (name, GHOST + name):
                 others[:, model.joint(each).qposadr[0]] = values
-        axis, ghost = (int(model.joint(each).qposadr[0]) for each in (joint, GHOST + joint))
-        return cls(model, mujoco.MjData(model), axis, ghost, 0.0, 1.0 / ratio, FREE, times, others)
+        axis, ghost = (int(model.joint(each).qposadr[0]) for each in (robot.joint, GHOST + robot.joint))
+        return cls(model, mujoco.MjData(model), axis, ghost, 0.0, 1.0 / robot.ratio, FREE, robot.times, others)
 
     def placed(self, position: float, ghost: float, time: float = 0.0) -> mujoco.MjData:
         """Everything where it is with model and ghost at positions - rad (m); one that is nan stays where it was.

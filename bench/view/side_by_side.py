@@ -66,6 +66,25 @@ class SideBySide:
         return replace(self, others=others, **{name: getattr(self, name)[kept] for name in signals})
 
 
+@dataclass(frozen=True)
+class RobotAlong:
+    """A robot along a log.
+
+    Attributes:
+        mjcf: of the robot.
+        joint: that the motion is of, whose motor turns `ratio` times as far.
+        ratio: of its gear.
+        times: when its joints were somewhere - s (n,).
+        poses: where they were then, by name - rad (m) - (n,).
+    """
+
+    mjcf: Path
+    joint: str
+    ratio: float
+    times: Array
+    poses: Mapping[str, Array]
+
+
 def along_recording(model: str | Path, replayed: Replay) -> SideBySide:
     """A model that was replayed along a recording, beside the measured axis.
 

@@ -1,13 +1,15 @@
 """A robot in a page: its triangles are few and lie on its meshes, and its links stand where their joints say."""
 
+import base64
 import struct
 
 import numpy as np
 import pytest
 
 from bench.report.publish import write_html
+from bench.report.robot_drawing import BUDGET, robot_drawing, simplified
 from bench.report.simulation import view
-from bench.view.drawn import BUDGET, DrawnRobot, simplified
+from bench.view.side_by_side import RobotAlong
 from tests.export.two_links import L1, MJCF
 from tests.view.motions import AHEAD, SPEED, shown
 
@@ -31,6 +33,11 @@ def write_stl(path, triangles):
     record = np.zeros(len(triangles), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("of", "<u2")])
     record["corners"] = triangles
     path.write_bytes(bytes(80) + struct.pack("<I", len(triangles)) + record.tobytes())
+
+
+def unpacked(text, kind):
+    """Rows of three numbers that a page holds."""
+    return np.frombuffer(base64.b64decode(text), kind).reshape(-1, 3)
 
 
 @pytest.fixture
@@ -64,17 +71,20 @@ def test_shapes_of_mujoco_have_their_size(tmp_path):
     joint = '<body><joint name="j"/><geom type="box" size=".1 .1 .1"/></body><geom type="plane" size="1 1 1"/>'
     (tmp_path / "all.xml").write_text(f"<mujoco><worldbody>{geoms}{joint}</worldbody></mujoco>")
     still = np.zeros(2)
-    bodies = DrawnRobot.of(tmp_path / "all.xml", "j", 1.0, np.arange(2.0), {"j": still}).bodies
+    bodies = robot_drawing(RobotAlong(tmp_path / "all.xml", "j", 1.0, np.arange(2.0), {"j": still})).bodies
     assert bodies[0].shapes == ()  # the ground has no end
     for body, kind in zip(bodies[1:], sizes, strict=False):
         (one,) = body.shapes
-        np.testing.assert_allclose(np.abs(one.vertices).max(axis=0), reach.get(kind, (0.1, 0.2, 0.3)), rtol=0.1)
+        np.testing.assert_allclose(
+            np.abs(unpacked(one.vertices, "<f4")).max(axis=0), reach.get(kind, (0.1, 0.2, 0.3)), rtol=0.1
+        )
 
 
 def test_a_robot_of_meshes_stays_small(arm):
-    drawn = DrawnRobot.of(arm, "elbow", 1.0, np.arange(9.0), {"shoulder": np.zeros(9), "elbow": np.zeros(9)})
-    assert sum(len(one.faces) for body in drawn.bodies for one in body.shapes) <= BUDGET
-    page = view(shown(), arm, "run", robot=drawn).sections[0].blocks[0]
+    robot = RobotAlong(arm, "elbow", 1.0, np.arange(9.0), {"shoulder": np.zeros(9), "elbow": np.zeros(9)})
+    page = view(shown(), arm, "run", robot=robot).sections[0].blocks[0]
+    shapes = [one for body in page.robot.bodies for one in body.shapes]
+    assert 100 < sum(len(unpacked(one.faces, "<u2")) for one in shapes) <= BUDGET
     assert 10_000 < len(page.robot.model_dump_json()) < 100_000
 
 
@@ -98,7 +108,7 @@ def test_its_links_stand_in_the_page_where_the_joints_say(arm, opened, tmp_path)
     poses = {"shoulder": 0.3 + 0.4 * times, "elbow": 0.0 * times}
     one = shown()
     moved = type(one)(**{**vars(one), "others": {"let free every 1 s": one.position + 0.2}})
-    robot = DrawnRobot.of(arm, "elbow", RATIO, times, poses)
+    robot = RobotAlong(arm, "elbow", RATIO, times, poses)
     write_html(tmp_path / "view.html", view(moved, tmp_path / "model.toml", "run", robot=robot))
     page = opened(tmp_path / "view.html", bypass_csp=True)
     page.get_by_label("seen from").fill("0")

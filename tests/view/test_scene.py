@@ -5,6 +5,7 @@ import pytest
 
 from bench.axis_kind import LINEAR
 from bench.view.scene import TRAVEL, Scene
+from bench.view.side_by_side import RobotAlong
 from tests.export.two_links import L1, MJCF
 from tests.view.motions import shown
 
@@ -46,7 +47,7 @@ def test_a_robot_moves_as_its_log_and_its_joint_as_model_and_ghost(tmp_path):
     (tmp_path / "arm.xml").write_text(text)
     times = np.array([1.0, 2.0])
     poses = {"shoulder": np.array([0.2, 0.6]), "elbow": np.array([9.0, 9.0])}
-    scene = Scene.of_robot(tmp_path / "arm.xml", "elbow", 2.0, times, poses)
+    scene = Scene.of_robot(RobotAlong(tmp_path / "arm.xml", "elbow", 2.0, times, poses))
     scene.placed(-0.8, 1.4, 1.25)
     for name, elbow in (("tip", -0.4), ("ghost tip", 0.7)):
         along = np.array([0.3, 0.3 + elbow])  # shoulder between 0.2 and 0.6, about +y

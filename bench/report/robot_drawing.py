@@ -6,9 +6,7 @@ approximations for rendering complex scenes", 1993), as coarse as the triangles 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -16,6 +14,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.plant.mjcf_file import read_spec
+from bench.report import document as doc
+from bench.view.side_by_side import RobotAlong
 
 #: Triangles of a whole robot, 12 bytes each with its vertices: some 50 kB of a page.
 BUDGET = 3000
@@ -38,98 +38,64 @@ BOX = np.array(
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Surface:
-    """Triangles of one colour: vertices in the body's frame - m (v, 3) - and faces (t, 3); red, green, blue, 0 to 1."""
-
-    vertices: Array
-    faces: Faces
-    colour: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class DrawnJoint:
-    """A joint of a body: its name, its axis and a point of that in the body's frame - m -, and its zero - rad (m)."""
-
-    name: str
-    axis: Array
-    anchor: Array
-    slides: bool
-    zero: float
+def robot_drawing(robot: RobotAlong) -> doc.RobotDrawing:
+    """The robot as a page has it, its joints numbered as their poses are."""
+    model = read_spec(str(robot.mjcf))[0].compile()
+    even = np.linspace(robot.times[0], robot.times[-1], min(robot.times.size, INSTANTS))
+    beside = {name: values for name, values in robot.poses.items() if name != robot.joint}
+    return doc.RobotDrawing(
+        bodies=_bodies(model, [robot.joint, *beside]),
+        ratio=robot.ratio,
+        start=float(even[0]),
+        step=float(even[1] - even[0]),
+        poses=tuple(doc.packed(np.interp(even, robot.times, values)) for values in beside.values()),
+    )
 
 
-@dataclass(frozen=True)
-class DrawnBody:
-    """A body: that which carries it by its number, its frame in that one's - m, quaternion -, joints and shapes."""
-
-    parent: int
-    place: Array
-    turn: Array
-    joints: tuple[DrawnJoint, ...]
-    shapes: tuple[Surface, ...]
-
-
-@dataclass(frozen=True)
-class DrawnRobot:
-    """A robot along a log.
-
-    Attributes:
-        bodies: each after the one that carries it; the first stands.
-        joint: that the motion is of, whose motor turns `ratio` times as far.
-        ratio: of its gear.
-        times: when the other joints were somewhere, evenly - s (n,).
-        poses: where they were then, by name - rad (m) - (n,).
-    """
-
-    bodies: tuple[DrawnBody, ...]
-    joint: str
-    ratio: float
-    times: Array
-    poses: Mapping[str, Array]
-
-    @classmethod
-    def of(cls, source: Path, joint: str, ratio: float, times: Array, poses: Mapping[str, Array]) -> DrawnRobot:
-        """From an MJCF, a joint of it, its gear, and where the robot's joints were at times - s, rad (m) (n,)."""
-        model = read_spec(str(source))[0].compile()
-        even = np.linspace(times[0], times[-1], min(times.size, INSTANTS))
-        found = {name: np.interp(even, times, values) for name, values in poses.items() if name != joint}
-        return cls(_bodies(model), joint, ratio, even, found)
-
-
-def _bodies(model: mujoco.MjModel) -> tuple[DrawnBody, ...]:
+def _bodies(model: mujoco.MjModel, names: Sequence[str]) -> tuple[doc.Body, ...]:
+    """All bodies, whose joints have the numbers of these names."""
     shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN and _colour(model, g)[3] > 0.0]
     solid = {g: found for g in shown if (found := _solid(model, g)) is not None}
     budget = _shared({g: len(faces) for g, (_, faces) in solid.items()})
-    shapes: list[list[Surface]] = [[] for _ in range(model.nbody)]
+    shapes: list[list[doc.Triangles]] = [[] for _ in range(model.nbody)]
     for g, (vertices, faces) in solid.items():
         turn = np.empty(9)
         mujoco.mju_quat2Mat(turn, model.geom_quat[g])
         vertices, faces = simplified(vertices, faces, budget[g])
-        red, green, blue, _ = (float(part) for part in _colour(model, g))
-        placed = vertices @ turn.reshape(3, 3).T + model.geom_pos[g]
-        shapes[int(model.geom_bodyid[g])].append(Surface(placed, faces, (red, green, blue)))
+        placed = doc.packed(vertices @ turn.reshape(3, 3).T + model.geom_pos[g])
+        colour = _rounded(_colour(model, g)[:3])
+        shapes[model.geom_bodyid[g]].append(
+            doc.Triangles(colour=colour, vertices=placed, faces=doc.packed(faces, "<u2"))
+        )
     return tuple(
-        DrawnBody(
-            int(model.body_parentid[b]),
-            model.body_pos[b].copy(),
-            model.body_quat[b].copy(),
-            tuple(_joints(model, b)),
-            tuple(shapes[b]),
+        doc.Body(
+            parent=int(model.body_parentid[b]),
+            place=_rounded(model.body_pos[b]),
+            turn=_rounded(model.body_quat[b]),
+            joints=tuple(_joints(model, b, names)),
+            shapes=tuple(shapes[b]),
         )
         for b in range(model.nbody)
     )
 
 
-def _joints(model: mujoco.MjModel, body: int) -> list[DrawnJoint]:
+def _joints(model: mujoco.MjModel, body: int, names: Sequence[str]) -> Iterator[doc.Pivot]:
     first = int(model.body_jntadr[body])
-    found = []
     for k in range(first, first + int(model.body_jntnum[body])):
-        slides = model.jnt_type[k] == int(mujoco.mjtJoint.mjJNT_SLIDE)
+        slides, name = model.jnt_type[k] == int(mujoco.mjtJoint.mjJNT_SLIDE), model.joint(k).name
         if slides or model.jnt_type[k] == int(mujoco.mjtJoint.mjJNT_HINGE):
-            zero = float(model.qpos0[model.jnt_qposadr[k]])
-            axis, anchor = model.jnt_axis[k].copy(), model.jnt_pos[k].copy()
-            found.append(DrawnJoint(model.joint(k).name, axis, anchor, slides, zero))
-    return found
+            yield doc.Pivot(
+                of=names.index(name) if name in names else None,
+                axis=_rounded(model.jnt_axis[k]),
+                anchor=_rounded(model.jnt_pos[k]),
+                slides=slides,
+                zero=float(model.qpos0[model.jnt_qposadr[k]]),
+            )
+
+
+def _rounded(values: Iterable[float]) -> tuple[float, ...]:
+    """As a page has them: to a hundredth of a millimetre."""
+    return tuple(round(float(value), 6) for value in values)
 
 
 def _colour(model: mujoco.MjModel, geom: int) -> Array:
