@@ -7,10 +7,9 @@ import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -39,12 +38,8 @@ if TYPE_CHECKING:
 STATUS = {"same": 0, "changed": 3, "undecided": 1}
 
 
-class Format(StrEnum):
-    """How results reach whoever reads them."""
-
-    TEXT = "text"
-    GITHUB = "github"
-    GITLAB = "gitlab"
+#: How results reach whoever reads them.
+Format = Literal["text", "github", "gitlab"]
 
 
 def check(
@@ -65,7 +60,7 @@ def check(
     report: ReportOption = None,
     form: Annotated[
         Format, typer.Option("--format", help="github: annotations. gitlab: a code quality report on standard output.")
-    ] = Format.TEXT,
+    ] = "text",
     false_alarm_rate: Annotated[
         float, typer.Option("--false-alarm-rate", help="Of all comparisons together.", min=1e-6, max=0.5)
     ] = 0.01,
@@ -120,8 +115,7 @@ class Asked:
         of = self.subject
         with progress(f"checking {in_a_row(self.traces)}") as done:
             observed = observe([of.read(trace) for trace in self.traces], of.rig, names, done)
-        options = {"names": names, "axis": self.axis_name}
-        options |= {"joint": self.joints[0], "at": self.at} if of.robot else {}
+        options = {"names": names, "axis": self.axis_name, **of.options}
         basis = provenance(self.rig, self.traces, options, None, self.mjcf)
         return replace(observed, state=replace(observed.state, provenance=basis))
 
@@ -204,12 +198,12 @@ def _write(
         write_text(xml, junit(found, says, title))
     common.write_json(json, lambda: check_json(checked))
     common.write_page(report, document)
-    if form is Format.GITLAB:
+    if form == "gitlab":
         typer.echo(gitlab_report(found, baseline))
     elif json != STDOUT:
         with _no_commands(form):
             common.tell(document, files)
-    if form is Format.GITHUB:
+    if form == "github":
         for line in github_lines(found, baseline):
             typer.echo(line)
         _append_summary(github_summary(found, says, title))
@@ -218,7 +212,7 @@ def _write(
 @contextmanager
 def _no_commands(form: Format) -> Iterator[None]:
     """Within the block GitHub takes no line for a workflow command, whatever a file is named."""
-    if form is not Format.GITHUB:
+    if form != "github":
         yield
         return
     token = secrets.token_hex(16)

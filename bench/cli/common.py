@@ -10,24 +10,23 @@ import inspect
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from enum import StrEnum
+from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 import bench
 from bench.bounds import bounded
 from bench.errors import InputError
-from bench.files import keeping, require_writable, write_text
+from bench.files import held, keeping, require_writable, write_text
 from bench.names import plain
 from bench.plant.profile_names import NAMES
 
 if TYPE_CHECKING:
-    from bench.arrays import Array
     from bench.report.document import Document, Picture
+    from bench.view.side_by_side import RobotAlong
 
 #: Parameters of commands that name what is written, files or folders; every other path is read.
 WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "video"})
@@ -53,13 +52,17 @@ def _shipped_rigs() -> list[str]:
     return [*shipped()]
 
 
-def profiles() -> list[str]:
-    """Motions, for a shell to complete."""
-    return [*NAMES]
+def profile_option(about: str) -> Any:  # noqa: ANN401 - typer's
+    """`--profile`, which a shell completes."""
+    return typer.Option("--profile", help=f"{about} {', '.join(NAMES)}.", autocompletion=lambda: [*NAMES])
 
 
-def effects() -> list[str]:
-    """Effects, for a shell to complete."""
+def effect_option(about: str) -> Any:  # noqa: ANN401 - typer's
+    """`--effect`, which a shell completes."""
+    return typer.Option("--effect", help=f"{about} Repeatable.", autocompletion=_effects)
+
+
+def _effects() -> list[str]:
     from bench.effects.catalogue import catalogue
 
     return [*catalogue()]
@@ -87,30 +90,23 @@ RigOption = Annotated[Path, typer.Option("--rig", help=RIG_HELP, **_RIG)]
 OptionalRigOption = Annotated[Path | None, typer.Option("--rig", help=RIG_HELP, **_RIG)]
 RigArgument = Annotated[Path, typer.Argument(help="Rig file with [drive] and [simulation], or a shipped rig.", **_RIG)]
 AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
-
-
-class Figures(StrEnum):
-    """Formats of figures."""
-
-    PNG = "png"
-    PDF = "pdf"
-    SVG = "svg"
-
-    @property
-    def ending(self) -> str:
-        """Of a file."""
-        return f".{self.value}"
-
-
-FiguresOption = Annotated[Figures, typer.Option("--figures", help="Format of the figures that --out writes.")]
+FiguresOption = Annotated[
+    Literal["png", "pdf", "svg"], typer.Option("--figures", help="Format of the figures that --out writes.")
+]
 ReportOption = Annotated[Path | None, typer.Option("--report", help="Page to write: .html, all in one file.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
-DebugOption = Annotated[bool, typer.Option("--debug", help="Print the whole traceback of a failure.")]
-SizeOption = Annotated[
-    str | None, typer.Option("--max-size", help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")
-]
 #: Standard output, as `--json` names it.
 STDOUT = Path("-")
+
+
+def _everywhere(
+    *,
+    max_size: Annotated[
+        str | None, typer.Option("--max-size", help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")
+    ] = None,
+    debug: Annotated[bool, typer.Option("--debug", help="Print the whole traceback of a failure.")] = False,
+) -> None:
+    """What every command takes."""
 
 
 def guarded(verb: Callable[..., None]) -> Callable[..., None]:
@@ -119,12 +115,8 @@ def guarded(verb: Callable[..., None]) -> Callable[..., None]:
     Raises:
         InputError: before any work, where an output is an input or `--json` names a folder that is not there.
     """
-    signature, hints = inspect.signature(verb), get_type_hints(verb, include_extras=True)
-    own = [p.replace(annotation=hints[p.name], kind=p.KEYWORD_ONLY) for p in signature.parameters.values()]
-    added = {"max_size": (SizeOption, None), "debug": (DebugOption, False)}
-    more = [
-        inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=d, annotation=a) for n, (a, d) in added.items()
-    ]
+    signatures = (inspect.signature(each, eval_str=True) for each in (verb, _everywhere))
+    taken = [one.replace(kind=one.KEYWORD_ONLY) for each in signatures for one in each.parameters.values()]
 
     @functools.wraps(verb)
     def command(max_size: str | None, debug: bool, **given: object) -> None:  # `debug` is `bench.cli.main`'s
@@ -132,8 +124,8 @@ def guarded(verb: Callable[..., None]) -> Callable[..., None]:
             _require_places(given)
             verb(**given)
 
-    vars(command)["__signature__"] = inspect.Signature([*own, *more])
-    command.__annotations__ = {p.name: p.annotation for p in (*own, *more)}
+    vars(command)["__signature__"] = inspect.Signature(taken)
+    command.__annotations__ = {one.name: one.annotation for one in taken}
     return command
 
 
@@ -206,6 +198,20 @@ def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
         raise
 
 
+def deliver(
+    document: Document, text: Callable[[], str], json: Path | None, out: Path | None, ending: str = ".png"
+) -> None:
+    """Write a result into a folder and as JSON, where they are asked for, in one; show it, and list its files."""
+    files: list[Path] = []
+    with nullcontext() if out is None else held(out):
+        if out is not None:
+            from bench.report.publish import write_document  # jinja2 and matplotlib: 0.5 s
+
+            files = write_document(out, document, ending)
+        write_json(json, text)
+    tell(document, files, json)
+
+
 def tell(document: Document, files: Iterable[Path | None] = (), json: Path | None = None) -> None:
     """Show a result and list the files that were written of it, unless standard output is its `json`; then warn."""
     if json != STDOUT:
@@ -252,25 +258,21 @@ def warn(warnings: Iterable[str]) -> None:
 
 @dataclass(frozen=True)
 class Subject:
-    """What a recording is of: an axis or a robot's joint, and how its recordings are read whole.
+    """What a recording is of: an axis or a robot's joint.
 
-    `poses` tells when a log of a robot has its joints where, by name; `joint` is the one that it is of.
+    Attributes:
+        rig: of it.
+        read: how its recordings are read whole.
+        joint: the robot's; None of an axis.
+        along: the robot along a log; None of an axis.
+        options: of the command that say which joint it is; {} of an axis.
     """
 
     rig: bench.Rig
     read: Callable[[Path], bench.Trace]
-    poses: Callable[[Path], tuple[Array, dict[str, Array]]] | None = None
     joint: str | None = None
-
-    @property
-    def robot(self) -> bool:
-        """Whether it is a robot's joint."""
-        return self.poses is not None
-
-    @property
-    def whole(self) -> Callable[[Path], bench.Trace] | None:
-        """How a recording has to be read at once, beside its robot; None where parts do."""
-        return self.read if self.robot else None
+    along: Callable[[Path], RobotAlong] | None = None
+    options: dict[str, object] = field(default_factory=dict)
 
 
 def subject(
@@ -292,7 +294,7 @@ def subject(
     Raises:
         InputError: neither is given, options that do not go together, or a file that cannot be read.
     """
-    joint = one_joint(joints)
+    joint = _one_joint(joints)
     if mjcf is None:
         if joint is not None or at:
             raise InputError("--joint" if joint is not None else "--at", "found without --mjcf", "allowed: with --mjcf")
@@ -313,14 +315,17 @@ def subject(
         warned.update(trace.notes)
         return trace
 
-    return Subject(within, read, lambda path: poses_along(path, within, robot, stands), joint)
+    def along(path: Path) -> RobotAlong:
+        from bench.view.side_by_side import RobotAlong
+
+        ratio = within.load.gear_ratio if within.load is not None else 1.0
+        return RobotAlong(mjcf, robot.joint, ratio, *poses_along(path, within, robot, stands))
+
+    return Subject(within, read, joint, along, {"joint": joint, "at": at or []})
 
 
-def one_joint(joints: Sequence[str] | None) -> str | None:
-    """The joint that a command for one is given; None without.
-
-    InputError where several are given, which `bench robot` takes.
-    """
+def _one_joint(joints: Sequence[str] | None) -> str | None:
+    """The joint that a command for one is given; None without. InputError where several are, as `bench robot` takes."""
     named = [*dict.fromkeys(joints or [])]
     if len(named) > 1:
         every = " ".join(f"--joint {name}" for name in named)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -17,7 +15,6 @@ from bench.cli.common import (
     AxisOption,
     BesideRigOption,
     DraftOption,
-    Figures,
     FiguresOption,
     JointOption,
     JsonOption,
@@ -26,23 +23,15 @@ from bench.cli.common import (
     TracesArgument,
 )
 from bench.errors import InputError, UndeterminedError
-from bench.files import held
-from bench.names import in_a_row
+from bench.names import in_a_row, readable
 
 if TYPE_CHECKING:
     from bench.cli.common import Subject
     from bench.fit.refine import Refinement
+    from bench.plant.robot import AddedBody
     from bench.report.document import Section
 
-if TYPE_CHECKING:
-    from bench.plant.robot import AddedBody
-
-
-class Estimator(StrEnum):
-    """Ways to identify."""
-
-    REGRESSION = "regression"
-    LAB = "lab"
+Estimator = Literal["regression", "lab"]
 
 
 def identify(
@@ -50,7 +39,7 @@ def identify(
     rig: BesideRigOption = None,
     json: JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
-    estimator: Annotated[Estimator, typer.Option("--estimator", help="lab: as in courses.")] = Estimator.REGRESSION,
+    estimator: Annotated[Estimator, typer.Option("--estimator", help="lab: as in courses.")] = "regression",
     refine: Annotated[bool, typer.Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
     offset: Annotated[bool, typer.Option("--offset", help="Fit a constant torque (force) too.")] = False,
     cutoff: Annotated[
@@ -60,7 +49,7 @@ def identify(
     mjcf: MjcfOption = None,
     joint: JointOption = None,
     at: AtOption = None,
-    figures: FiguresOption = Figures.PNG,
+    figures: FiguresOption = "png",
     draft: DraftOption = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
@@ -71,8 +60,7 @@ def identify(
     of = common.subject(rig, axis_name, mjcf, joint, at, traces[0], draft)
     axis = of.rig.model_copy(update={"offset": of.rig.offset or offset})
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
-    options = {"estimator": estimator.value, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
-    options |= {"joint": common.one_joint(joint), "at": at or []} if of.robot else {}
+    options = {"estimator": estimator, "refine": refine, "offset": axis.offset, "cutoff": cutoff, **of.options}
     try:
         with common.refusal_as_json(json, SCHEMA):
             estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
@@ -82,21 +70,14 @@ def identify(
         common.warn(known.warnings)
         raise
     basis = provenance(rig, traces, options, None, mjcf)
-    with nullcontext() if out is None else held(out):
-        motions = [] if out is None else moved(traces, axis, estimate, of.whole)
-        found = identification(f"{axis.name}: {in_a_row(traces)}", axis.axis_kind, estimate, refinement, motions, basis)
-        files = []
-        if out is not None:
-            from bench.report.publish import write_document  # jinja2 and matplotlib: 0.5 s
-
-            files = write_document(out, found, figures.ending)
-        common.write_json(json, lambda: identification_json(estimate, refinement, None, basis))
-    common.tell(found, files, json)
+    motions = [] if out is None else moved(traces, axis, estimate, None if of.joint is None else of.read)
+    found = identification(f"{axis.name}: {in_a_row(traces)}", axis.axis_kind, estimate, refinement, motions, basis)
+    common.deliver(found, lambda: identification_json(estimate, refinement, None, basis), json, out, f".{figures}")
 
 
 def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, tuned: bool) -> None:
     """InputError where options contradict each other, or the number of recordings."""
-    lab = estimator is Estimator.LAB
+    lab = estimator == "lab"
     if lab and (refine or tuned):
         raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
     if len(traces) > 1 and (refine or lab):
@@ -111,7 +92,7 @@ def _estimate(
     from bench.gate.gate import passed
 
     rig, trace = of.rig, traces[0]
-    if estimator is Estimator.LAB:
+    if estimator == "lab":
         from bench.fit.lab import identify_as_in_the_lab
 
         gated = passed(of.read(trace), rig)
@@ -121,7 +102,7 @@ def _estimate(
 
     with progress(f"identifying {', '.join(each.name for each in traces)}") as done:
         if not refine:
-            parts = [of.read(each) if of.robot else stream(each, rig.trace) for each in traces]
+            parts = [stream(each, rig.trace) if of.joint is None else of.read(each) for each in traces]
             return bench.identify(parts, rig, cutoff), None
         from bench.fit.refine import refine as polish  # MuJoCo: 0.1 s
 
@@ -142,12 +123,12 @@ def diagnose(
     mjcf: MjcfOption = None,
     joint: JointOption = None,
     at: AtOption = None,
-    figures: FiguresOption = Figures.PNG,
+    figures: FiguresOption = "png",
     draft: DraftOption = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.effects.present import named
-    from bench.report.diagnosis import SCHEMA, diagnosis, diagnosis_json, write_diagnosis
+    from bench.report.diagnosis import SCHEMA, diagnosis, diagnosis_json
     from bench.report.parts import provenance
     from bench.report.terminal import progress
 
@@ -159,15 +140,10 @@ def diagnose(
     with common.refusal_as_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
         recordings = [read(trace) for trace in traces]
         found = bench.diagnose(recordings, axis, other, excluded, done)
-    options = {"without": sorted(excluded)} | ({"joint": common.one_joint(joint), "at": at or []} if of.robot else {})
-    basis = provenance(rig, traces, options, holdout, mjcf)
-    title, files = f"{axis.name}: {names}", []
-    with nullcontext() if out is None else held(out):
-        if out is not None:
-            moving = _moving(found, of, traces[0], mjcf, recordings[0])
-            files = write_diagnosis(out, found, title, basis, figures.ending, moving)
-        common.write_json(json, lambda: diagnosis_json(found, basis))
-    common.tell(diagnosis(found, title, basis), files, json)
+    basis = provenance(rig, traces, {"without": sorted(excluded), **of.options}, holdout, mjcf)
+    moving = [] if out is None else _moving(found, of, traces[0], recordings[0])
+    document = diagnosis(found, f"{axis.name}: {names}", basis, moving)
+    common.deliver(document, lambda: diagnosis_json(found, basis), json, out, f".{figures}")
 
 
 def robot(
@@ -187,11 +163,10 @@ def robot(
 ) -> None:
     """Identify every joint of a robot from its logs, find what each is missing, and write its MJCF with all of it."""
     from bench.effects.present import named
-    from bench.files import held
     from bench.plant.robot import joint_units
     from bench.report.parts import provenance
     from bench.report.robot import robot as document_of
-    from bench.report.robot import robot_json, title_of, write_robot
+    from bench.report.robot import robot_json
     from bench.report.terminal import progress
 
     excluded = frozenset(named(name, "--without").name for name in without or [])
@@ -201,12 +176,9 @@ def robot(
         found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done)
     options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded)}
     basis = provenance(rig, logs, options, holdout, mjcf)
-    title, files = title_of(mjcf, logs), []
-    if found.answered:
-        with held(out):
-            files = write_robot(out, found, title, basis)
-    common.write_json(json, lambda: robot_json(found, basis))
-    common.tell(document_of(found, title, basis), files, json)
+    folder = out if found.answered else None
+    document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder)
+    common.deliver(document, lambda: robot_json(found, basis), json, folder)
     _require_answers(found)
 
 
@@ -237,12 +209,13 @@ def _require_answers(found: bench.IdentifiedRobot) -> None:
     raise UndeterminedError("any joint", reason, first.record)
 
 
-def _moving(found: bench.Diagnosis, of: Subject, log: Path, mjcf: Path | None, trace: bench.Trace) -> list[Section]:
+def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) -> list[Section]:
     """The robot whose joint was diagnosed, along the first log; none of an axis, nor of a model that does not move."""
-    if of.poses is None or mjcf is None or of.joint is None:
+    if of.along is None:
         return []
     from bench.joints.motion import joint_motion
     from bench.report.simulation import moving_section
 
-    motion = joint_motion(found, trace, of.rig, of.poses(log))
-    return [] if motion is None else [moving_section(mjcf, {of.joint: motion})]
+    robot = of.along(log)
+    motion = joint_motion(found, trace, of.rig, (robot.times, robot.poses))
+    return [] if motion is None else [moving_section(robot.mjcf, {robot.joint: motion})]

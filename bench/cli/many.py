@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -23,19 +24,9 @@ if TYPE_CHECKING:
 Effects = Annotated[
     str, typer.Option("--effects", help="Hidden in each run: a count as 0-3; or names, or all, each in turn.")
 ]
-Profile = Annotated[
-    Path,
-    typer.Option(
-        "--profile",
-        help=f"With --rig, its motion: a recording's file, or {', '.join(NAMES)}.",
-        autocompletion=common.profiles,
-    ),
-]
+Profile = Annotated[Path, common.profile_option("With --rig, its motion: a recording's file, or")]
 Into = Annotated[Path | None, typer.Option("--into", help="Instead: your recording, to put known effects into.")]
-EffectOption = Annotated[
-    list[str] | None,
-    typer.Option("--effect", help="With --into, instead of all. Repeatable.", autocompletion=common.effects),
-]
+EffectOption = Annotated[list[str] | None, common.effect_option("With --into, instead of all.")]
 Strength = Annotated[
     list[float] | None,
     typer.Option("--strength", help="With --into, over what it leaves; else the least named is sought. Repeatable."),
@@ -84,7 +75,7 @@ def validate(
     command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}{' --diagnose' * named}"
     command += "" if rig is None else f" --rig {rig} --profile {profile}"
     document = validation(found, basis, command, rig is not None)
-    written = [] if out is None else write_validation(out, found, basis, command, rig is not None)
+    written = [] if out is None else write_validation(out, found, document)
     common.write_json(json, lambda: validation_json(found, basis))
     common.tell(document, written, json)
 
@@ -102,7 +93,6 @@ def _into(
     """Known effects in one's own recording."""
     from bench.report.injection import injections, injections_json
     from bench.report.parts import provenance
-    from bench.report.publish import write_document
     from bench.report.terminal import progress
     from bench.validation.into import inject
 
@@ -115,10 +105,8 @@ def _into(
     with progress(f"putting effects into {into.name}") as done:
         found = inject(bench.read(into, known.trace), known, effects, strengths, seed, workers, done)
     basis = provenance(rig, [into], options)
-    text, document = injections_json(found, basis), injections(found, basis, readable(into.name))
-    written = [] if out is None else write_document(out, document, beside={"injections.json": text + "\n"})
-    common.write_json(json, lambda: text)
-    common.tell(document, written, json)
+    document = injections(found, basis, readable(into.name))
+    common.deliver(document, lambda: injections_json(found, basis), json, out)
 
 
 def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:
@@ -157,19 +145,9 @@ def fleet(
 
     limits = Limits(deadline, memory * 1024**3)
     basis = {"version": bench.__version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
+    publish = partial(write_fleet, out, provenance=basis)
     with progress(f"evaluating {manifest.name}") as done:
-        found = run_fleet(
-            manifest,
-            out,
-            diagnose,
-            retry,
-            limits,
-            workers,
-            scheduler,
-            done,
-            lambda found: write_fleet(out, found, basis),
-            storage or (),
-        )
+        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, publish, storage or ())
     common.write_json(json, lambda: fleet_json(found, basis))
     common.tell(fleet_document(found, basis), (out / TABLE, out / SUMMARY, out / FLEET), json)
     if json != STDOUT:

@@ -14,7 +14,7 @@ from bench.cli.common import AtOption, AxisOption, BesideRigOption, JointOption,
 from bench.errors import InputError, SimulationError
 from bench.files import held, write_text
 from bench.names import readable
-from bench.plant.profile_names import DEFAULT, NAMES
+from bench.plant.profile_names import DEFAULT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from bench.diagnosis.let_free import FreeRun
     from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
-    from bench.view.side_by_side import RobotAlong, SideBySide
+    from bench.view.side_by_side import SideBySide
 
 ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
 #: Name of a joint that no other is given for, as `load_models` has it.
@@ -48,7 +48,7 @@ def replay(
     of = common.subject(rig, axis_name, mjcf, joint, at, trace)
     replayed = bench.replay(model, of.read(trace), of.rig)
     if out.suffix.lower() == ".mcap":
-        _joint_states(replayed, out, common.one_joint(joint) or ALONE)
+        _joint_states(replayed, out, of.joint or ALONE)
     else:
         write_text(out, replayed.csv())
     if report is not None:
@@ -82,9 +82,7 @@ def view(
         "view.html"
     ),
     rig: BesideRigOption = None,
-    profile: Annotated[
-        str, typer.Option("--profile", help=f"Without a recording: {', '.join(NAMES)}.", autocompletion=common.profiles)
-    ] = DEFAULT,
+    profile: Annotated[str, common.profile_option("Without a recording:")] = DEFAULT,
     start: Annotated[float | None, typer.Option("--from", help="Show it from this time on, in s.")] = None,
     stop: Annotated[float | None, typer.Option("--to", help="Show it up to this time, in s.")] = None,
     video: Annotated[Path | None, typer.Option("--video", help="Video to write: .mp4, rendered by MuJoCo.")] = None,
@@ -106,7 +104,7 @@ def view(
     of = common.subject(rig, axis_name, mjcf, joint, at, trace)
     shown, free, warnings = _shown(model, trace, of, profile)
     shown = shown.between(start, stop)
-    robot = _robot(of, trace, mjcf, common.one_joint(joint))
+    robot = None if of.along is None or trace is None else of.along(trace)
     if video is not None:
         from bench.report.terminal import progress
         from bench.view.scene import Scene
@@ -121,16 +119,6 @@ def view(
     common.write_page(out, document_of(shown, model, along, warnings, free, robot))
     common.list_files([out, video])
     common.warn(warnings)
-
-
-def _robot(of: Subject, trace: Path | None, mjcf: Path | None, joint: str | None) -> RobotAlong | None:
-    """The robot along its log; None of an axis."""
-    from bench.view.side_by_side import RobotAlong
-
-    if of.poses is None or trace is None or mjcf is None or joint is None:
-        return None
-    ratio = of.rig.load.gear_ratio if of.rig.load is not None else 1.0
-    return RobotAlong(mjcf, joint, ratio, *of.poses(trace))
 
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:
@@ -226,9 +214,7 @@ def compensate(
     model: ModelArgument,
     rig: RigOption,
     out: Annotated[Path, typer.Option("--out", help="Folder for the tables.")],
-    profile: Annotated[
-        str, typer.Option("--profile", help=f"Motion to track: {', '.join(NAMES)}.", autocompletion=common.profiles)
-    ] = DEFAULT,
+    profile: Annotated[str, common.profile_option("Motion to track:")] = DEFAULT,
 ) -> None:
     """Make of a diagnosed model what its drive feeds forward; say how much better it tracks with it, by simulation."""
     import numpy as np

@@ -13,7 +13,7 @@ from bench.cli.common import ReportOption, RigArgument, RigOption
 from bench.errors import InputError
 from bench.files import held, read_text, write_text
 from bench.names import readable
-from bench.plant.profile_names import DEFAULT, NAMES
+from bench.plant.profile_names import DEFAULT
 
 #: Seed of the demo that is run unless another is given: one that hides what a person sees in the picture, too.
 SHOWN = 12
@@ -36,16 +36,9 @@ def demo(
 def simulate(
     rig: RigArgument,
     out: Annotated[Path, typer.Option("--out", help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
-    profile: Annotated[
-        str, typer.Option("--profile", help=f"Motion: {', '.join(NAMES)}.", autocompletion=common.profiles)
-    ] = DEFAULT,
+    profile: Annotated[str, common.profile_option("Motion:")] = DEFAULT,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the sensors' noise.", min=0)] = 0,
-    effect: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--effect", help="NAME:key=value,... to add; see bench effects. Repeatable.", autocompletion=common.effects
-        ),
-    ] = None,
+    effect: Annotated[list[str] | None, common.effect_option("NAME:key=value,... to add; see bench effects.")] = None,
     report: ReportOption = None,
 ) -> None:
     """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""

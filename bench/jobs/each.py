@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from queue import Empty, SimpleQueue
 from statistics import median
 from threading import Thread
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 from bench.jobs.process import LOOK, Failure, Limits, WorkerProcess
 
@@ -50,31 +51,36 @@ def each(
 
         yield from on_dask(work, numbered, limits, scheduler)
     else:
-        pool = _Workers(work, limits, numbered)
-        try:
-            yield from pool.outcomes(workers or os.cpu_count() or 1)
-        finally:
-            pool.end()
+        yield from _on_this_machine(work, numbered, limits, workers or os.cpu_count() or 1)
 
 
-class _Workers(Generic[Item, Result]):
-    """Threads, each with a worker process, that take from what is waiting."""
+def _on_this_machine(
+    work: Callable[[Item], Result], waiting: deque[tuple[int, Item]], limits: Limits, most: int
+) -> Iterator[tuple[int, Result | Failure]]:
+    """The same by threads, each with a worker process, that take from what is waiting; all end with the iterator."""
+    done: SimpleQueue[tuple[int, Result | Failure, float] | Exception] = SimpleQueue()
+    threads: dict[Thread, WorkerProcess[Item, Result]] = {}
+    seconds: deque[float] = deque(maxlen=RECENT)
 
-    def __init__(self, work: Callable[[Item], Result], limits: Limits, waiting: deque[tuple[int, Item]]) -> None:
-        self._work, self._limits, self._waiting = work, limits, waiting
-        self._done: SimpleQueue[tuple[int, Result | Failure, float] | Exception] = SimpleQueue()
-        self._threads: list[Thread] = []
-        self._processes: list[WorkerProcess[Item, Result]] = []
+    def serve(process: WorkerProcess[Item, Result]) -> None:
+        with process, suppress(IndexError):  # nothing waits any more
+            while True:
+                place, item = waiting.popleft()
+                try:
+                    done.put((place, process.do(item), process.took))
+                except Exception as error:  # of the item, which cannot be sent
+                    done.put(error)
 
-    def outcomes(self, most: int) -> Iterator[tuple[int, Result | Failure]]:
-        """As `each` has them; a process more is started where what waits takes longer than its start."""
-        seconds: deque[float] = deque(maxlen=RECENT)
-        left = len(self._waiting)
+    left = len(waiting)
+    try:
         while left:
-            while self._waiting and len(self._threads) < most and self._worth_one_more(seconds):
-                self._start()
+            while waiting and len(threads) < most and _pays(len(waiting), seconds, len(threads)):
+                process = WorkerProcess(work, limits)
+                thread = Thread(target=serve, args=(process,), daemon=True)
+                threads[thread] = process
+                thread.start()
             try:
-                outcome = self._done.get(timeout=STARTS)
+                outcome = done.get(timeout=STARTS)
             except Empty:  # a piece takes longer than a start
                 seconds.append(STARTS)
                 continue
@@ -84,33 +90,14 @@ class _Workers(Generic[Item, Result]):
             seconds.append(took)
             left -= 1
             yield place, result
-
-    def _worth_one_more(self, seconds: Sequence[float]) -> bool:
-        """Whether one worker more saves more time than it takes to start, judged by the last pieces."""
-        workers = len(self._threads)
-        return not workers or (bool(seconds) and len(self._waiting) * median(seconds) / workers > STARTS)
-
-    def _start(self) -> None:
-        self._processes.append(WorkerProcess(self._work, self._limits))
-        self._threads.append(Thread(target=self._serve, args=(self._processes[-1],), daemon=True))
-        self._threads[-1].start()
-
-    def _serve(self, process: WorkerProcess[Item, Result]) -> None:
-        with process:
-            while self._waiting:
-                try:
-                    place, item = self._waiting.popleft()
-                except IndexError:  # another was faster
-                    return
-                try:
-                    self._done.put((place, process.do(item), process.took))
-                except Exception as error:  # of the item, which cannot be sent
-                    self._done.put(error)
-
-    def end(self) -> None:
-        """Stop what is still done, and end all processes."""
-        self._waiting.clear()
-        for process, thread in zip(self._processes, self._threads, strict=True):
+    finally:
+        waiting.clear()
+        for thread, process in threads.items():
             while thread.is_alive():  # it may be about to start its process
                 process.stop()
                 thread.join(LOOK)
+
+
+def _pays(waiting: int, seconds: Sequence[float], workers: int) -> bool:
+    """Whether one worker more saves more time than it takes to start, judged by the last pieces."""
+    return not workers or (bool(seconds) and waiting * median(seconds) / workers > STARTS)

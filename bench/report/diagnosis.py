@@ -157,44 +157,20 @@ def _experiment_json(found: Diagnosis) -> dict[str, Any] | None:
     return {"profile": experiment.profile, "parameters": parameters, **why}
 
 
-def write_diagnosis(
-    out: Path,
-    found: Diagnosis,
-    title: str,
-    provenance: Mapping[str, Any] | None = None,
-    ending: str = ".png",
-    moving: Sequence[doc.Section] = (),
-) -> list[Path]:
-    """Write the page, `diagnosis.json`, two pictures, `model.toml` and, where MuJoCo has all of it, `model.xml`.
-
-    Args:
-        out: folder, made if it is not there.
-        found, title: the diagnosis, and its rig and recordings.
-        provenance: of the files it came from.
-        ending: of the pictures' files, one of `bench.report.figures.FORMATS`.
-        moving: of a robot's joint, the robot in motion.
-
-    Returns:
-        Paths written.
-    """
-    beside, experiment = {}, found.next_experiment
-    if experiment is not None:
-        kind = _kind(found)
-        beside["next_experiment.csv"] = experiment.motion.csv(PERIOD, (kind.length_unit, 1.0), (kind.speed_unit, 1.0))
-    document = diagnosis(found, title, provenance, _files(found, provenance), moving)
-    return write_document(out, document, ending, beside)
+def write_diagnosis(out: Path, found: Diagnosis, title: str) -> list[Path]:
+    """Write the document of a diagnosis into a folder, which is made if it is not there; the paths written."""
+    return write_document(out, diagnosis(found, title))
 
 
 def diagnosis(
-    found: Diagnosis,
-    title: str,
-    provenance: Mapping[str, Any] | None = None,
-    files: Sequence[doc.File] = (),
-    moving: Sequence[doc.Section] = (),
+    found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, moving: Sequence[doc.Section] = ()
 ) -> doc.Document:
-    """The document of a diagnosis of what `title` names, with files to take along: the model, and all numbers.
+    """The document of a diagnosis, with `diagnosis.json`, `model.toml` and, where MuJoCo has all of it, `model.xml`.
 
-    `moving` shows a robot's joint in motion.
+    Args:
+        found, title: the diagnosis, and its rig and recordings.
+        provenance: of the files it came from.
+        moving: of a robot's joint, the robot in motion.
     """
     tables = [parameters_table("The axis", found.parameters)]
     tables += [
@@ -210,9 +186,10 @@ def diagnosis(
         _suspects(found),
         _next(found),
         checks_section(found.checks, found.warnings),
-        doc.section("model", "The model", doc.Downloads(files=tuple(files))),
+        doc.section("model", "The model", doc.Downloads(files=tuple(_files(found, provenance)))),
     )
-    glance, verdict = at_a_glance(found), verdict_sentence(found)
+    glance, verdict, following = at_a_glance(found), verdict_sentence(found), found.next_experiment
+    units = [(unit, 1.0) for unit in (_kind(found).length_unit, found.velocity.unit)]
     return doc.Document(
         title=title,
         subject=f"Diagnosis of {title}",
@@ -227,6 +204,7 @@ def diagnosis(
             where_picture(found, title),
             doc.Picture(name="gaps", title=title, rows=(rms_gaps(found),)),
         ),
+        beside={} if following is None else {"next_experiment.csv": following.motion.csv(PERIOD, *units)},
         warnings=(*found.warnings, *warnings_of(found.checks)),
     )
 

@@ -491,6 +491,7 @@ class Document(Part):
         glance: what shows it best, drawn below the answers beside each other.
         origin: version and digests, so that anybody can tell what it rests on.
         pictures: figures for paper, which are no part of the page.
+        beside: texts of files by their names, which lie in its folder and are no part of the page.
         warnings: what a user should know before relying on it, for standard error; the page has them in a section.
     """
 
@@ -504,6 +505,7 @@ class Document(Part):
     sections: tuple[Section, ...]
     origin: tuple[str, ...] = ()
     pictures: tuple[Picture, ...] = Field(default=(), exclude=True)
+    beside: Mapping[str, str] = Field(default_factory=dict, exclude=True)
     warnings: tuple[str, ...] = Field(default=(), exclude=True)
 
     @property

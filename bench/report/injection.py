@@ -78,6 +78,7 @@ def injections(found: Injections, provenance: Mapping[str, Any], recording: str)
         answers=dict(_answers(found)),
         sections=(*filter(None, (first,)), every),
         origin=origin(provenance),
+        beside={"injections.json": injections_json(found, provenance) + "\n"},
         warnings=tuple(f"{name} gave no result: {reason}" for name, reason in found.failed.items()),
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import quote
 
@@ -18,21 +18,18 @@ from bench.report.html import html, program
 HTML, DATA = "report.html", "report.json"
 
 
-def write_document(
-    folder: Path, document: Document, ending: str = ".png", beside: Mapping[str, str] | None = None
-) -> list[Path]:
+def write_document(folder: Path, document: Document, ending: str = ".png") -> list[Path]:
     """Write page, data, pictures and files to take along of a document into a folder; the paths written.
 
     Args:
         folder: made if it is not there.
         document: of a result.
         ending: of the pictures, one of `bench.report.figures.FORMATS`.
-        beside: more files by their names, which the page does not hold.
 
     Raises:
         InputError: the folder cannot be written to.
     """
-    texts = {file.name: file.content for file in document.files} | dict(beside or {})
+    texts = {**{file.name: file.content for file in document.files}, **document.beside}
     with held(folder):
         write_text(folder / DATA, document.model_dump_json() + "\n")
         write_text(folder / HTML, html(document))

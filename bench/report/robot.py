@@ -13,14 +13,13 @@ from typing import Any
 from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
 from bench.joints.identified import EFFECTS, IdentifiedJoint
 from bench.joints.robot import IdentifiedRobot
-from bench.names import in_a_row, readable, words
+from bench.names import readable, words
 from bench.parameter import Parameter
 from bench.plant.model_file import joints_toml
 from bench.report import document as doc
 from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names
 from bench.report.numbers import interval, sentence, unit_text
 from bench.report.parts import origin, parameters_table
-from bench.report.publish import write_document
 from bench.report.serial import as_json, serialised
 from bench.report.simulation import moving_section
 
@@ -74,21 +73,11 @@ def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
 DROPPED = ("schema", "provenance", "model")
 
 
-def write_robot(out: Path, found: IdentifiedRobot, title: str, provenance: Mapping[str, Any] | None) -> list[Path]:
-    """Write page, MJCF, models and JSON of a robot into a folder; the paths written."""
-    text, lines = found.with_joints(out / MJCF)
-    return write_document(out, robot(found, title, provenance, _files(found, text, provenance), lines))
-
-
 def robot(
-    found: IdentifiedRobot,
-    title: str,
-    provenance: Mapping[str, Any] | None = None,
-    files: Sequence[doc.File] = (),
-    took: Sequence[str] = (),
+    found: IdentifiedRobot, title: str, provenance: Mapping[str, Any] | None = None, out: Path | None = None
 ) -> doc.Document:
-    """The document of a robot that `title` names, with files to take along and what went onto each joint."""
-    model = (doc.Points(items=tuple(took)), doc.Downloads(files=tuple(files))) if files else ()
+    """The document of a robot that `title` names; of one that goes into a folder, with its MJCF, models and JSON."""
+    motions = {name: joint.motion for name, joint in found.joints.items() if joint.motion is not None}
     warnings = tuple(f"{name}: {warning}" for name, joint in found.joints.items() for warning in joint.warnings)
     return doc.Document(
         title=title,
@@ -98,27 +87,24 @@ def robot(
         answers={},
         sections=(
             doc.section("joints", "Joints", *_tables(found)),
-            *_moving(found),
+            *([moving_section(found.mjcf, motions)] if motions else []),
             *(_of_joint(k, joint, found) for k, joint in enumerate(found.joints.values())),
-            *((doc.section("model", "The model", *model, detail=True),) if model else ()),
+            *((_model(found, out, provenance),) if out is not None else ()),
         ),
         origin=origin(provenance),
         warnings=(*found.warnings, *warnings),
     )
 
 
-def _moving(found: IdentifiedRobot) -> list[doc.Section]:
-    """All joints that have a model that moves."""
-    motions = {name: joint.motion for name, joint in found.joints.items() if joint.motion is not None}
-    return [moving_section(found.mjcf, motions)] if motions else []
-
-
-def _files(found: IdentifiedRobot, text: str, provenance: Mapping[str, Any] | None) -> list[doc.File]:
-    return [
+def _model(found: IdentifiedRobot, out: Path, provenance: Mapping[str, Any] | None) -> doc.Section:
+    """What went onto each joint, and the files to take along from a folder."""
+    text, took = found.with_joints(out / MJCF)
+    files = (
         doc.file(MJCF, "the MJCF with the joints as found", text),
         doc.file(EFFECTS_FILE, "models of all joints, for bench.Effects", joints_toml(found.models)),
         doc.file(JSON, "all of it as numbers", robot_json(found, provenance) + "\n"),
-    ]
+    )
+    return doc.section("model", "The model", doc.Points(items=tuple(took)), doc.Downloads(files=files), detail=True)
 
 
 def _settled(found: IdentifiedRobot) -> int:
@@ -208,8 +194,3 @@ def _of_joint(k: int, joint: IdentifiedJoint, found: IdentifiedRobot) -> doc.Sec
     blocks = [block for section in own.sections if section.key in SHOWN for block in section.blocks]
     answers = doc.Points(items=tuple(f"{question} {answer}" for question, answer in own.answers.items()))
     return doc.section(key, heading, doc.Paragraph(text=own.verdict), answers, *blocks, detail=True)
-
-
-def title_of(mjcf: Path, logs: Sequence[Path]) -> str:
-    """The robot's file and its logs."""
-    return f"{readable(mjcf.name)}: {in_a_row(logs)}"

@@ -93,18 +93,21 @@ def _naming_json(found: Naming) -> dict[str, Any]:
 
 def validation(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> doc.Document:
     """The document of a validation that `command` does again; on one's own axis how well it is told comes first."""
-    first, naming, note = _first(found), found.naming, doc.Paragraph(text=NOTE)
+    first, naming, note, runs = _first(found), found.naming, doc.Paragraph(text=NOTE), _outcomes(found.runs)
+    numbers, parts = ([*_numbers(found, whole)] for whole in (True, False))
+    names = [] if naming is None else [*_naming(naming)]
     sections = [doc.section("coverage", "How often an interval holds the truth", *_charts(found))]
     if own:
         axis = doc.section("axis", "This motion on this drive", *_determined(found.runs))
         sections.insert(0, axis)
-    sections.append(doc.section("numbers", "How far off numbers are", *_numbers(found, True), note))
-    parts = tuple(_numbers(found, False))
+    sections.append(doc.section("numbers", "How far off numbers are", *numbers, note))
     if parts:
         sections.append(doc.section("parts", "The same, by parts of these runs", *parts, detail=True))
-    if naming is not None:
-        sections.append(doc.section("names", "Whether names are right", *_naming(naming)))
-    sections.append(doc.section("runs", "All runs", _outcomes(found.runs), doc.neighbours(FILES)))
+    if names:
+        sections.append(doc.section("names", "Whether names are right", *names))
+    sections.append(doc.section("runs", "All runs", runs, doc.neighbours(FILES)))
+    tables = filter(None, map(markdown, (runs, *numbers, *parts, note, *names)))
+    text = "\n\n".join([f"# Validation\n\n`{command}`", *tables])
     low = any(one.inside[-1].bounds[1] < LEVEL for one in first)
     false = naming is not None and naming.false.count > 0
     return doc.Document(
@@ -116,6 +119,7 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
         sections=tuple(sections),
         origin=origin(provenance),
         pictures=tuple(_pictures(found)),
+        beside={"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"},
     )
 
 
@@ -356,20 +360,14 @@ def quantities_table(runs: tuple[Run, ...]) -> pa.Table:
     )
 
 
-def write_validation(
-    folder: Path, found: Validation, provenance: Mapping[str, Any], command: str, own: bool
-) -> list[Path]:
-    """Write page, pictures, JSON and tables into a folder; the paths written.
+def write_validation(folder: Path, found: Validation, document: doc.Document) -> list[Path]:
+    """Write the document of a validation and its tables into a folder; the paths written.
 
     Raises:
         InputError: the folder cannot be written to.
     """
-    tables = [_outcomes(found.runs), *_numbers(found, True), *_numbers(found, False), doc.Paragraph(text=NOTE)]
-    tables += [] if found.naming is None else _naming(found.naming)
-    text = "\n\n".join([f"# Validation\n\n`{command}`", *filter(None, map(markdown, tables))])
-    beside = {"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"}
     with held(folder):
-        written = write_document(folder, validation(found, provenance, command, own), beside=beside)
+        written = write_document(folder, document)
         for name, rows in (("runs", runs_table(found.runs)), ("quantities", quantities_table(found.runs))):
             for ending, write in (("parquet", pq.write_table), ("csv", csv.write_csv)):
                 written.append(folder / f"{name}.{ending}")
