@@ -15,16 +15,6 @@ import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import (
-    STDOUT,
-    AtOption,
-    AxisOption,
-    JointOption,
-    JsonOption,
-    MjcfOption,
-    OptionalRigOption,
-    ReportOption,
-)
 from bench.errors import InputError
 from bench.files import sha256, write_text
 from bench.names import in_a_row, readable
@@ -47,7 +37,7 @@ def check(
     traces: Annotated[
         list[Path] | None, typer.Argument(metavar="TRACE...", help="Recordings of the axis now, of any known format.")
     ] = None,
-    rig: OptionalRigOption = None,
+    rig: common.OptionalRigOption = None,
     simulated: Annotated[
         Path | None, typer.Option("--simulated", help="model.toml to check in the place of recordings.")
     ] = None,
@@ -56,18 +46,18 @@ def check(
         bool, typer.Option("--without-names", help="With --update: compare parameters alone, in a tenth of the time.")
     ] = False,
     junit: Annotated[Path | None, typer.Option("--junit", help="JUnit XML to write.")] = None,
-    json: JsonOption = None,
-    report: ReportOption = None,
+    json: common.JsonOption = None,
+    report: common.ReportOption = None,
     form: Annotated[
         Format, typer.Option("--format", help="github: annotations. gitlab: a code quality report on standard output.")
     ] = "text",
     false_alarm_rate: Annotated[
         float, typer.Option("--false-alarm-rate", help="Of all comparisons together.", min=1e-6, max=0.5)
     ] = 0.01,
-    axis_name: AxisOption = None,
-    mjcf: MjcfOption = None,
-    joint: JointOption = None,
-    at: AtOption = None,
+    axis_name: common.AxisOption = None,
+    mjcf: common.MjcfOption = None,
+    joint: common.JointOption = None,
+    at: common.AtOption = None,
 ) -> None:
     """Has this axis, or this model of one, changed? Exit status 0: the same, 3: changed, 1: undecided."""
     asked = Asked(traces or [], rig, simulated, axis_name, mjcf, joint or [], at or [])
@@ -200,7 +190,7 @@ def _write(
     common.write_page(report, document)
     if form == "gitlab":
         typer.echo(gitlab_report(found, baseline))
-    elif json != STDOUT:
+    elif json != common.STDOUT:
         with _no_commands(form):
             common.tell(document, files)
     if form == "github":

@@ -10,18 +10,6 @@ import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import (
-    AtOption,
-    AxisOption,
-    BesideRigOption,
-    DraftOption,
-    FiguresOption,
-    JointOption,
-    JsonOption,
-    MjcfOption,
-    OptionalRigOption,
-    TracesArgument,
-)
 from bench.errors import InputError, UndeterminedError
 from bench.names import in_a_row, readable
 
@@ -35,9 +23,9 @@ Estimator = Literal["regression", "lab"]
 
 
 def identify(
-    traces: TracesArgument,
-    rig: BesideRigOption = None,
-    json: JsonOption = None,
+    traces: common.TracesArgument,
+    rig: common.BesideRigOption = None,
+    json: common.JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
     estimator: Annotated[Estimator, typer.Option("--estimator", help="lab: as in courses.")] = "regression",
     refine: Annotated[bool, typer.Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
@@ -45,12 +33,12 @@ def identify(
     cutoff: Annotated[
         float | None, typer.Option("--cutoff", help="Filter's half-power frequency in Hz.", min=1e-6)
     ] = None,
-    axis_name: AxisOption = None,
-    mjcf: MjcfOption = None,
-    joint: JointOption = None,
-    at: AtOption = None,
-    figures: FiguresOption = "png",
-    draft: DraftOption = None,
+    axis_name: common.AxisOption = None,
+    mjcf: common.MjcfOption = None,
+    joint: common.JointOption = None,
+    at: common.AtOption = None,
+    figures: common.FiguresOption = "png",
+    draft: common.DraftOption = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.fit.estimate import RefusedEstimateError
@@ -111,20 +99,20 @@ def _estimate(
 
 
 def diagnose(
-    traces: TracesArgument,
-    rig: BesideRigOption = None,
+    traces: common.TracesArgument,
+    rig: common.BesideRigOption = None,
     holdout: Annotated[
         Path | None, typer.Option("--holdout", help="Another recording of the axis, not fitted.")
     ] = None,
-    json: JsonOption = None,
+    json: common.JsonOption = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
-    axis_name: AxisOption = None,
-    mjcf: MjcfOption = None,
-    joint: JointOption = None,
-    at: AtOption = None,
-    figures: FiguresOption = "png",
-    draft: DraftOption = None,
+    axis_name: common.AxisOption = None,
+    mjcf: common.MjcfOption = None,
+    joint: common.JointOption = None,
+    at: common.AtOption = None,
+    figures: common.FiguresOption = "png",
+    draft: common.DraftOption = None,
 ) -> None:
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.effects.present import named
@@ -151,15 +139,15 @@ def robot(
     mjcf: Annotated[Path, typer.Option("--mjcf", help="MJCF of the robot.")],
     out: Annotated[Path, typer.Option("--out", help="Folder for MJCF, models, page and JSON.")],
     holdout: Annotated[Path | None, typer.Option("--holdout", help="Another log of it, not fitted.")] = None,
-    rig: OptionalRigOption = None,
+    rig: common.OptionalRigOption = None,
     joint: Annotated[list[str] | None, typer.Option("--joint", help="Only this joint. Repeatable.")] = None,
-    at: AtOption = None,
+    at: common.AtOption = None,
     payload: Annotated[
         str | None,
         typer.Option("--payload", help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
     ] = None,
     without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
-    json: JsonOption = None,
+    json: common.JsonOption = None,
 ) -> None:
     """Identify every joint of a robot from its logs, find what each is missing, and write its MJCF with all of it."""
     from bench.effects.present import named

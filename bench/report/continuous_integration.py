@@ -28,6 +28,9 @@ _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 MOST = 10
 #: Characters of Markdown markup and mentions, other than in HTML entities.
 _MARKUP = re.compile(r"[\\`*_\[\]|~@!#](?!#?\w+;)")
+#: What ends a workflow command, and beside it what ends one of its properties.
+_ESCAPED = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})
+_ENDING = str.maketrans({":": "%3A", ",": "%2C"})
 
 
 @dataclass(frozen=True)
@@ -81,16 +84,9 @@ def github_lines(found: Sequence[Finding], baseline: Path) -> list[str]:
 
 def command(level: str, message: str, properties: Mapping[str, str]) -> str:
     """A workflow command, escaped as GitHub's own toolkit does (`@actions/core`, command.ts)."""
-    fields = ",".join(f"{key}={_property(value)}" for key, value in {**properties, "title": "bench check"}.items())
-    return f"::{level} {fields}::{_data(message)}"
-
-
-def _data(text: str) -> str:
-    return plain(text).replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-
-
-def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")
+    given = {**properties, "title": "bench check"}.items()
+    fields = ",".join(f"{key}={plain(value).translate(_ESCAPED | _ENDING)}" for key, value in given)
+    return f"::{level} {fields}::{plain(message).translate(_ESCAPED)}"
 
 
 def github_summary(found: Sequence[Finding], headline: str, title: str) -> str:

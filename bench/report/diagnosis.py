@@ -14,7 +14,7 @@ from bench.axis_kind import ARMATURE, KINDS, AxisKind
 from bench.diagnosis.add import NULL
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.name import NamedEffect
-from bench.diagnosis.probability import CALIBRATED_ON, Probabilities
+from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.show import Course, Shrunk
 from bench.diagnosis.verdict import Gap
@@ -52,11 +52,16 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
 
 def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """What that JSON holds."""
-    kinds = ("measurement" if isinstance(each.effect, Sensing) else "physics" for each in found.effects)
+    likely = found.probabilities
     effects = [
-        {"name": each.name, "kind": kind, **picked(each, "parameters", "ambiguous_with", "evidence")}
-        | _likely_json(found.probabilities, each.name)
-        for each, kind in zip(found.effects, kinds, strict=True)
+        {
+            "name": each.name,
+            "kind": "measurement" if isinstance(each.effect, Sensing) else "physics",
+            **picked(each, "parameters", "ambiguous_with", "evidence"),
+            "probability": likely.names[each.name],
+            "alternatives": [{"name": one, "probability": p} for one, p in likely.instead_of(each.name).items()],
+        }
+        for each in found.effects
     ]
     velocity = {  # models held to the recording by a cascade, fed with the recorded effort
         **as_json(found.velocity),
@@ -69,9 +74,9 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
         **picked(found, "verdict", "because"),
         "effects": effects,
         "probability": {
-            "none_of_the_catalogue": found.probabilities.none,
-            "nothing": found.probabilities.nothing,
-            "set90": [[None] if one is None else sorted(one) for one in found.probabilities.holding(SURE)],
+            "none_of_the_catalogue": likely.none,
+            "nothing": likely.nothing,
+            "set90": [[None] if one is None else sorted(one) for one in likely.holding(SURE)],
             "calibrated_on": CALIBRATED_ON,
         },
         "where": found.where,
@@ -88,15 +93,6 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
         "provenance": provenance,
         "model": {"mjcf": "model.xml" if found.model is not None else None, "toml": "model.toml"},
         **picked(found, "checks", "warnings"),
-    }
-
-
-def _likely_json(probabilities: Probabilities, name: str) -> dict[str, Any]:
-    """How likely a name is, and what stands in its place otherwise."""
-    others = probabilities.instead_of(name).items()
-    return {
-        "probability": probabilities.names[name],
-        "alternatives": [{"name": other, "probability": share} for other, share in others],
     }
 
 
@@ -295,7 +291,8 @@ def _sure(found: Diagnosis) -> str:
         if effect.ambiguous_with
     ]
     if len(lines) == 1:
-        lines.append(f"What is left of the {effort} is {number(_chi(gap), digits=3)} times what noise alone leaves.")
+        chi = math.nan if gap.identify is None else gap.identify[1] / gap.noise_floor
+        lines.append(f"What is left of the {effort} is {number(chi, digits=3)} times what noise alone leaves.")
     return " ".join(lines)
 
 
@@ -315,10 +312,6 @@ def _chances(shares: Mapping[str, float]) -> str:
     """The likeliest few of several names, with their probabilities."""
     ranked = sorted(shares.items(), key=lambda one: -one[1])
     return ", ".join(f"{words(name)} {chance(share)}" for name, share in ranked[:MOST_SHOWN] if share > LEAST_SHOWN)
-
-
-def _chi(gap: Gap) -> float:
-    return math.nan if gap.identify is None else gap.identify[1] / gap.noise_floor
 
 
 def _moves(found: Diagnosis) -> str:
@@ -422,16 +415,12 @@ def _beside(found: Diagnosis) -> list[doc.Section]:
 
 
 def _suspects(found: Diagnosis) -> doc.Section:
-    def of_gap(value: float | None) -> str:
-        return "–" if value is None else share(value)
-
     rows = (
         (
             words(one.effect.name),
             "yes" if one.taken else "no",
             chance(one.probability),
-            of_gap(one.alone),
-            of_gap(one.beside),
+            *("–" if value is None else share(value) for value in (one.alone, one.beside)),
             one.reason,
         )
         for one in found.considered

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from functools import wraps
 from io import BytesIO
 from pathlib import Path
-from typing import Any, ParamSpec
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context, rc_params_from_file
@@ -24,8 +23,6 @@ from bench.names import plain
 from bench.report import document as doc
 from bench.report.over_time import unpacked
 
-P = ParamSpec("P")
-
 #: More points than this do not show in a figure; the extremes of each stretch stand for it.
 POINTS = 8000
 #: What is measured, what a model makes, what is left, and noise: the same everywhere, and told apart in grey too.
@@ -35,6 +32,8 @@ COLOURS = {"ink": MEASURED, "model": MODELLED, "left": REST, "floor": NOISE, "fi
 COLOURS |= {"violet": "#7a4a8c", "ochre": "#a07a1e", "blue": "#2f7fb5", "red": "#9c2626"}
 #: How every figure is set.
 STYLE = rc_params_from_file(Path(__file__).parent / "page" / "figures.mplstyle", use_default_template=False)
+#: Decorates what draws a figure.
+in_style = rc_context(STYLE)
 #: Endings of a figure's file.
 FORMATS = (".png", ".pdf", ".svg")
 #: Width of a picture, and height of its title - inch.
@@ -64,17 +63,6 @@ ROLES: dict[str, dict[str, Any]] = {
     "left": {"color": REST},
     "alone": {"color": MEASURED},
 }
-
-
-def in_style(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """A function that draws a figure, in the style of all."""
-
-    @wraps(draw)
-    def drawn(*args: P.args, **named: P.kwargs) -> Figure:
-        with rc_context(STYLE):
-            return draw(*args, **named)
-
-    return drawn
 
 
 @in_style

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import math
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -189,18 +188,13 @@ class FleetPages:
         return (f"servobench {provenance['version']}; manifest sha256 {provenance['manifest_sha256']}",)
 
 
-def parameters(found: Plain) -> dict[str, Parameter]:
+def parameters(result: Plain) -> dict[str, Parameter]:
     """Parameters of a result; without an interval where it knows none."""
-
-    def known(value: float | None) -> float:
-        return math.nan if value is None else value
-
-    return {
-        name: Parameter(
-            one["value"], one["unit"], known(one["std_error"]), (known(one["ci95"][0]), known(one["ci95"][1]))
-        )
-        for name, one in found.get("parameters", {}).items()
-    }
+    found = {}
+    for name, one in result.get("parameters", {}).items():
+        error, low, high = np.array([one["std_error"], *one["ci95"]], dtype=np.float64).tolist()  # nan for null
+        found[name] = Parameter(one["value"], one["unit"], error, (low, high))
+    return found
 
 
 def _verdict(found: Plain) -> str:

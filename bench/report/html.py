@@ -79,18 +79,20 @@ def _environment() -> Environment:
         loader=PackageLoader("bench.report", "page/templates"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, finalize=_shown,
     )  # fmt: skip
-    found.filters |= {"data": _data, "link": _link, "drawn": drawn, "sketched": sketched, "laid": laid, "rail": rail}
+    found.filters |= {
+        "data": lambda graph: _json(graph.model_dump()),
+        "link": _link,
+        "drawn": drawn,
+        "sketched": sketched,
+        "laid": laid,
+        "rail": rail,
+    }
     return found
 
 
 def _shown(value: Any) -> Any:  # noqa: ANN401 - whatever a template prints
     """Text with the characters written out that would turn the direction of what follows."""
     return plain(value) if type(value) is str else value
-
-
-def _data(graph: TimeGraph | Moving) -> Markup:
-    """A graph or a motion as JSON inside of a script element."""
-    return _json(graph.model_dump())
 
 
 def _json(content: Mapping[str, Any]) -> Markup:

@@ -136,7 +136,6 @@ def identification(
     refinement: Refinement | None = None,
     motions: Sequence[Moved] = (),
     provenance: Mapping[str, Any] | None = None,
-    truth: Mapping[str, float] | None = None,
 ) -> doc.Document:
     """The document of an identification.
 
@@ -145,10 +144,9 @@ def identification(
         estimate, refinement: what was identified, and what polishing did, where it was asked for.
         motions: of its recordings, for a page and pictures; () without.
         provenance: of the files it came from.
-        truth: true values by the parameters' names, in their units, where they are known.
     """
     alone = recordings_table(estimate.recordings, estimate.between, estimate.parameters)
-    tables = (parameters_table("The axis", estimate.parameters, truth), *alone)
+    tables = (parameters_table("The axis", estimate.parameters), *alone)
     sections = [doc.section("parameters", "Parameters", *tables)]
     if motions:
         graphs = tuple(_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])

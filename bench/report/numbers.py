@@ -54,13 +54,13 @@ def interval(found: Parameter, unit: bool = True) -> str:
     return f"{text}{SPACE}{shown}".strip()
 
 
-def brief(found: Parameter, unit: bool = True) -> str:
+def brief(found: Parameter) -> str:
     """A parameter to three digits, with half of its interval of 95 % in per cent where that says more."""
     size, half = abs(found.value), found.half_width
     if not 0.0 < half < size < math.inf:
-        return interval(found, unit)
+        return interval(found)
     relative = number(100.0 * half / size, digits=2)
-    return f"{number(found.value, found.unit if unit else '', 3, zeros=True)}{SPACE}±{SPACE}{relative}{SPACE}%"
+    return f"{number(found.value, found.unit, 3, zeros=True)}{SPACE}±{SPACE}{relative}{SPACE}%"
 
 
 def _minus(text: str) -> str:
