@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
@@ -91,38 +91,31 @@ def _unnamed(part: doc.Drawable, first: doc.Drawable) -> doc.Drawable:
 
 def height(part: doc.Drawable) -> float:
     """Height that a part takes - inch."""
-    match part:
-        case doc.Table():
-            return 0.4 + 2.0 * LINE * len(part.rows)
-        case doc.TimeGraph():
-            return 0.5 + TIME_PANEL * len(part.panels)
-        case doc.Intervals():
-            return 1.0 + SPAN * len(part.spans)
-        case doc.HeatMap():
-            return 2.6 + 0.34 * len(part.rows)
-        case doc.Chart() if part.stacked:
-            named = [[one.name for one in panel.series if one.name] for panel in part.panels]
-            legends = sum(-(-len(names) // across(names)) for names in named)
-            return max(3.0, 0.8 + STACKED * len(part.panels)) + LINE * legends
-        case doc.Chart():
-            return 0.4 + ROW * (-(-len(part.panels) // ACROSS) if len(part.panels) > 1 else 1.6)
+    return _drawing(part)[0]
 
 
 def draw(figure: Figure | SubFigure, part: doc.Drawable) -> None:
     """Draw a part into a figure, in the style that is set."""
+    _drawing(part)[1](figure, part)
+
+
+def _drawing(part: doc.Drawable) -> tuple[float, Callable[..., None]]:
+    """Height of a part - inch -, and what draws it into a figure."""
     match part:
         case doc.Table():
-            _write(figure, part)
+            return 0.4 + 2.0 * LINE * len(part.rows), _write
         case doc.TimeGraph():
-            _over_time(figure, part)
+            return 0.5 + TIME_PANEL * len(part.panels), _over_time
         case doc.Intervals():
-            _intervals(figure, part)
+            return 1.0 + SPAN * len(part.spans), _intervals
         case doc.HeatMap():
-            _heat(figure, part)
+            return 2.6 + 0.34 * len(part.rows), _heat
         case doc.Chart() if part.stacked:
-            _stacked(figure, part)
+            named = [[one.name for one in panel.series if one.name] for panel in part.panels]
+            legends = sum(-(-len(names) // across(names)) for names in named)
+            return max(3.0, 0.8 + STACKED * len(part.panels)) + LINE * legends, _stacked
         case doc.Chart():
-            _beside(figure, part)
+            return 0.4 + ROW * (-(-len(part.panels) // ACROSS) if len(part.panels) > 1 else 1.6), _beside
 
 
 def _write(figure: Figure | SubFigure, table: doc.Table) -> None:
