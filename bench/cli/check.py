@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 #: Exit status of each result.
 STATUS = {"same": 0, "changed": 3, "undecided": 1}
-
-
 #: How results reach whoever reads them.
 Format = Literal["text", "github", "gitlab"]
 

@@ -79,14 +79,8 @@ def _environment() -> Environment:
         loader=PackageLoader("bench.report", "page/templates"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, finalize=_shown,
     )  # fmt: skip
-    found.filters |= {
-        "data": lambda graph: _json(graph.model_dump()),
-        "link": _link,
-        "drawn": drawn,
-        "sketched": sketched,
-        "laid": laid,
-        "rail": rail,
-    }
+    found.filters.update(drawn=drawn, sketched=sketched, laid=laid, rail=rail, link=_link)
+    found.filters["data"] = lambda graph: _json(graph.model_dump())
     return found
 
 

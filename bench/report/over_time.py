@@ -130,7 +130,6 @@ def time_graph(
     """Signals from top to bottom over the time of a recording - s - (n,).
 
     Args:
-        title, alternative, time, signals: of the graph.
         choices: names of the models.
         part: of what a page may hold that this graph may take.
     """
