@@ -85,10 +85,6 @@ class Asked:
     joints: list[str]
     at: list[str]
 
-    def axis(self) -> bench.Rig | None:
-        """The rig, if one is given."""
-        return None if self.rig is None else bench.load_rig(self.rig).on_axis(self.axis_name)
-
     @cached_property
     def subject(self) -> Subject:
         """What the recordings are of."""
@@ -121,7 +117,8 @@ class Asked:
         before = _of_model(baseline) if is_model(baseline) else read_baseline(baseline)
         before.require_source("model", baseline)
         now = _of_model(self.simulated, before)
-        return compare_models(before, now, Allowed.of(self.axis(), now.kind))
+        rig = None if self.rig is None else bench.load_rig(self.rig).on_axis(self.axis_name)
+        return compare_models(before, now, Allowed.of(rig, now.kind))
 
 
 def _of_model(model: Path, like: State | None = None) -> State:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import quote
 
@@ -111,7 +110,11 @@ def markdown(part: object) -> str:
         case Table():
             rule = ["---:" if column.number else "---" for column in part.columns]
             rows = ([column.heading for column in part.columns], rule, *part.rows)
-            return "\n".join([*((f"## {part.caption}", "") if part.caption else ()), *map(_line, rows)])
+            escaped = (
+                (cell.replace("|", "\\|").replace("\n", " ") for cell in row) for row in rows
+            )  # nothing ends a cell
+            lines = (f"| {' | '.join(row)} |" for row in escaped)
+            return "\n".join([*((f"## {part.caption}", "") if part.caption else ()), *lines])
         case Paragraph():
             return part.text
         case Points():
@@ -120,8 +123,3 @@ def markdown(part: object) -> str:
             return f"```\n{part.text}\n```"
         case _:
             return ""
-
-
-def _line(cells: Sequence[str]) -> str:
-    """A row, in which what would end a cell is escaped."""
-    return "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |"
