@@ -110,9 +110,7 @@ def markdown(part: object) -> str:
         case Table():
             rule = ["---:" if column.number else "---" for column in part.columns]
             rows = ([column.heading for column in part.columns], rule, *part.rows)
-            escaped = (
-                (cell.replace("|", "\\|").replace("\n", " ") for cell in row) for row in rows
-            )  # nothing ends a cell
+            escaped = ((cell.replace("|", "\\|").replace("\n", " ") for cell in row) for row in rows)
             lines = (f"| {' | '.join(row)} |" for row in escaped)
             return "\n".join([*((f"## {part.caption}", "") if part.caption else ()), *lines])
         case Paragraph():
