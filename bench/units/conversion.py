@@ -167,18 +167,16 @@ def same_dimension(unit: str, other: str) -> bool:
     return powers_of(_parsed(unit)) == powers_of(_parsed(other))
 
 
-@cache
-def affine(unit: str, to: str) -> tuple[float, float]:
-    """Factor and offset that turn a number in `unit` into a number in `to`; ValueError if they differ in dimension."""
+def convert(values: Array, unit: str, to: str) -> Array:
+    """Values of any shape from `unit` to `to`; the same array when nothing changes.
+
+    Raises:
+        ValueError: they differ in dimension, or one is no unit.
+    """
     if not same_dimension(unit, to):
         raise ValueError(f"'{unit}' is not a unit of the dimension of {to}")
     (factor, offset), (wanted, zero) = to_si(_parsed(unit)), to_si(_parsed(to))
-    return factor / wanted, (offset - zero) / wanted
-
-
-def convert(values: Array, unit: str, to: str) -> Array:
-    """Values of any shape from `unit` to `to` (same dimension); the same array when nothing changes."""
-    factor, offset = affine(unit, to)
+    factor, offset = factor / wanted, (offset - zero) / wanted
     if offset == 0.0:
         return values if factor == 1.0 else values * factor
     return values * factor + offset

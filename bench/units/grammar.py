@@ -12,12 +12,9 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-#: Signs replaced before anything is read, in this order.
+#: Signs replaced before anything is read, and after them texts, in this order.
+_SIGNS = str.maketrans("µμº˚·⋅∙•×−–\u00a0\u202f", "uu°°*****--  ")
 TRANSLATED = {
-    "µ": "u",
-    "μ": "u",
-    "º": "°",
-    "˚": "°",
     "℃": "degC",
     "° C": "degC",
     "°C": "degC",
@@ -28,15 +25,6 @@ TRANSLATED = {
     "\u2126": "ohm",
     "\u03a9": "ohm",
     "Ohm": "ohm",
-    "·": "*",
-    "⋅": "*",
-    "∙": "*",
-    "•": "*",
-    "×": "*",
-    "−": "-",
-    "–": "-",
-    "\u00a0": " ",
-    "\u202f": " ",
     "√2": "sqrt(2) ",
     "r.p.m": "rpm",
     "об/мин": "rpm",
@@ -53,7 +41,8 @@ _WHOLE = {
     "percent": "percent prozent",
 }
 
-#: Other names of a unit, in the languages of drives; a name of several letters also in capitals or with the first one.
+#: Names of units, in the languages of drives, by what they mean; one of several letters also in capitals or with the
+#: first one.
 _ALIASES = {
     "turn": "rev revs revolution revolutions r R U u umdr umdrehung umdrehungen tr tour tours turns turn rot rotation "
     "rotations giri giro obr ot varv omw upr",
@@ -84,25 +73,21 @@ _ALIASES = {
     "kilogram_force": "kgf kp",
     "gram_force": "gf p",
     "N": "newton newtons",
-}
-
-#: Names of what has a factor, or is made of several units.
-_COMPOUNDS: dict[str, tuple[float, Mapping[str, float]]] = {
-    "krpm kRPM": (1e3, {"rpm": 1}),
-    "rps": (1.0, {"turn": 1, "s": -1}),
-    "dps": (1.0, {"deg": 1, "s": -1}),
-    "ips": (1.0, {"inch": 1, "s": -1}),
-    "Arms": (math.sqrt(2.0), {"A": 1}),
-    "mArms": (math.sqrt(2.0), {"mA": 1}),
-    "uArms": (math.sqrt(2.0), {"uA": 1}),
-    "kArms": (math.sqrt(2.0), {"kA": 1}),
-    "gfcm gcm": (1.0, {"gram_force": 1, "cm": 1}),
-    "kgfcm kgcm": (1.0, {"kilogram_force": 1, "cm": 1}),
-    "kgfm kgm": (1.0, {"kilogram_force": 1, "m": 1}),
-    "ozin inoz ozfin": (1.0, {"ounce_force": 1, "inch": 1}),
-    "lbin inlb lbfin inlbf inlbs": (1.0, {"pound_force": 1, "inch": 1}),
-    "lbft ftlb lbfft ftlbf ftlbs": (1.0, {"pound_force": 1, "foot": 1}),
-    "NM newtonmeter newtonmetre": (1.0, {"N": 1, "m": 1}),
+    "1000*rpm": "krpm kRPM",
+    "turn/s": "rps",
+    "deg/s": "dps",
+    "inch/s": "ips",
+    "sqrt(2)*A": "Arms",
+    "sqrt(2)*mA": "mArms",
+    "sqrt(2)*uA": "uArms",
+    "sqrt(2)*kA": "kArms",
+    "gram_force*cm": "gfcm gcm",
+    "kilogram_force*cm": "kgfcm kgcm",
+    "kilogram_force*m": "kgfm kgm",
+    "ounce_force*inch": "ozin inoz ozfin",
+    "pound_force*inch": "lbin inlb lbfin inlbf inlbs",
+    "pound_force*foot": "lbft ftlb lbfft ftlbf ftlbs",
+    "N*m": "NM newtonmeter newtonmetre",
 }
 
 #: What a drive counts or scales by settings of its own; one of them is worth what only the user knows.
@@ -116,7 +101,6 @@ _ELECTRICAL = "erpm eradians erad edeg el elec electrical elektrisch"
 
 WHOLE = {name: meaning for meaning, names in _WHOLE.items() for name in names.split()}
 ALIASES = {name: meaning for meaning, names in _ALIASES.items() for name in names.split()}
-COMPOUNDS = {name: meaning for names, meaning in _COMPOUNDS.items() for name in names.split()}
 COUNTS, ELECTRICAL = frozenset(_COUNTS.split()), frozenset(_ELECTRICAL.split())
 
 
@@ -243,11 +227,11 @@ def _add(match: re.Match[str], groups: list[UnitProduct], text: str, wanted: tup
     elif match["operator"] or match["joint"]:
         groups[-1].sign = -1 if match["operator"] == "/" else 1
     elif match["name"]:
-        factor, powers = _named(match["name"], text, wanted)
+        named = _named(match["name"], text, wanted)
         exponent = _exponent(match["power"] or match["power_bare"] or match["inside"] or match["exponent"])
-        if len(powers) > 1 and abs(exponent) > 1:
-            raise ValueError(f"of which of {', '.join(powers)} it is the power")
-        groups[-1].take(factor, powers, exponent)
+        if len(named.powers) > 1 and abs(exponent) > 1:
+            raise ValueError(f"of which of {', '.join(named.powers)} it is the power")
+        groups[-1].take(named.factor, named.powers, exponent)
     elif match["root"]:
         groups[-1].take(math.sqrt(float(match["radicand"])), {}, 1.0)
     else:
@@ -262,8 +246,8 @@ def _exponent(text: str | None) -> float:
     return float(above) / float(below or 1)
 
 
-def _named(name: str, text: str, wanted: tuple[str, ...]) -> tuple[float, Mapping[str, float]]:
-    """Factor and units of one name."""
+def _named(name: str, text: str, wanted: tuple[str, ...]) -> UnitProduct:
+    """What one name stands for."""
     if name in COUNTS or name.lower() in COUNTS:
         example = "turn/4096/s" if any("/s" in si for si in wanted) else "turn/4096"
         found = f"found unit '{text}', counts of which the file does not tell what one is worth"
@@ -274,21 +258,19 @@ def _named(name: str, text: str, wanted: tuple[str, ...]) -> tuple[float, Mappin
         raise UnitError(f"found '{text}', which is electrical", mechanical)
     match = _NEWTON_METRES.fullmatch(name)
     if match:
-        return 1.0, {f"{match[1]}N": 1, match[2]: 1}
+        return UnitProduct(1.0, {f"{match[1]}N": 1, match[2]: 1})
     if name == "peak_to_peak":
         raise UnitError(f"found '{text}', peak to peak", "allowed: A (peak) or Arms (effective)")
     if name == "grad":
         raise UnitError(f"found '{text}', which may mean degrees or gon", "allowed: 'deg' or 'gon'")
     for key in (name, name.lower()) if len(name) > 1 and (name.isupper() or name.istitle()) else (name,):
-        if key in COMPOUNDS:
-            return COMPOUNDS[key]
-        if key in ALIASES:
-            return 1.0, {ALIASES[key]: 1}
-    return 1.0, {name: 1}
+        if ALIASES.get(key, name) != name:
+            return parse_unit(ALIASES[key])
+    return UnitProduct(1.0, {name: 1})
 
 
 def _normalised(text: str) -> str:
-    plain = _RAISED.sub(lambda match: f"^{match[0].translate(_SUPERSCRIPTS)}", text.strip())
+    plain = _RAISED.sub(lambda match: f"^{match[0].translate(_SUPERSCRIPTS)}", text.strip().translate(_SIGNS))
     for written, meant in TRANSLATED.items():
         plain = plain.replace(written, meant)
     plain = _PEAK_TO_PEAK.sub(lambda match: f"{match[1]}*peak_to_peak", plain)
