@@ -21,37 +21,24 @@ from tests.hostile import csv_of
 Columns = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
+def written(write: Callable[[io.BytesIO], object]) -> bytes:
+    """What something writes into a file."""
+    kept = io.BytesIO()
+    write(kept)
+    return kept.getvalue()
+
+
 def as_csv(columns: Columns) -> bytes:
     return csv_of(*columns).encode()
 
 
 def as_parquet(columns: Columns, checksums: bool = False) -> bytes:
-    names, kept = ("time [s]", "velocity [rad/s]", "current [A]"), io.BytesIO()
-    table = pa.table(dict(zip(names, columns, strict=True)))
-    pq.write_table(table, kept, use_dictionary=False, write_page_checksum=checksums)
-    return kept.getvalue()
+    table = pa.table(dict(zip(("time [s]", "velocity [rad/s]", "current [A]"), columns, strict=True)))
+    return written(lambda file: pq.write_table(table, file, use_dictionary=False, write_page_checksum=checksums))
 
 
 def named(columns: Columns) -> dict[str, np.ndarray]:
     return dict(zip(("time", "velocity", "current"), columns, strict=True))
-
-
-def as_npz(columns: Columns) -> bytes:
-    kept = io.BytesIO()
-    np.savez(kept, **named(columns))
-    return kept.getvalue()
-
-
-def as_npy(columns: Columns) -> bytes:
-    kept = io.BytesIO()
-    np.save(kept, np.rec.fromarrays(columns, names="time,velocity,current"))
-    return kept.getvalue()
-
-
-def as_mat(columns: Columns) -> bytes:
-    kept = io.BytesIO()
-    savemat(kept, named(columns))
-    return kept.getvalue()
 
 
 def as_hdf5(columns: Columns, checksums: bool = False) -> bytes:
@@ -93,9 +80,11 @@ def as_mcap(columns: Columns, checksums: bool = True) -> bytes:
 KEPT: dict[str, Callable[[Columns], bytes]] = {
     "csv": as_csv,
     "parquet": as_parquet,
-    "npz": as_npz,
-    "npy": as_npy,
-    "mat": as_mat,
+    "npz": lambda columns: written(lambda file: np.savez(file, **named(columns))),
+    "npy": lambda columns: written(
+        lambda file: np.save(file, np.rec.fromarrays(columns, names="time,velocity,current"))
+    ),
+    "mat": lambda columns: written(lambda file: savemat(file, named(columns))),
     "h5": as_hdf5,
     "mf4": as_mdf4,
     "tdms": as_tdms,

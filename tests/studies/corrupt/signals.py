@@ -8,21 +8,10 @@ import numpy as np
 from scipy.signal import lfilter
 
 Signals = tuple[np.ndarray, np.ndarray, np.ndarray]
-Corruption = Callable[[np.random.Generator, np.ndarray, np.ndarray, np.ndarray], Signals]
 
-KINDS: dict[str, Corruption] = {}
+KINDS: dict[str, Callable[[np.random.Generator, np.ndarray, np.ndarray, np.ndarray], Signals]] = {}
 #: Kinds that leave a recording which another axis would give: only who knows the axis can tell.
 OF_ANOTHER_AXIS = {"time 5 % too long", "current 5 % too large", "speed 10 % too large", "current 10 % too small"}
-
-
-def corruption(name: str) -> Callable[[Corruption], Corruption]:
-    """Register a corruption under its name."""
-
-    def register(made: Corruption) -> Corruption:
-        KINDS[name] = made
-        return made
-
-    return register
 
 
 def of_current(name: str, change: Callable) -> None:
@@ -97,6 +86,18 @@ def clipped(share: float, low: bool = True) -> Callable:
     )
 
 
+def numbered_on(t: np.ndarray, w: np.ndarray, i: np.ndarray, times: np.ndarray) -> Signals:
+    """Each sample so many times as of `times` (n,), at the times of the first ones."""
+    places = np.repeat(np.arange(t.size), times)[: t.size]
+    return t[: places.size], w[places], i[places]
+
+
+def outside(part: slice, time: np.ndarray) -> np.ndarray:
+    """Which samples do not lie in a stretch."""
+    every = np.arange(time.size)
+    return (every < part.start) | (every >= part.stop)
+
+
 of_current("sign of the current turned from half on", lambda rng, i, t: np.where(t < t[t.size // 2], i, -i))
 of_current("sign of the current turned for a tenth", within(lambda rng, i: -i, 0.1))
 of_current("sign of the current turned for a third", within(lambda rng, i: -i, 0.33))
@@ -143,66 +144,21 @@ of_current("current of another motion", lambda rng, i, t: np.roll(i, i.size // 3
 of_current("noise of the current for a third", within(lambda rng, i: i + 3.0 * rng.normal(size=i.size), 0.33))
 of_speed("speed that wraps", lambda rng, w, t: (w + 50.0) % 100.0 - 50.0)
 
-
-@corruption("time twice as long")
-def _(rng, t, w, i):
-    return 2.0 * t, w, i
-
-
-@corruption("time 5 % too long")
-def _(rng, t, w, i):
-    return 1.05 * t, w, i
-
-
-@corruption("ms for s")
-def _(rng, t, w, i):
-    return 1e3 * t, w, i
-
-
-@corruption("samples lost, numbered on")
-def _(rng, t, w, i):
-    kept = np.flatnonzero(rng.random(t.size) > 0.02)
-    return t[: kept.size], w[kept], i[kept]
-
-
-@corruption("samples written twice, numbered on")
-def _(rng, t, w, i):
-    twice = np.repeat(np.arange(t.size), 1 + (rng.random(t.size) < 0.02))[: t.size]
-    return t, w[twice], i[twice]
-
-
-@corruption("a tenth cut out, numbered on")
-def _(rng, t, w, i):
-    part = stretch(rng, t.size, 0.1)
-    return t[: t.size - (part.stop - part.start)], np.delete(w, part), np.delete(i, part)
-
-
-@corruption("clock jumps ahead")
-def _(rng, t, w, i):
-    return t + (t > t[t.size // 2]) * 0.5, w, i
-
-
-@corruption("clock jumps back")
-def _(rng, t, w, i):
-    return t - (t > t[t.size // 2]) * 0.5, w, i
-
-
-@corruption("times that jitter by half a period")
-def _(rng, t, w, i):
-    return t + rng.uniform(-0.5, 0.5, t.size) * (t[1] - t[0]), w, i
-
-
-@corruption("values missing")
-def _(rng, t, w, i):
-    return t, w, np.where(rng.random(t.size) < 0.1, np.nan, i)
-
-
-@corruption("columns swapped")
-def _(rng, t, w, i):
-    return t, i, w
-
-
-@corruption("two thirds in the other order")
-def _(rng, t, w, i):
-    order = np.roll(np.arange(t.size), t.size // 3)
-    return t, w[order], i[order]
+KINDS |= {
+    "time twice as long": lambda rng, t, w, i: (2.0 * t, w, i),
+    "time 5 % too long": lambda rng, t, w, i: (1.05 * t, w, i),
+    "ms for s": lambda rng, t, w, i: (1e3 * t, w, i),
+    "samples lost, numbered on": lambda rng, t, w, i: numbered_on(t, w, i, rng.random(t.size) > 0.02),
+    "samples written twice, numbered on": lambda rng, t, w, i: numbered_on(t, w, i, 1 + (rng.random(t.size) < 0.02)),
+    "a tenth cut out, numbered on": lambda rng, t, w, i: numbered_on(t, w, i, outside(stretch(rng, t.size, 0.1), t)),
+    "clock jumps ahead": lambda rng, t, w, i: (t + (t > t[t.size // 2]) * 0.5, w, i),
+    "clock jumps back": lambda rng, t, w, i: (t - (t > t[t.size // 2]) * 0.5, w, i),
+    "times that jitter by half a period": lambda rng, t, w, i: (
+        t + rng.uniform(-0.5, 0.5, t.size) * (t[1] - t[0]),
+        w,
+        i,
+    ),
+    "values missing": lambda rng, t, w, i: (t, w, np.where(rng.random(t.size) < 0.1, np.nan, i)),
+    "columns swapped": lambda rng, t, w, i: (t, i, w),
+    "two thirds in the other order": lambda rng, t, w, i: (t, np.roll(w, t.size // 3), np.roll(i, t.size // 3)),
+}
