@@ -23,7 +23,7 @@ def measures(trace: Trace, rig: Rig) -> Iterator[tuple[str, float]]:
     if {"position", "velocity"} <= set(trace.signals):
         both = velocity.compared(seen)
         assert both is not None
-        yield f"|ratio - 1| of speed (told {velocity.TOLD}, refused {velocity.REFUSED})", abs(both.ratio - 1.0)
+        yield f"|ratio - 1| of speed (told {velocity.WARNED}, refused {velocity.REFUSED})", abs(both.ratio - 1.0)
         yield f"remainder of speed (refused {velocity.REMAINDER})", both.remainder
     damage = repairs.damage_of(trace)
     share = (damage.lost + damage.stale) / len(trace)
