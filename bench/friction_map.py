@@ -108,7 +108,7 @@ def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
     gated = [passed(trace, rig, STEADY_CHECKS) for trace in recordings]
     velocity, effort, unit = _points([one.trace for one in gated], rig)
     total = float(effort @ effort)
-    plain = plain_curve(velocity, effort)
+    plain = _fitted("", (), velocity, effort)
     if plain.theta[0] * (velocity @ velocity) + plain.theta[1] * np.abs(velocity).sum() < 0.0:
         raise InputError(
             "friction over speed",
@@ -187,11 +187,6 @@ def _different(speeds: Array) -> int:
     return 1 + int((np.diff(np.log(np.sort(speeds))) > 0.01).sum()) if speeds.size else 0
 
 
-def plain_curve(velocity: Array, effort: Array) -> FrictionCurve:
-    """The curve without an effect through points - rad/s (m/s), N*m (N) - (n,)."""
-    return _fitted("", (), velocity, effort)
-
-
 def bent_curve(name: str, velocity: Array, effort: Array) -> FrictionCurve:
     """The curve with an effect of speed alone, its shape the one that leaves least of what physics allows."""
     shapes = len(catalogue()[name].shapes)
@@ -217,14 +212,10 @@ def _columns(name: str, shape: tuple[float, ...], velocity: Array) -> Array:
     return np.column_stack(columns)
 
 
-def _holds_constant(table: Array) -> bool:
-    return bool((np.ptp(table[:, 3:], axis=0) == 0.0).any())
-
-
 def _fitted(name: str, shape: tuple[float, ...], velocity: Array, effort: Array) -> FrictionCurve:
     table = _columns(name, shape, velocity)
-    constant = not _holds_constant(table)
-    if not constant:
+    constant = bool(np.ptp(table[:, 3:], axis=0).all())
+    if not constant:  # as the effect has one
         table[:, 2] = 0.0
     solved, _, rank, _ = np.linalg.lstsq(table, effort, rcond=1e-10)
     theta = np.asarray(solved, dtype=np.float64)
