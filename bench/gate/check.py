@@ -73,7 +73,7 @@ class Balanced:
         sums: of the stretches.
         length: samples a window.
         by_motion, by_position: share of the effort's variance that motion explains, and motion with position.
-        theta: J, K_w, K_0, M_0 of the motion with position.
+        inertia, coulomb: J - kg*m**2 (kg), or what the effort's unit makes of it - and K_0 of the motion with position.
         power: mean of effort times speed.
         columns: (windows, 7).
         effort: mean over each window (windows,).
@@ -84,21 +84,12 @@ class Balanced:
     length: int
     by_motion: float
     by_position: float
-    theta: Array
+    inertia: float
+    coulomb: float
     power: float
     columns: Array
     effort: Array
     starts: NDArray[np.intp]
-
-    @property
-    def inertia(self) -> float:
-        """J - kg*m**2 (kg), or what the effort's unit makes of it."""
-        return float(self.theta[0])
-
-    @property
-    def coulomb(self) -> float:
-        """K_0 - the effort's unit."""
-        return float(self.theta[2])
 
     @cached_property
     def effort_over_noise(self) -> float:
@@ -131,13 +122,14 @@ def balanced(sums: Sequence[Sums], length: int) -> Balanced | None:
     scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0.0] = 1.0
     triangle = np.asarray(np.linalg.qr(np.column_stack([columns / scale, mean]), mode="r"))
-    shares, theta = [], np.zeros(MOTION)
+    shares, theta = list[float](), np.zeros(MOTION)
     for count in (MOTION, columns.shape[1]):
         theta = np.linalg.lstsq(triangle[:, :count], triangle[:, -1], rcond=DEPENDENT)[0]
         left = triangle[:, -1] - triangle[:, :count] @ theta
         shares.append(1.0 - float(left @ left) / mean.size / varies)
-    theta, power = (theta / scale)[:MOTION], float(np.mean(mean * columns[:, 1]))
-    return Balanced(sums, length, shares[0], shares[1], theta, power, columns, mean, starts)
+    inertia, _, coulomb = (theta / scale)[:3].tolist()
+    power = float(np.mean(mean * columns[:, 1]))
+    return Balanced(sums, length, shares[0], shares[1], inertia, coulomb, power, columns, mean, starts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -272,19 +264,8 @@ class Seen:
         return [Sums.of(self.trace, self.speed(part), effort, part) for part in self.stretches(3 * min(LENGTHS))]
 
 
-@dataclass(frozen=True)
-class Repaired:
-    """The result of a check that could put right what it found.
-
-    Attributes:
-        check: the result.
-        trace: as it was meant.
-    """
-
-    check: Check
-    trace: Trace
-
-
+#: A recording as it was meant, beside the result of a check that could put right what it found.
+Repaired = tuple[Check, Trace]
 #: What each check is: a question to a recording; None where it is not asked of such a one.
 Look = Callable[[Seen], Check | Repaired | None]
 

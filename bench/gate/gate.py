@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bench.axis_kind import INERTIA
-from bench.errors import BenchError, InputError, UndeterminedError
+from bench.errors import InputError, UndeterminedError
 from bench.gate import effort, neighbours, plausible, repairs, signals, throughout, timing, velocity
-from bench.gate.check import STATUSES, Check, Look, Repaired, Seen
+from bench.gate.check import STATUSES, Check, Look, Seen
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace, require_plausible
 
@@ -72,11 +72,10 @@ def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -
     seen, checks = Seen(trace, rig), list[Check]()
     for look in looks:
         found = look(seen)
-        if found is None:
-            continue
-        if isinstance(found, Repaired):
-            seen = Seen(found.trace, rig)
-        checks.append(found.check if isinstance(found, Repaired) else found)
+        if isinstance(found, tuple):
+            found, repaired = found
+            seen = Seen(repaired, rig)
+        checks += [] if found is None else [found]
     return Gated(seen.trace, tuple(checks))
 
 
@@ -94,18 +93,14 @@ def passed(trace: Trace, rig: Rig, looks: Sequence[Look] = CHECKS) -> Gated:
 def require(checks: Sequence[Check], trace: Trace) -> None:
     """Raise the first check of a recording, or of a part of it, that fails."""
     failed = next((check for check in checks if check.status == "fail"), None)
-    if failed is not None:
-        raise _error(failed, tuple(checks), trace)
-
-
-def _error(failed: Check, checks: tuple[Check, ...], trace: Trace) -> BenchError:
+    if failed is None:
+        return
+    where = f"{trace.origin}: {failed.name}"
     if not failed.unanswerable:
-        allowed = f"allowed: {failed.allowed}; {failed.advice}"
-        return InputError(f"{trace.origin}: {failed.name}", f"found: {failed.found}", allowed)
-    wanted = trace.axis_kind.in_words(INERTIA)
-    error = UnanswerableError(wanted, f"{trace.origin}: {failed.name}: {failed.found}", failed.advice)
-    error.checks = checks
-    return error
+        raise InputError(where, f"found: {failed.found}", f"allowed: {failed.allowed}; {failed.advice}")
+    error = UnanswerableError(trace.axis_kind.in_words(INERTIA), f"{where}: {failed.found}", failed.advice)
+    error.checks = tuple(checks)
+    raise error
 
 
 def joined(parts: Sequence[Sequence[Check]]) -> tuple[Check, ...]:
@@ -125,8 +120,5 @@ def _worst(same: Sequence[Check]) -> Check:
 
 def warnings_of(checks: Sequence[Check]) -> list[str]:
     """A line for each check that warns."""
-    return [
-        f"{check.name}: {check.found}; {check.advice}" if check.advice else f"{check.name}: {check.found}"
-        for check in checks
-        if check.status == "warn"
-    ]
+    warned = (check for check in checks if check.status == "warn")
+    return [f"{one.name}: {'; '.join(filter(None, (one.found, one.advice)))}" for one in warned]

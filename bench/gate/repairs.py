@@ -95,7 +95,7 @@ def none_lost(seen: Seen) -> Check | Repaired:
     found = f"{counted(lost, 'sample')} lost, {stale} repeated of {len(trace)}, though the time runs on evenly"
     if lost + stale > most:
         return Check(NAME, "fail", found, ALLOWED, ADVICE)
-    return Repaired(Check(NAME, "warn", f"{found}; put right", ALLOWED, ADVICE), right)
+    return Check(NAME, "warn", f"{found}; put right", ALLOWED, ADVICE), right
 
 
 def damage_of(trace: Trace) -> Damage:
@@ -186,8 +186,8 @@ def repaired(trace: Trace, damage: Damage) -> Trace:
     base = trace.time_base
     if base is not None:
         holes = np.flatnonzero(gap > HOLE + 1.0)
-        steps_of_parts = tuple((float(time[k]), float(gap[k] * period)) for k in holes)
-        base = replace(base, holes=steps_of_parts, interpolated=base.interpolated + filled.size)
+        told = tuple((float(time[k]), float(gap[k] * period)) for k in holes)
+        base = replace(base, holes=told, interpolated=base.interpolated + filled.size)
     return replace(trace, time=np.concatenate([time, between])[order], signals=signals, time_base=base)
 
 
@@ -217,7 +217,7 @@ def runs_on(seen: Seen) -> Check | Repaired:
     wraps = Wraps(period, int(places.size))
     wrapping = [name for name in ("position", "position_reference") if name in trace]
     repaired = trace.with_signals({name: undone(trace[name], period) for name in wrapping}, {})
-    return Repaired(_undone(trace, wraps), replace(repaired, wraps=wraps))
+    return _undone(trace, wraps), replace(repaired, wraps=wraps)
 
 
 def _undone(trace: Trace, wraps: Wraps) -> Check:

@@ -131,11 +131,8 @@ def _averaged(values: Array, size: int) -> Array:
 def _heavy(seen: Seen) -> float | None:
     """Times the motor's own inertia (mass), where the recording makes it more than any load can be."""
     rig = seen.rig
-    rotor = (rig.motor.rotor_inertia or rig.motor.moving_mass) if rig is not None else None
-    if rig is None or rotor is None or seen.effort is None or rig.effort(seen.trace)[1] != rig.effort_unit:
+    if rig is None or not rig.motor.inertia or seen.effort is None or rig.effort(seen.trace)[1] != rig.effort_unit:
         return None
     fitted = seen.balance((WINDOW,))
-    if fitted is None or fitted.by_motion < 0.5:
-        return None
-    ratio = fitted.inertia / rotor
+    ratio = fitted.inertia / rig.motor.inertia if fitted is not None and fitted.by_motion >= 0.5 else 0.0
     return ratio if ratio > HEAVY else None
