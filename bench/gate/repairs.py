@@ -22,7 +22,7 @@ from bench.arrays import Array, rms
 from bench.gate.check import JITTER, Check, Repaired, Seen, absent, resolution_of
 from bench.trace.time_base import HOLE, counted, interpolate
 from bench.trace.trace import Trace
-from bench.trace.wraps import Wraps, jumps, period_of, undone
+from bench.trace.wraps import Wraps, jumps, period_of
 
 NAME = "lost_samples"
 #: Samples of the running median, and of the shortest stretch that is looked at.
@@ -216,7 +216,7 @@ def runs_on(seen: Seen) -> Check | Repaired:
         return Check(WRAPS, "fail", found, ALLOWED_WRAPS, advice)
     wraps = Wraps(period, int(places.size))
     wrapping = [name for name in ("position", "position_reference") if name in trace]
-    repaired = trace.with_signals({name: undone(trace[name], period) for name in wrapping}, {})
+    repaired = trace.with_signals({name: np.unwrap(trace[name], period=period) for name in wrapping}, {})
     return _undone(trace, wraps), replace(repaired, wraps=wraps)
 
 

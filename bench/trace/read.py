@@ -20,7 +20,7 @@ from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions
 from bench.trace.joints import by_joints
 from bench.trace.readers.arrow import PARQUET
-from bench.trace.readers.codesys import CODESYS_CSV, CODESYS_TEXT, CODESYS_XML
+from bench.trace.readers.codesys import CODESYS_CSV, CODESYS_TEXT, CODESYS_XML, SINUMERIK
 from bench.trace.readers.epos import EPOS
 from bench.trace.readers.json_log import BAM, JSON_LOG
 from bench.trace.readers.lerobot import LEROBOT
@@ -29,7 +29,6 @@ from bench.trace.readers.measurement import MDF, TDMS
 from bench.trace.readers.named_arrays import HDF5, MAT, NUMPY
 from bench.trace.readers.table import TABLE
 from bench.trace.readers.twincat import TWINCAT
-from bench.trace.readers.xml import SINUMERIK
 from bench.trace.source import Source, open_source
 from bench.trace.trace import Trace, assemble
 

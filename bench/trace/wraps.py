@@ -91,11 +91,6 @@ def period_of(position: Array, places: NDArray[np.intp], count: float = 0.0) -> 
     return nearest if abs(nearest - period) <= doubt else period
 
 
-def undone(position: Array, period: float) -> Array:
-    """A position (n,) without its jumps by `period`, of steps below half of it."""
-    return np.unwrap(position, period=period)
-
-
 class Unwrapping:
     """A position made continuous piece by piece, with the period found in earlier pieces.
 

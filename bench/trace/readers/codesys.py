@@ -1,5 +1,8 @@
 """Readers of CODESYS V3 and Machine Expert traces: the trace editor's own file, and what it exports as CSV or text.
 
+XML of controllers is told apart by its root element: that of a Sinumerik frequency response is recognised so that the
+user learns why it is no trace of a motion.
+
 `<Trace><TraceConfiguration>...<Single Name="MicroSeconds" Type="bool">False</Single>...</TraceConfiguration>
 <TraceData><TraceRecord><TraceVariable VarName="PLC_PRG.x"><Values>1,2</Values><Timestamps>18,48</Timestamps>...`: one
 time vector per variable, in ms or us from the trace's start. No format has units; the bench's own files tell them in
@@ -11,6 +14,7 @@ from __future__ import annotations
 import codecs
 import re
 from collections.abc import Mapping
+from typing import NoReturn
 from xml.etree import ElementTree
 
 import numpy as np
@@ -21,7 +25,6 @@ from bench.errors import InputError
 from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label, with_shared_times
 from bench.trace.readers.table import BLANKS, read_timed
-from bench.trace.readers.xml import parse, root_name
 from bench.trace.source import FileFormat, Source, no_samples, shows
 from bench.units import convert
 
@@ -34,14 +37,44 @@ LAB_UNITS: dict[str, str] = {
     "velocity_reference": "deg/s",
 }
 _UNITS_COMMENT = "units: "
+#: A comment of XML, which need not be closed.
+_XML_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_ROOT = re.compile(r"<([A-Za-z_][\w:.-]*)")
 _MICROSECONDS = 32
 _EXPORT = re.compile(r"\A\s*\[key\]|^\d+\.Variable;", re.MULTILINE)
 _FLAGS = re.compile(r"[0-9]{1,19}")
 _STAMPS = re.compile(r"^[ \t]*(?:Timestamp|Zeitstempel)[ \t]*\((ms|us|µs)\)[ \t]+(\S.*)$", re.MULTILINE)
 
 
+def _root_name(source: Source) -> str:
+    """Name of the root element without its namespace; empty if the content is no XML."""
+    head = source.head.lstrip()
+    match = _ROOT.search(_XML_COMMENT.sub("", head)) if head.startswith("<") else None
+    return match[1].rsplit(":", 1)[-1] if match else ""
+
+
+def _parse(source: Source) -> ElementTree.Element:
+    """Root element; its namespaces are left out of all names.
+
+    Raises:
+        InputError: not well-formed, as a truncated file is not.
+    """
+    try:
+        text: str | bytes = source.content.decode("utf-8")  # a str, for the declaration may still say utf-16
+    except UnicodeDecodeError:
+        text = source.content
+    try:
+        root = ElementTree.fromstring(text)
+    except (ElementTree.ParseError, LookupError, ValueError) as error:
+        found = f"the XML is truncated or damaged ({error})"
+        raise InputError(source.path, found, "allowed: a complete XML") from error
+    for element in root.iter():
+        element.tag = element.tag.rsplit("}", 1)[-1]
+    return root
+
+
 def _read_xml(source: Source) -> Recording:
-    root = parse(source)
+    root = _parse(source)
     settings = {single.get("Name", ""): (single.text or "").strip() for single in root.iter("Single")}
     time_unit = "us" if settings.get("MicroSeconds", "").lower() == "true" else "ms"
     comment = settings.get("Comment", "")
@@ -132,15 +165,26 @@ def _read_text(source: Source) -> Recording:
     return Recording(tuple(channels), CODESYS_TEXT.format, source.path, metadata, usual_units=LAB_UNITS)
 
 
+def _refuse(source: Source) -> NoReturn:
+    raise InputError(
+        source.path,
+        "found a Sinumerik frequency-response measurement, which holds no motion over time",
+        "allowed: a recording of velocity or position and of current or torque over time",
+    )
+
+
 #: The trace editor's own file: `.trace`, or the same as `.xml`.
 CODESYS_XML = FileFormat(
-    "CODESYS / Machine Expert trace", (".trace", ".xml"), lambda s: root_name(s) == "Trace", _read_xml
+    "CODESYS / Machine Expert trace", (".trace", ".xml"), lambda s: _root_name(s) == "Trace", _read_xml
 )
 #: A header of `key; value` lines (`Flags` 16: times in ms, 32: us), then per variable `N.Variable; name`, further keys,
 #: `N.Data;` and lines `; time; value`.
 CODESYS_CSV = FileFormat("CODESYS / Machine Expert CSV export", (), shows(_EXPORT), _read_csv)
 #: A title and the project's path, then `Timestamp(ms) VarA VarB` (German `Zeitstempel(ms)`).
 CODESYS_TEXT = FileFormat("CODESYS / Machine Expert text export", (), shows(_STAMPS), _read_text)
+SINUMERIK = FileFormat(
+    "Sinumerik frequency response (refused)", (), lambda s: _root_name(s).startswith("ResponseTest"), _refuse
+)
 
 
 def machine_expert_trace(table: pa.Table) -> bytes:
