@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -214,32 +215,18 @@ def believed(found: Diagnosis, effect: str, own: Sequence[str]) -> dict[str, flo
     return {effect: likely.get(twin, 0.0), **others, NONE: found.probabilities.none}
 
 
-@dataclass(frozen=True)
-class Trial:
-    """One effect that is tried in a recording.
+def tried(own: Own, strengths: Sequence[float], seed: int, name: str) -> tuple[Injection, ...]:
+    """One effect at each strength asked for, or without any at those that close in on the least that is named.
 
-    Attributes:
-        own: the recording.
-        name: of the effect.
-        strengths: that are tried; () where the least that is named is sought.
-        seed: of its other parameters.
+    Arguments as `inject` and `put_into` have them.
     """
-
-    own: Own
-    name: str
-    strengths: tuple[float, ...]
-    seed: int
-
-
-def tried(trial: Trial) -> tuple[Injection, ...]:
-    """At each strength asked for, or at those that close in on the least that is named."""
-    if trial.strengths:
-        at = (put_into(trial.own, trial.name, strength, trial.seed) for strength in trial.strengths)
+    if strengths:
+        at = (put_into(own, name, strength, seed) for strength in strengths)
         return tuple(case for case in at if case is not None)
     (low, high), cases = SPAN, []
     for _ in range(TRIALS):
         middle = math.sqrt(low * high)
-        case = put_into(trial.own, trial.name, middle, trial.seed)
+        case = put_into(own, name, middle, seed)
         low, high = (low, middle) if case is not None and case.named else (middle, high)
         cases += [] if case is None else [case]
     return tuple(cases)
@@ -300,10 +287,10 @@ def inject(
             found = f"found '{name}'{nearest(name, list(INJECTABLE))}"
             raise InputError("--effect", found, f"allowed: some of {', '.join(INJECTABLE)}")
     itself, asked = own(trace, rig), tuple(names) or INJECTABLE
-    trials = [Trial(itself, name, tuple(strengths), seed) for name in asked]
     cases: dict[str, tuple[Injection, ...]] = {}
     failed: dict[str, str] = {}
-    for place, outcome in each(tried, trials, Limits(deadline=DEADLINE), workers):
+    work = partial(tried, itself, tuple(strengths), seed)
+    for place, outcome in each(work, asked, Limits(deadline=DEADLINE), workers):
         if isinstance(outcome, Failure):
             failed[asked[place]] = outcome.reason
         else:

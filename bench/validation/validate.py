@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -95,28 +96,14 @@ def with_truth(case: Case) -> Rig:
 TOGETHER = 64
 
 
-@dataclass(frozen=True)
-class Piece:
-    """Consecutive runs of a plan, from `first` up to and without `stop`."""
-
-    plan: Plan
-    first: int
-    stop: int
-
-    @property
-    def cases(self) -> list[Case]:
-        """Of its runs."""
-        return [self.plan.case(index) for index in range(self.first, self.stop)]
+def pieces(count: int) -> list[range]:
+    """Indices of so many runs, cut for the work."""
+    return [range(first, min(first + TOGETHER, count)) for first in range(0, count, TOGETHER)]
 
 
-def pieces(plan: Plan, count: int) -> list[Piece]:
-    """The runs of a plan, cut for the work; a run is the same in any piece."""
-    return [Piece(plan, first, min(first + TOGETHER, count)) for first in range(0, count, TOGETHER)]
-
-
-def carried_out(piece: Piece) -> list[Run]:
-    """The runs of a piece."""
-    cases, plan = piece.cases, piece.plan
+def carried_out(plan: Plan, indices: Sequence[int]) -> list[Run]:
+    """Runs of a plan, by their indices; each is the same whatever is simulated beside it."""
+    cases = [plan.case(index) for index in indices]
     return [judged(case, made, plan) for case, made in zip(cases, record(cases, plan.seed), strict=True)]
 
 
@@ -166,11 +153,6 @@ def drawn(case: Case) -> Run:
     )
 
 
-def failed(piece: Piece, reason: str) -> Sequence[Run]:
-    """The runs of a piece whose work gave no result."""
-    return [replace(drawn(case), status="failed", reason=reason) for case in piece.cases]
-
-
 #: For one piece of work: ten times of what it takes where it is slowest, several effects in each run - s.
 DEADLINE = 3600.0
 
@@ -209,11 +191,13 @@ def validate(
     Raises:
         InputError: no Dask scheduler answers at the address.
     """
-    work = pieces(plan, count)
+    work = pieces(count)
     runs: dict[int, Run] = {}
-    for place, outcome in each(carried_out, work, Limits(deadline=DEADLINE), workers, scheduler):
-        found = failed(work[place], outcome.reason) if isinstance(outcome, Failure) else outcome
-        runs |= {run.index: run for run in found}
+    for place, outcome in each(partial(carried_out, plan), work, Limits(deadline=DEADLINE), workers, scheduler):
+        if isinstance(outcome, Failure):
+            lost = (drawn(plan.case(index)) for index in work[place])
+            outcome = [replace(run, status="failed", reason=outcome.reason) for run in lost]
+        runs |= {run.index: run for run in outcome}
         progress(len(runs) / count)
     ordered = tuple(runs[index] for index in range(count))
     return Validation(ordered, tuple(coverage(ordered)), naming(ordered))

@@ -12,7 +12,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.parameter import Parameter
 from bench.validation import into
 from bench.validation.independent.effects.electronics import CoggingTorque
-from bench.validation.into import NONE, Injection, Injections, Own, Trial, axis_of, inject, judged, own, tried
+from bench.validation.into import NONE, Injection, Injections, Own, axis_of, inject, judged, own, tried
 from tests.validation.test_injection import AXIS, RIG, SWING, host_of
 
 OWN = Own(host_of(SWING, np.zeros(SWING.size)), ("unbalance",), "explained", frozenset({"unbalance"}), 0.01, "N*m")
@@ -76,7 +76,7 @@ def test_the_least_that_is_named_is_closed_in_on(monkeypatch, least):
         return replace(CASE, strength=strength, fate="right" if strength >= least else "flagged")
 
     monkeypatch.setattr(into, "put_into", put_into)
-    cases = tried(Trial(OWN, "cogging_torque", (), 1))
+    cases = tried(OWN, (), 1, "cogging_torque")
     assert len(cases) == 5
     named = Injections(OWN, cases, True, (), {}).least["cogging_torque"]
     assert least <= named.strength <= 1.19 * least

@@ -32,16 +32,13 @@ def test_a_recording_is_the_same_bit_for_bit_alone_and_beside_others():
 
 
 def test_pieces_hold_every_run_once():
-    plan = Plan()
-    found = [index for piece in pieces(plan, 2 * TOGETHER + 3) for index in range(piece.first, piece.stop)]
-    assert found == list(range(2 * TOGETHER + 3))
+    assert [index for piece in pieces(2 * TOGETHER + 3) for index in piece] == list(range(2 * TOGETHER + 3))
 
 
 def test_what_is_reported_in_a_process_of_its_own_is_what_is_reported_here():
-    (piece,) = pieces(PLAN, 3)
     shares = []
     found = validate(PLAN, 3, workers=1, progress=shares.append)
-    assert found.runs == tuple(carried_out(piece))
+    assert found.runs == tuple(carried_out(PLAN, range(3)))
     assert shares == [1.0]
 
 
