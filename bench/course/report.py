@@ -166,13 +166,14 @@ def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover
 def summary(results: Sequence[TaskResult]) -> Section:
     """What each task comes to, on one table: its first numbers, how well they are known, or that it was not done."""
     rows: list[tuple[str, ...]] = []
+    columns = ("quantity", "value>", "± (95 %)>", "unit")
     for result in (result for result in results if result.key.isdigit()):
         heads = [(result.key, result.title), *[("", "")] * (FIRST - 1)]
         if result.reason is not None:
             rows.append((*heads[0], "not done, see there", "", "", ""))
-        for head, n in zip(heads, result.numbers[:FIRST], strict=False):
-            rows.append((*head, n.name, f"{n.value:.5g}", "" if n.half is None else f"{n.half:.2g}", n.unit))
-    answers = table("The answers", ("task", "about", "quantity", "value>", "± (95 %)>", "unit"), rows)
+        for head, number in zip(heads, result.numbers[:FIRST], strict=False):
+            rows.append((*head, *_cells(number, columns)))
+    answers = table("The answers", ("task", "about", *columns), rows)
     return Section(key="answers", heading="Answers", blocks=(answers,))
 
 
@@ -210,36 +211,34 @@ def task_section(result: TaskResult) -> Section:
 
 def _numbers_table(numbers: Sequence[Number]) -> Table:
     """Every number with its unit and source; beside it how well it is known and its truth, where any is."""
-    columns = {"quantity": [n.name for n in numbers], "value>": [f"{n.value:.5g}" for n in numbers]}
-    if any(number.half is not None for number in numbers):
-        columns["± (95 %)>"] = ["" if n.half is None else f"{n.half:.2g}" for n in numbers]
-    columns["unit"] = [n.unit for n in numbers]
-    if any(number.truth is not None for number in numbers):
-        columns["truth>"], columns["error>"] = ([_cells(n)[k] for n in numbers] for k in (3, 4))
-    columns["from"] = [n.source for n in numbers]
-    return table("Results", tuple(columns), list(zip(*columns.values(), strict=True)))
+    halves = ("± (95 %)>",) if any(number.half is not None for number in numbers) else ()
+    truths = ("truth>", "error>") if any(number.truth is not None for number in numbers) else ()
+    columns = ("quantity", "value>", *halves, "unit", *truths, "from")
+    return table("Results", columns, [_cells(number, columns) for number in numbers])
 
 
-def _cells(number: Number) -> tuple[str, str, str, str, str]:
-    """Name, value with five digits, unit, truth, and how far the value is from that."""
-    truth = number.truth
-    error = f"{number.value / truth - 1.0:+.3%}" if truth else ""
-    return number.name, f"{number.value:.5g}", number.unit, "" if truth is None else f"{truth:.5g}", error
+def _cells(number: Number, columns: Iterable[str]) -> list[str]:
+    """What stands of a number in columns of a table, empty where it is not known."""
+    half, truth = number.half, number.truth
+    cells = {"quantity": number.name, "value>": f"{number.value:.5g}", "unit": number.unit, "from": number.source}
+    cells["± (95 %)>"] = "" if half is None else f"{half:.2g}"
+    cells["truth>"] = "" if truth is None else f"{truth:.5g}"
+    cells["error>"] = f"{number.value / truth - 1.0:+.3%}" if truth else ""
+    return [cells[column] for column in columns]
 
 
 def course_table(results: Sequence[TaskResult]) -> Table:
     """Every number with its unit, beside its truth where that is known; of what was not done, what is missing."""
     rows: list[tuple[str, ...]] = []
-    marked = []
+    marked, columns = [], ("quantity", "value>", "truth>", "error>", "unit")
     for result in results:
         if result.reason is not None:
             marked.append(len(rows))
             rows.append((result.key, f"not done: {result.reason}", "", "", "", ""))
             continue
         for place, number in enumerate(result.numbers):
-            name, value, unit, truth, error = _cells(number)
-            rows.append(("" if place else result.key, name, value, truth, error, unit))
-    return table("Lab course", ("task", "quantity", "value>", "truth>", "error>", "unit"), rows, marked)
+            rows.append(("" if place else result.key, *_cells(number, columns)))
+    return table("Lab course", ("task", *columns), rows, marked)
 
 
 def lab_json(results: Sequence[TaskResult], axis: str) -> str:
