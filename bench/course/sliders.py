@@ -26,6 +26,8 @@ from bench.trace.filter import GaussianFilter
 
 #: Tasks that sliders redraw.
 REDRAWN = ("8", "9", "10", "11")
+#: What the script is told of each slider, beside the tasks that it redraws.
+OF_A_SLIDER = ("key", "label", "unit", "start", "step", "below", "above")
 SCRIPT = asset("data", "lab", "sliders.js")
 
 
@@ -60,16 +62,8 @@ def _sliders(data: Mapping[str, Any]) -> list[dict[str, Any]]:
     found = []
 
     def slider(key: str, label: str, unit: str, start: float, step: float, ends: tuple[int, int], *tasks: str) -> None:
-        own = {
-            "key": key,
-            "label": label,
-            "unit": unit,
-            "start": start,
-            "step": step,
-            "below": ends[0],
-            "above": ends[1],
-        }
-        found.append({**own, "tasks": [task for task in tasks if task in data["charts"]]})
+        own = zip(OF_A_SLIDER, (key, label, unit, start, step, *ends), strict=True)
+        found.append({**dict(own), "tasks": [task for task in tasks if task in data["charts"]]})
 
     slider("kT", "kT(Iq) times", "", 1.0, 0.01, (10, 10), *REDRAWN)
     if friction := data.get("friction"):
