@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 
-from bench.course import catapult, corner, difference, examples, friction, inertia, peak_torque, torque_constants
+from bench.course import catapult, corner, examples, friction, inertia, peak_torque, torque_constants
 from bench.course.recordings import LabRecordings
 from bench.course.result import EXAMPLE, TaskResult
 from bench.course.tracking import tracking
@@ -51,7 +51,7 @@ TASKS = (
     Task(
         "2",
         "Backward difference",
-        difference.backward_difference_of_a_sine,
+        inertia.backward_difference_of_a_sine,
         recorded=False,
         equation="u'[k] = (u[k] - u[k-1])/T",
     ),
