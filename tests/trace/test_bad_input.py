@@ -283,3 +283,12 @@ def test_damage_anywhere_gives_a_trace_or_an_input_error(samples, tmp_path, kind
         assert "\n" not in str(error)
     else:
         write(trace, tmp_path / "again.parquet")
+
+
+@pytest.mark.parametrize("content", ["[]", "[3, 4]", '[{"timestamp": 0, "speed": 1}, 3]', '{"entries": [3, 4]}'])
+def test_a_log_whose_samples_are_no_records_is_refused_in_one_line(tmp_path, content):
+    path = tmp_path / "log.json"
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(InputError) as refused:
+        read(path)
+    assert str(path) in str(refused.value) and "\n" not in str(refused.value)

@@ -24,8 +24,6 @@ from rich.progress import track
 from tests.studies.mutation.mutants import DECIDING, ROOT, Mutant, drawn
 from tests.studies.mutation.reach import REACH
 
-#: What a copy of the project needs for its tests; `shared` lies beside it.
-COPIED = ("bench", "tests", "data", "mjcf", "docs", "pyproject.toml", "README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
 PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--tb=no", "--no-header"]
 
@@ -184,11 +182,10 @@ def main(
 def _copy(folder: Path) -> Path:
     """A copy of the project with the shared recordings beside it."""
     project = folder / "project"
-    project.mkdir(parents=True)
-    ignored = shutil.ignore_patterns("__pycache__", "_build")
-    for name in COPIED:
-        source = ROOT / name
-        shutil.copytree(source, project / name, ignore=ignored) if source.is_dir() else shutil.copy(source, project)
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True)
+    for name in filter(None, listed.stdout.split("\0")):  # all of it: a test that misses a file fails of that
+        (project / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, project / name)
     shared = ROOT.parent / "shared"
     if shared.exists():
         (folder / "shared").symlink_to(shared)
