@@ -82,8 +82,8 @@ def mutants_of(path: Path) -> list[Mutant]:
     name = str(path.relative_to(ROOT))
     found = []
     for node, function in _deciding(ast.parse(text), None):
-        before = ast.get_source_segment(text, node) or ""
         for after in _changed(node):
+            before = ast.get_source_segment(text, node) or ""  # which splits the text into lines each time
             place = (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
             found.append(Mutant(name, *place, before, f"({after})", function))
     return found
