@@ -87,7 +87,7 @@ class Row:
         fate: as `bench.validation.into` has it, or UNABLE or FAILED.
         names, verdict, reason, probabilities, seconds: as there.
         quantities: true value, value, and both ends of the interval of 95 %, by name.
-        hidden: what is in the recording, too, and was not named before.
+        hidden: what is in the recording, too, as far as it is known or was named before.
     """
 
     case: Case
@@ -108,7 +108,7 @@ class Row:
         told = {one.quantity: (one.true, one.parameter.value, *one.parameter.ci95) for one in found.scored}
         beliefs = dict(found.probabilities)
         answer = found.names, found.verdict, found.reason, beliefs, found.seconds, told
-        return cls(case, found.fate, *answer, own.hidden)
+        return cls(case, found.fate, *answer, (*own.names, *own.hidden))
 
     @property
     def believed(self) -> float:
