@@ -18,6 +18,7 @@ class SlowMemoryFriction(Effect):
     A relative_amplitude, T time_constant - s, w_0 speed - rad/s.
     """
 
+    name: ClassVar[str] = "slow_memory_friction"
     relative_amplitude: float
     time_constant: float
     speed: float
@@ -38,6 +39,7 @@ class SlowMemoryFriction(Effect):
 class PositionNotch(Effect):
     """Resisting torque A*exp(-(d/s)**2) where d is the angle from the notch within the turn; A - N*m, s width - rad."""
 
+    name: ClassVar[str] = "position_notch"
     on_linear_axis: ClassVar[bool] = False
     amplitude: float
     angle: float
@@ -56,6 +58,7 @@ class PositionNotch(Effect):
 class Vibration(Effect):
     """Resisting torque A*sin(2*pi*f*t + phi) from a neighbour that runs; A amplitude - N*m, f frequency - Hz."""
 
+    name: ClassVar[str] = "vibration"
     amplitude: float
     frequency: float
     phase: float = 0.0
@@ -75,6 +78,7 @@ class RestHardening(Effect):
     Friction peaks after every pause. A relative_amplitude, T time_constant - s, w_0 speed - rad/s.
     """
 
+    name: ClassVar[str] = "rest_hardening"
     relative_amplitude: float
     time_constant: float
     speed: float

@@ -13,7 +13,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter, savgol_filter
@@ -132,8 +131,13 @@ def _motion(trace: Trace, part: slice) -> Array:
     return np.stack([position, velocity, acceleration, np.sign(velocity) * (np.abs(velocity) > least)])
 
 
+def hooks(kind: type[Effect]) -> set[str]:
+    """Through which effects of a kind act: those that the class, or one that it is derived from, defines."""
+    return {hook for each in kind.mro() if each not in Effect.mro() for hook in vars(each)}
+
+
 #: Names of the catalogue that can be put into a recording: those of the independent axis that leave the motion to it.
-INJECTABLE = tuple(name for name in HIDEABLE if not KINDS[name].hooks() & MOVING)
+INJECTABLE = tuple(name for name in HIDEABLE if not hooks(KINDS[name]) & MOVING)
 
 
 def injected(host: Host, effect: Effect) -> Trace:
@@ -143,7 +147,7 @@ def injected(host: Host, effect: Effect) -> Trace:
         InputError: an effect that acts on the motion itself, as a voltage limit, on a signal that is not recorded, or
             that is so strong that the axis cannot have moved as it did.
     """
-    acts = effect.hooks()
+    acts = hooks(type(effect))
     if unable := acts & MOVING:
         raise InputError(effect.name, f"acts by {', '.join(unable)}", "allowed: what leaves the motion as it is")
     if acts & {"measured", "filtered"}:
@@ -160,13 +164,13 @@ def _needed(effect: Effect, acts: set[str], seen: StandIn) -> Array:
     """Motor torque that the motion takes with the effect - N*m (N) (m,)."""
     rows, torque = Rows(seen, slice(None), effect), seen.motor_torque
     if "resisting_torque" in acts:
-        torque = torque + rows.effect.resisting_torque(rows)
+        torque = torque + effect.resisting_torque(rows)
     if "added_inertia" in acts:
-        torque = torque + rows.effect.added_inertia(rows) * seen.acceleration
+        torque = torque + effect.added_inertia(rows) * seen.acceleration
     if "bristle_torque" in acts:
-        torque = torque + np.abs(seen.direction) * _bristles(rows) - seen.coulomb * seen.direction
+        torque = torque + np.abs(seen.direction) * _bristles(effect, rows) - seen.coulomb * seen.direction
     if "transmitted_torque" in acts:
-        torque = torque - _behind_coupling(rows)
+        torque = torque - _behind_coupling(effect, rows)
     if acts & {"friction_excess", "friction_difference", "friction_factor"}:  # of the very torque that overcomes it
         return _solved(lambda at: at - _friction(effect, acts, seen.driven_by(at)), torque, effect.name)
     return torque
@@ -176,25 +180,25 @@ def _friction(effect: Effect, acts: set[str], seen: StandIn) -> Array:
     """Dry friction beyond K_0, against the motion - N*m (N) (m,)."""
     rows, level = Rows(seen, slice(None), effect), seen.coulomb
     if "friction_excess" in acts:
-        level = level + rows.effect.friction_excess(rows)
+        level = level + effect.friction_excess(rows)
     if "friction_difference" in acts:
-        level = level + 0.5 * seen.direction * rows.effect.friction_difference(rows)
+        level = level + 0.5 * seen.direction * effect.friction_difference(rows)
     if "friction_factor" in acts:
-        level = level * rows.effect.friction_factor(rows)
+        level = level * effect.friction_factor(rows)
     return (np.maximum(level, 0.0) - seen.coulomb) * seen.direction
 
 
-def _bristles(rows: Rows) -> Array:
+def _bristles(effect: Effect, rows: Rows) -> Array:
     """Torque of bristles that the motion bends, straight at the start of each stretch - N*m (N) (m,)."""
     level, bent = np.maximum(rows.coulomb, 1e-12), np.zeros_like(rows.position)
     period = rows.plant.host.trace.sample_period
     for part in rows.plant.parts:
         for k, speed in enumerate(np.diff(rows.position[part]) / period, part.start):
-            bent[k + 1] = rows.effect.bend(speed, level[k], bent[k], period)
-    return rows.effect.bristle_torque(rows, level, bent)
+            bent[k + 1] = effect.bend(speed, level[k], bent[k], period)
+    return effect.bristle_torque(rows, level, bent)
 
 
-def _behind_coupling(rows: Rows) -> Array:
+def _behind_coupling(effect: Effect, rows: Rows) -> Array:
     """Torque that a load behind a coupling does not ask of the motor that a rigid one would - N*m (N) (m,).
 
     With the motor's motion given, twist obeys J_l*twist'' + transmitted(twist, twist') = J_l*alpha; the motor carries
@@ -203,15 +207,15 @@ def _behind_coupling(rows: Rows) -> Array:
     axis, period = rows.plant.host.axis, rows.plant.host.trace.sample_period
     load = axis.inertia - axis.rotor_inertia
     far = np.array(1e6)  # in contact, whatever the gap: there what is transmitted rises by the stiffness
-    one, two = (rows.effect.transmitted_torque(rows, twist, 0.0 * far) for twist in (far, 2.0 * far))
-    count = math.ceil(STEPS * period * math.sqrt(float(two - one) / float(far) / load) / (2.0 * math.pi))
+    stiffness = effect.transmitted_torque(rows, 2.0 * far, 0.0 * far) - effect.transmitted_torque(rows, far, 0.0 * far)
+    count = math.ceil(STEPS * period * math.sqrt(float(stiffness) / float(far) / load) / (2.0 * math.pi))
     step, less = period / count, np.zeros_like(rows.position)
     for part in rows.plant.parts:
         twist = rate = np.zeros(())
         for k, alpha in enumerate(rows.acceleration[part], part.start):
-            less[k] = load * alpha - rows.effect.transmitted_torque(rows, twist, rate)
+            less[k] = load * alpha - effect.transmitted_torque(rows, twist, rate)
             for _ in range(count):
-                rate = rate + step * (alpha - rows.effect.transmitted_torque(rows, twist, rate) / load)
+                rate = rate + step * (alpha - effect.transmitted_torque(rows, twist, rate) / load)
                 twist = twist + step * rate
     return less
 
@@ -233,21 +237,23 @@ def _solved(function: Callable[[Array], Array], wanted: Array, what: str) -> Arr
 
 def _reported(effect: Effect, acts: set[str], seen: StandIn) -> Array:
     """Current that is recorded while one makes the torque that moves the axis - A (m,)."""
-    rows, current = Rows(seen, slice(None), effect), seen.acting_current
+    current = seen.acting_current
 
     def delivered(at: Array) -> Array:
         """What one acts like; where the rig tells no peak current, the largest that is recorded is it."""
         peak = np.maximum(seen.peak_current, np.abs(at).max())
-        drawing = Rows(replace(seen, acting_current=at, peak_current=peak), slice(None), effect)
-        return at * drawing.effect.torque_factor(drawing)
+        rows = Rows(replace(seen, acting_current=at, peak_current=peak), slice(None), effect)
+        return at * effect.torque_factor(rows)
 
     if "torque_factor" in acts:
         current = _solved(delivered, current, effect.name)
     if "true_current" in acts:
-        current = _solved(lambda at: rows.effect.true_current(rows, at), current, effect.name)
+        current = _solved(lambda at: effect.true_current(Rows(seen, slice(None), effect), at), current, effect.name)
     if acts & {"acting_current", "recorded_current"}:
-        period, constant = seen.host.trace.sample_period, rows.effect.time_constant
-        lagging = partial(_ahead if "acting_current" in acts else behind, period=period, constant=constant)
+        constant: float = effect.time_constant  # type: ignore[attr-defined]
+        lagging = partial(
+            _ahead if "acting_current" in acts else behind, period=seen.host.trace.sample_period, constant=constant
+        )
         current = np.concatenate([lagging(current[part]) for part in seen.parts])
     return current
 
@@ -270,11 +276,11 @@ def behind(values: Array, period: float, constant: float) -> Array:
     return values - lag
 
 
-def _read_otherwise(trace: Trace, effect: Any, acts: set[str]) -> Trace:  # noqa: ANN401 - has either hook
+def _read_otherwise(trace: Trace, effect: Effect, acts: set[str]) -> Trace:
     """The recording with another reading of its sensor of position and speed."""
     signals = {name: trace[name] for name in ("position", "velocity") if name in trace}
     if "filtered" in acts:
-        constant, velocity = effect.time_constant, trace["velocity"]
+        constant, velocity = effect.time_constant, trace["velocity"]  # type: ignore[attr-defined]
         late = [behind(velocity[part], trace.sample_period, constant) for part in trace.segments]
         signals["velocity"] = np.concatenate(late)
     else:

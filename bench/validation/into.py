@@ -123,12 +123,11 @@ def _lag(trace: Trace, found: Diagnosis) -> float:
 def _load(host: Host, found: Diagnosis) -> Array | None:
     """Torque of the load that the rig knows, or that the diagnosis names - N*m (N) (m,)."""
     known = host.rig.effort(host.trace)[0] - host.rig.own_effort(host.trace)[0]
-    named = [KINDS[one.name](**one.values) for one in found.effects if one.name in LOADS]
-    if not named and not known.any():
+    loads = [KINDS[one.name](**one.values) for one in found.effects if one.name in LOADS]
+    if not loads and not known.any():
         return None
     seen = stand_in(host)
-    loads = [Rows(seen, slice(None), one) for one in named]
-    return sum((np.asarray(load.effect.resisting_torque(load)) for load in loads), known)
+    return sum((np.asarray(load.resisting_torque(Rows(seen, slice(None), load))) for load in loads), known)
 
 
 @dataclass(frozen=True)

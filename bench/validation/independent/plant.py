@@ -265,7 +265,7 @@ class Plant:
 
 
 def _acting(plant: Plant, effects: Sequence[Sequence[Effect]]) -> defaultdict[str, list[Rows]]:
-    """For each hook the effects that have it, each stacked over its axes."""
+    """For each hook the effects whose class, or one that it is derived from, defines it, each stacked over its axes."""
     found: dict[tuple[type[Effect], int], list[tuple[int, Effect]]] = {}
     for row, those in enumerate(effects):
         for order, effect in enumerate(those):
@@ -276,6 +276,6 @@ def _acting(plant: Plant, effects: Sequence[Sequence[Effect]]) -> defaultdict[st
         index = np.array([row for row, _ in pairs])
         everywhere = len(index) == len(effects)
         rows = Rows(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
-        for hook in kind.hooks():
+        for hook in {hook for each in kind.mro() if each not in Effect.mro() for hook in vars(each)}:
             acting[hook].append(rows)
     return acting

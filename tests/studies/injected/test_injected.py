@@ -8,7 +8,7 @@ import pytest
 
 import bench
 from bench.trace.trace import Trace
-from bench.validation.independent.effects.mechanics import LoadDependentFriction, TorqueOffset
+from bench.validation.independent.effects import LoadDependentFriction, TorqueOffset
 from bench.validation.injection import INJECTABLE
 from bench.validation.into import NONE
 from tests.shared import needs_shared

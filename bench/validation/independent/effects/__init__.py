@@ -2,8 +2,37 @@
 
 import numpy as np
 
-from bench.validation.independent.effects import electronics, mechanics
 from bench.validation.independent.effects.effect import Effect
+from bench.validation.independent.effects.electronics import (
+    CoggingTorque,
+    CurrentFilterLag,
+    CurrentGainAsymmetry,
+    CurrentLoopLag,
+    CurrentOffsetDrift,
+    EncoderEccentricity,
+    TorqueConstantDrift,
+    TorqueConstantSaturation,
+    TorqueRipple,
+    VelocityFilterLag,
+    VoltageLimit,
+)
+from bench.validation.independent.effects.mechanics import (
+    Backlash,
+    DirectionalLoadFriction,
+    DirectionDependentFriction,
+    ElasticCoupling,
+    FrictionWarmup,
+    LoadDependentFriction,
+    LoadTorqueEvent,
+    PositionDependentFriction,
+    PositionDependentInertia,
+    PreslidingFriction,
+    QuadraticDrag,
+    StribeckFriction,
+    TorqueOffset,
+    TorsionSpring,
+    Unbalance,
+)
 
 
 def _by_name(*kinds: type[Effect]) -> dict[str, type[Effect]]:
@@ -11,35 +40,31 @@ def _by_name(*kinds: type[Effect]) -> dict[str, type[Effect]]:
 
 
 CATALOGUE = _by_name(
-    mechanics.StribeckFriction,
-    mechanics.PreslidingFriction,
-    mechanics.DirectionDependentFriction,
-    mechanics.QuadraticDrag,
-    mechanics.LoadDependentFriction,
-    mechanics.PositionDependentFriction,
-    mechanics.FrictionWarmup,
-    mechanics.TorqueOffset,
-    mechanics.Unbalance,
-    mechanics.TorsionSpring,
-    mechanics.PositionDependentInertia,
-    mechanics.ElasticCoupling,
-    mechanics.Backlash,
-    mechanics.LoadTorqueEvent,
-    electronics.CoggingTorque,
-    electronics.TorqueRipple,
-    electronics.TorqueConstantSaturation,
-    electronics.VoltageLimit,
-    electronics.CurrentLoopLag,
-    electronics.VelocityFilterLag,
-    electronics.EncoderEccentricity,
+    StribeckFriction,
+    PreslidingFriction,
+    DirectionDependentFriction,
+    QuadraticDrag,
+    LoadDependentFriction,
+    PositionDependentFriction,
+    FrictionWarmup,
+    TorqueOffset,
+    Unbalance,
+    TorsionSpring,
+    PositionDependentInertia,
+    ElasticCoupling,
+    Backlash,
+    LoadTorqueEvent,
+    CoggingTorque,
+    TorqueRipple,
+    TorqueConstantSaturation,
+    VoltageLimit,
+    CurrentLoopLag,
+    VelocityFilterLag,
+    EncoderEccentricity,
 )
 #: Drawn as a group of their own, so that a case of another group stays what it is.
 LATER = _by_name(
-    electronics.CurrentFilterLag,
-    electronics.CurrentGainAsymmetry,
-    electronics.CurrentOffsetDrift,
-    electronics.TorqueConstantDrift,
-    mechanics.DirectionalLoadFriction,
+    CurrentFilterLag, CurrentGainAsymmetry, CurrentOffsetDrift, TorqueConstantDrift, DirectionalLoadFriction
 )
 KINDS = CATALOGUE | LATER
 

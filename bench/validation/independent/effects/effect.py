@@ -5,7 +5,6 @@ The same object serves one axis (fields are numbers) and many (fields are arrays
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, ClassVar, Self
@@ -30,7 +29,7 @@ class Rows:
 
     plant: Any
     index: np.ndarray | slice
-    effect: Any
+    effect: Effect
     memory: np.ndarray = field(init=False)
     level: np.ndarray = field(init=False)
 
@@ -48,35 +47,10 @@ class Rows:
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical effect, called as its class is. It has the hooks through which it acts, and the plant asks no other.
+    """A physical effect. It defines the hooks through which it acts; the plant asks no other one.
 
     `rows` shows the state of the axes that have the effect, midway through the step; `memory` is the effect's own state
-    (one number an axis), `step` the time to advance - s. All give (k,), or one number for all axes.
-
-    Of the torque:
-        resisting_torque(rows): added to M_load on the motor's side - N*m.
-        torque_factor(rows): multiplies motor torque.
-        added_inertia(rows): added to the moment of inertia - kg*m**2.
-        transmitted_torque(rows, twist, twist_rate): from motor to load when they are separate bodies - N*m; twist is
-            motor minus load angle - rad.
-    Of dry friction:
-        friction_excess(rows): added to its level - N*m.
-        friction_difference(rows): level in positive minus level in negative direction - N*m.
-        friction_factor(rows): multiplies its level.
-        bristle_torque(rows, level, memory): replaces it - N*m; `level` is what it tends to.
-        bend(speed, level, memory, step): deflection of the bristles after the step.
-        remember(rows, memory, step): the effect's own state after the step.
-    Of the current - A:
-        driven_current(rows, demand, current, step): after the step, that the drive measures.
-        acting_current(current, memory, step): that makes torque, `step` after `memory` was it, while the measured one
-            is `current`.
-        true_current(rows, reading): that flows while the sensor of the drive reads one.
-        recorded_current(current, memory, step): that is recorded, `step` after `memory` was it, while the drive reads
-            `current`.
-    Of the sensor:
-        measured(position, speed): angle and speed as it sees them - rad, rad/s.
-        filtered(before, after, memory, step): reported speed after the step, in which the sensed one went from `before`
-            to `after` - rad/s.
+    (one number an axis), `step` the time to advance - s.
     """
 
     name: ClassVar[str]
@@ -85,14 +59,6 @@ class Effect:
     transmitted: ClassVar[bool] = False
     #: Name of the effect that no axis has beside it, or that no recording tells from it; one of the two says so.
     never_beside: ClassVar[str] = ""
-
-    def __init_subclass__(cls) -> None:
-        cls.name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", cls.__name__).lower()
-
-    @classmethod
-    def hooks(cls) -> set[str]:
-        """Through which effects of this kind act."""
-        return {hook for hook in dir(cls) if not hasattr(Effect, hook)}
 
     @classmethod
     def possible(cls, axis: Axis) -> bool:
@@ -111,6 +77,70 @@ class Effect:
     def quantities(self, axis: Axis) -> dict[str, float]:
         """Values of the quantities that the contract's effect of this name has."""
         return {key: float(value) for key, value in asdict(self).items()}
+
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
+        """Added to M_load on the motor's side - N*m."""
+        raise NotImplementedError
+
+    def friction_excess(self, rows: Rows) -> np.ndarray:
+        """Added to the level of dry friction - N*m."""
+        raise NotImplementedError
+
+    def friction_factor(self, rows: Rows) -> np.ndarray:
+        """Multiplies the level of dry friction."""
+        raise NotImplementedError
+
+    def friction_difference(self, rows: Rows) -> np.ndarray | float:
+        """Level in positive minus level in negative direction - N*m."""
+        raise NotImplementedError
+
+    def added_inertia(self, rows: Rows) -> np.ndarray:
+        """Added to the moment of inertia - kg*m**2."""
+        raise NotImplementedError
+
+    def torque_factor(self, rows: Rows) -> np.ndarray | float:
+        """Multiplies motor torque."""
+        raise NotImplementedError
+
+    def remember(self, rows: Rows, memory: np.ndarray, step: float) -> np.ndarray:
+        """The effect's own state after the step."""
+        raise NotImplementedError
+
+    def bristle_torque(self, rows: Rows, level: np.ndarray, memory: np.ndarray) -> np.ndarray:
+        """Friction torque that replaces dry friction - N*m; `level` is what it tends to."""
+        raise NotImplementedError
+
+    def bend(self, speed: np.ndarray, level: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        """Deflection of the bristles after the step."""
+        raise NotImplementedError
+
+    def transmitted_torque(self, rows: Rows, twist: np.ndarray, twist_rate: np.ndarray) -> np.ndarray:
+        """Torque from motor to load when they are separate bodies - N*m; twist = motor minus load angle - rad."""
+        raise NotImplementedError
+
+    def driven_current(self, rows: Rows, demand: np.ndarray, current: np.ndarray, step: float) -> np.ndarray:
+        """Current after the step, that the drive measures - A."""
+        raise NotImplementedError
+
+    def acting_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        """Current that makes torque, `step` after `memory` was it, while the measured one is `current` - A."""
+        raise NotImplementedError
+
+    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
+        """Current that flows while the sensor of the drive reads one - A."""
+        raise NotImplementedError
+
+    def recorded_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        """Current that is recorded, `step` after `memory` was it, while the drive reads `current` - A."""
+        raise NotImplementedError
+
+    def measured(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Angle and speed as the sensor sees them - rad, rad/s."""
+        raise NotImplementedError
+
+    def filtered(self, before: np.ndarray, after: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
+        """Reported speed after the step, in which the sensed one went from `before` to `after` - rad/s."""
+        raise NotImplementedError
 
 
 def stack(effects: Sequence[Effect]) -> Effect:

@@ -18,6 +18,7 @@ from bench.validation.independent.rig import Axis
 class StribeckFriction(Effect):
     """Level K_0 + (K_s - K_0)*exp(-(w/w_s)**2); K_s static friction - N*m, w_s Stribeck speed - rad/s."""
 
+    name: ClassVar[str] = "stribeck_friction"
     static_friction: float
     stribeck_velocity: float
 
@@ -38,6 +39,7 @@ class PreslidingFriction(Effect):
     Canudas de Wit et al., IEEE Trans. Automatic Control 40 (1995) 419, eqs. 1-3.
     """
 
+    name: ClassVar[str] = "presliding_friction"
     bristle_stiffness: float
     bristle_damping: float = 0.0
 
@@ -64,6 +66,7 @@ class DirectionDependentFriction(Effect):
     A share of the relative difference d/(2*K_0) may go into viscous friction too.
     """
 
+    name: ClassVar[str] = "direction_dependent_friction"
     coulomb_difference: float
     viscous_share: float = 0.0
 
@@ -88,6 +91,7 @@ class DirectionDependentFriction(Effect):
 class QuadraticDrag(Effect):
     """Resisting torque c*w*|w|; c quadratic_drag - N*m*s**2/rad**2."""
 
+    name: ClassVar[str] = "quadratic_drag"
     quadratic_drag: float
 
     @classmethod
@@ -102,6 +106,7 @@ class QuadraticDrag(Effect):
 class LoadDependentFriction(Effect):
     """Level K_0 + mu*|M|, M motor torque; mu load_friction_coefficient."""
 
+    name: ClassVar[str] = "load_dependent_friction"
     load_friction_coefficient: float
 
     @classmethod
@@ -119,6 +124,7 @@ class DirectionalLoadFriction(Effect):
     K_m motor_coefficient, load_ratio K_e/K_m. Duclusaud et al., arXiv 2410.08650 (2024).
     """
 
+    name: ClassVar[str] = "directional_load_friction"
     never_beside: ClassVar[str] = "load_dependent_friction"
     motor_coefficient: float
     load_ratio: float
@@ -137,6 +143,7 @@ class DirectionalLoadFriction(Effect):
 class PositionDependentFriction(Effect):
     """Level K_0*(1 + a*sin(q + phi)); a relative_amplitude."""
 
+    name: ClassVar[str] = "position_dependent_friction"
     on_linear_axis: ClassVar[bool] = False
     relative_amplitude: float
     phase: float = 0.0
@@ -153,6 +160,7 @@ class PositionDependentFriction(Effect):
 class FrictionWarmup(Effect):
     """Level K_0*(1 + A*exp(-t/T)); A relative_amplitude, T time_constant - s; a share of it on K_w too."""
 
+    name: ClassVar[str] = "friction_warmup"
     relative_amplitude: float
     time_constant: float
     viscous_share: float = 0.0
@@ -176,6 +184,7 @@ class FrictionWarmup(Effect):
 class TorqueOffset(Effect):
     """Constant resisting torque - N*m."""
 
+    name: ClassVar[str] = "torque_offset"
     never_beside: ClassVar[str] = "direction_dependent_friction"
     transmitted: ClassVar[bool] = True
     torque: float
@@ -192,6 +201,7 @@ class TorqueOffset(Effect):
 class Unbalance(Effect):
     """Eccentric mass under gravity, resisting torque A*sin(q + phi); A = m*g*r amplitude - N*m."""
 
+    name: ClassVar[str] = "unbalance"
     transmitted: ClassVar[bool] = True
     on_linear_axis: ClassVar[bool] = False
     amplitude: float
@@ -209,6 +219,7 @@ class Unbalance(Effect):
 class TorsionSpring(Effect):
     """Resisting torque k*q; k stiffness - N*m/rad."""
 
+    name: ClassVar[str] = "torsion_spring"
     transmitted: ClassVar[bool] = True
     stiffness: float
 
@@ -225,6 +236,7 @@ class TorsionSpring(Effect):
 class PositionDependentInertia(Effect):
     """J(q) = J*(1 + a*sin(n*q + phi)), resisting torque dJ/dq*w**2/2 (Lagrange); a relative_amplitude, n harmonic."""
 
+    name: ClassVar[str] = "position_dependent_inertia"
     on_linear_axis: ClassVar[bool] = False
     relative_amplitude: float
     harmonic: float
@@ -250,6 +262,7 @@ class PositionDependentInertia(Effect):
 class LoadTorqueEvent(Effect):
     """Constant resisting torque - N*m - from start to end - s."""
 
+    name: ClassVar[str] = "load_torque_event"
     start: float
     end: float
     torque: float
@@ -276,6 +289,7 @@ class ElasticCoupling(Effect):
     Resonance sqrt(k*(1/J_m + 1/J_l))/(2*pi) - Hz.
     """
 
+    name: ClassVar[str] = "elastic_coupling"
     never_beside: ClassVar[str] = "backlash"
     stiffness: float
     damping: float
@@ -303,6 +317,7 @@ class Backlash(Effect):
     gap - rad, contact_stiffness k - N*m/rad, contact_damping d - N*m*s/rad.
     """
 
+    name: ClassVar[str] = "backlash"
     gap: float
     contact_stiffness: float
     contact_damping: float
