@@ -19,7 +19,7 @@ def lab(
     students: Annotated[
         int | None, typer.Option("--students", help="With --record: a folder and an axis of its own for each.")
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="With --record: of everything drawn.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="With --record: of everything drawn.")] = 0,
     submissions: Annotated[
         Path | None, typer.Option("--grade", help="Grade the filled forms in this folder; with --truth.")
     ] = None,

@@ -135,7 +135,8 @@ def record_class(folder: Path, students: int, seed: int, progress: Progress = la
         folders.append(folder / f"student-{name}")
         known[name] = _record_student(folders[-1], name, np.random.default_rng([seed, number, salt]))
         progress(number / students)
-    truth = folder.with_name(f"{folder.name}.truth.json")
+    own = folder if folder.name not in ("", "..") else folder.resolve()  # "." has no name of its own
+    truth = own.with_name(f"{own.name}.truth.json")
     content = {"schema": SEALED, "seed": seed, "salt": f"{salt:032x}", "students": known}
     write_text(truth, json.dumps({**content, "seal": seal(content)}, indent=1) + "\n")
     truth.chmod(0o600)

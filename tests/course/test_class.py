@@ -379,6 +379,19 @@ def test_students_folders_hold_no_truth(four, salted):
     assert "not empty" in err
 
 
+def test_the_folder_one_stands_in_has_its_truth_beside_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(record, "_record_student", lambda folder, name, rng: {})
+    (tmp_path / "class").mkdir()
+    monkeypatch.chdir(tmp_path / "class")
+    assert record.record_class(Path(), 1, 0)[-1] == tmp_path / "class.truth.json"
+
+
+def test_a_negative_seed_is_refused_in_one_line(tmp_path):
+    status, _, err = bench("lab", "--record", tmp_path / "class", "--students", 1, "--seed", -1)
+    assert (status, err.count("\n")) == (2, 1)
+    assert not (tmp_path / "class").exists()
+
+
 #: One, as the course and students write its unit.
 KG_CM2_AS_WRITTEN = {
     "kgcm²": 1.0,
