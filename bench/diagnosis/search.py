@@ -82,7 +82,7 @@ class Searched:
 
 def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
     """Effects in the order in which they are taken up beside the fit without one."""
-    found = from_rivals(selected(Step(bare), (), effects, policy), effects, policy)
+    found = from_rivals(selected(Searched((Step(bare),)), effects, policy), effects, policy)
     if policy.remains(found.last):
         for effect in (each for each in effects if isinstance(each, Replacing)):
             found = replacement(found, effect, effects, policy) or found
@@ -97,13 +97,13 @@ def many_small(found: Searched, effects: Sequence[Effect], policy: Policy) -> Se
     Of seven small effects at once the last four took 11 to 18 % each, and all of it together. Where they do not end it,
     as on real axes, each may be anything.
     """
-    further = selected(found.steps[-1], found.steps[:-1], effects, policy.patient)
+    further = selected(found, effects, policy.patient)
     return further if further.last.excess < policy.nearly_all * found.last.excess else found
 
 
-def selected(start: Step, earlier: Sequence[Step], effects: Sequence[Effect], policy: Policy) -> Searched:
-    """Steps with effects added from one on, and names exchanged for others, until neither leaves less."""
-    found = forward_selection(Searched((*earlier, start)), effects, policy)
+def selected(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
+    """Steps with effects added from the last one on, and names exchanged for others, until neither leaves less."""
+    found = forward_selection(found, effects, policy)
     for _ in range(policy.most):  # each leaves less, so it ends before; what is let go in between could turn it round
         instead = instead_of_each(found.last, effects, policy)
         better = exchanged(found.last, instead, policy)
@@ -129,17 +129,17 @@ def from_rivals(found: Searched, effects: Sequence[Effect], policy: Policy) -> S
     for rival in others[: policy.exchanges]:
         start = refined(bare, rival.term)
         if policy.accepts(bare, start):
-            other = selected(Step(start), found.steps[:1], effects, policy)
+            other = selected(Searched((*found.steps[:1], Step(start))), effects, policy)
             found = other if policy.exchanges_for(found.last, other.last) else found
     return found
 
 
 def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
     """Steps with effects added until none is worthwhile, or the limit is reached."""
-    steps = found.steps
+    steps, ended = found.steps, found.ended
     while True:
         current = steps[-1].fitted
-        tried = candidates(current, effects)
+        tried = ended.rivals if ended is not None and ended.fitted is current else candidates(current, effects)
         promising = [candidate for candidate in tried if policy.promises(current, candidate.gain)]
         finalists = [refined(current, candidate.term) for candidate in promising[: policy.finalists]]
         finalists = [physical_form(after, effects, policy) for after in finalists]
@@ -263,7 +263,7 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
         placed = in_place(fit(last.rows, last.hypothesis.with_terms(beside)), effect, shape, effects, policy)
         if placed is None or not policy.replaces_by(last, placed, effect.needed):
             break
-        replaced = selected(Step(backward_elimination(placed, policy)), earlier, effects, policy)
+        replaced = selected(Searched((*earlier, Step(backward_elimination(placed, policy)))), effects, policy)
         others = [term for term in replaced.last.terms if term.effect is not effect]
         if Counter(term.effect for term in others) == Counter(term.effect for term in beside):
             break
