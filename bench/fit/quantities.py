@@ -146,19 +146,25 @@ def _weight(fitted: Fit) -> Array:
 
 
 def _least(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
-    """Norm of a shape's derivative (s,) below which noise hides it: of an instant that is known by itself; else 0."""
+    """Norm of a shape's derivative (s,) below which noise hides it: of an instant that is known by itself; else 0.
+
+    None shows one between rows that are not determined: it moves the impacts behind it, which are not there.
+    """
     known = _known(fitted, slots)
     instants = np.array([fitted.terms[index].effect.shapes[k].quantity.instant for index, k in slots], dtype=bool)
-    return np.divide(fitted.floor, known, out=np.zeros(known.size), where=instants & (known > 0.0))
+    least = np.divide(fitted.floor, known, out=np.zeros(known.size), where=instants & (known > 0.0))
+    after = np.clip(np.searchsorted(fitted.time, [fitted.terms[i].shape[k] for i, k in slots]), 1, fitted.time.size - 1)
+    return np.where(instants & ~(fitted.determined[after] & fitted.determined[after - 1]), np.inf, least)
 
 
 def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
-    """Standard errors of the shapes (s,) that no noise shows, as of an instant between two rows.
+    """Standard errors of the shapes (s,) that no noise shows, as of an instant between two rows that are determined.
 
     An instant that within its own changes the torque by less than noise does is known by it alone, as no row moves with
     it. What it is of another shape, the tick of a lag or the drift of a position, comes beside what noise makes of it.
     """
-    errors = [term.effect.shape_errors(term.shape, fitted.scope, fitted.time) for term in fitted.terms]
+    sure = fitted.time[fitted.determined]
+    errors = [term.effect.shape_errors(term.shape, fitted.scope, sure) for term in fitted.terms]
     return np.array([errors[index][k] for index, k in slots])
 
 

@@ -10,6 +10,7 @@ from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.layout import AROUND
+from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.trace.filter import GaussianFilter
@@ -51,3 +52,16 @@ def test_it_belongs_to_one_recording_and_is_kept_with_it(trace):
     effectless = fitted.effort - fitted.columns[:, :4] @ fitted.theta[:4]
     np.testing.assert_allclose(balance.left(other), effectless, atol=1e-12)
     assert rms(balance.left(other)) > rms(fitted.residual)
+
+
+def test_a_start_among_rows_that_hang_on_impacts_is_known_by_the_rows_around_them():
+    """Rows behind may move with it by the impacts alone, which the fit does not hold: they tell it no better."""
+    trace = recorded(moved(), lambda m: TORQUE * ((m.time >= START) & (m.time < STOP)), noise=0.2)
+    fitted = fit(Rows.of(trace, RIG), Hypothesis((EVENT,)))
+    gap = (START - 0.013, START + 0.027)
+    hidden = replace(fitted, determined=(fitted.time < gap[0]) | (fitted.time > gap[1]))
+    sure, open_ = (uncertain(each).quantities(0, lambda *_: "s") for each in (fitted, hidden))
+    half = {key: 0.5 * (value.ci95[1] - value.ci95[0]) for key, value in open_.items()}
+    assert half["start"] == pytest.approx(gap[1] - gap[0], rel=0.1)
+    assert 0.5 * (sure["start"].ci95[1] - sure["start"].ci95[0]) < 0.1 * half["start"]
+    assert half["end"] < 0.1 * half["start"]
