@@ -82,17 +82,17 @@ def all_sources(only: str, realistic: int, seed: int, jobs: int) -> list[Source]
     return [source for source in sources if only in source.name]
 
 
-def names_of(sources: Sequence[Source], seed: int, jobs: int) -> dict[str, dict[str, stability.Names]]:
+def answers_of(sources: Sequence[Source], seed: int, jobs: int) -> dict[str, dict[str, stability.Answer | None]]:
     """Names of each recording as it is and varied; in their order."""
-    said: dict[str, dict[str, stability.Names]] = {}
+    said: dict[str, dict[str, stability.Answer | None]] = {}
 
-    def tell(item: tuple[Source, int], outcome: dict[str, stability.Names] | Failure) -> str:
+    def tell(item: tuple[Source, int], outcome: dict[str, stability.Answer | None] | Failure) -> str:
         if isinstance(outcome, Failure):
             return f"{item[0].name}: {outcome.reason}"
         said[item[0].name] = outcome
-        return f"{item[0].name}: {outcome}"
+        return f"{item[0].name}: " + "; ".join(f"{variant}: {answer}" for variant, answer in outcome.items())
 
-    done("names", stability.names, [(source, seed) for source in sources], jobs, tell)
+    done("names", stability.answers, [(source, seed) for source in sources], jobs, tell)
     return {source.name: said[source.name] for source in sources if source.name in said}
 
 
@@ -123,7 +123,7 @@ def main(
     command = f"python -m tests.studies.injected --seed {seed} --realistic {realistic}" + f" --only {only}" * bool(only)
     command += "".join(f" --effect {name}" for name in effect or ()) + f" --one-in {one_in}" * (one_in > 1)
     if stable:
-        told = stability.markdown(sources, names_of(sources, seed, jobs), f"{command} --stability")
+        told = stability.markdown(sources, answers_of(sources, seed, jobs), f"{command} --stability")
         publish(told, out, "names.md")
         return
     owns, refused = owns_of(sources, jobs)

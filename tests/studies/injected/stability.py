@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -17,9 +18,33 @@ from tests.studies.injected.sources import Source
 #: Signals that carry noise of their own.
 NOISY = ("position", "velocity", "current", "torque", "force", "voltage")
 WHOLE, NOISE, HALVES = "whole", "fresh noise", ("first half", "second half")
-Names = tuple[str, ...] | None
-#: What is compared, of which recordings, and the names of both.
-Compared = tuple[str, str, Names, Names]
+#: Probability from which on a name is sure, and, less than one by as much, ruled out.
+SURE = 0.95
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Names of a recording, and the probability of each that was considered, by name."""
+
+    names: tuple[str, ...]
+    probabilities: Mapping[str, float]
+
+    def __str__(self) -> str:
+        likely = {name: share for name, share in self.probabilities.items() if share > 1.0 - SURE or name in self.names}
+        return ", ".join(f"{name} {share:.2f}" for name, share in likely.items()) or "none"
+
+    def beside(self, other: Answer) -> str:
+        """AGREE, OPEN where the probabilities leave each name that differs open, or CONTRADICT."""
+        differing = {*self.names} ^ {*other.names}
+        shares = [sorted(each.probabilities.get(name, 0.0) for each in (self, other)) for name in differing]
+        if any(less < 1.0 - SURE and more > SURE for less, more in shares):
+            return CONTRADICT
+        return OPEN if differing else AGREE
+
+
+AGREE, OPEN, CONTRADICT, REFUSED = FATES = ("agree", "left open by their probabilities", "contradict", "refused")
+#: What is compared, of which recordings, and the answers of both; None where it is refused.
+Compared = tuple[str, str, Answer | None, Answer | None]
 
 
 def variants(trace: Trace, seed: int) -> Iterator[tuple[str, Trace]]:
@@ -37,20 +62,23 @@ def variants(trace: Trace, seed: int) -> Iterator[tuple[str, Trace]]:
     yield HALVES[1], trace.between(middle, end)
 
 
-def names(item: tuple[Source, int]) -> dict[str, Names]:
-    """Names by variant; None where it is refused."""
+def answers(item: tuple[Source, int]) -> dict[str, Answer | None]:
+    """Answers by variant; None where it is refused."""
     source, seed = item
     trace, rig = source.read()
-    found: dict[str, Names] = {}
+    found: dict[str, Answer | None] = {}
     for variant, made in variants(trace, seed):
         try:
-            found[variant] = tuple(sorted(effect.name for effect in diagnose(made, rig).effects))
+            diagnosis = diagnose(made, rig)
         except BenchError:
             found[variant] = None
+        else:
+            names = tuple(sorted(effect.name for effect in diagnosis.effects))
+            found[variant] = Answer(names, dict(diagnosis.probabilities.names))
     return found
 
 
-def compared(sources: Sequence[Source], said: Mapping[str, Mapping[str, Names]]) -> Iterator[Compared]:
+def compared(sources: Sequence[Source], said: Mapping[str, Mapping[str, Answer | None]]) -> Iterator[Compared]:
     """Variants of a recording with it, and rounds of an axis with each other."""
     for name, found in said.items():
         for variant in (NOISE, *HALVES):
@@ -63,22 +91,19 @@ def compared(sources: Sequence[Source], said: Mapping[str, Mapping[str, Names]])
             yield "rounds", f"{one}, {other}", said[one][WHOLE], said[other][WHOLE]
 
 
-def markdown(sources: Sequence[Source], said: Mapping[str, Mapping[str, Names]], command: str) -> str:
+def markdown(sources: Sequence[Source], said: Mapping[str, Mapping[str, Answer | None]], command: str) -> str:
     """How often names agree, and each comparison in which they do not."""
-    found = list(compared(sources, said))
-    counted = Counter((what, _agrees(one, other)) for what, _, one, other in found)
-    lines = ["# Whether names stay", "", f"`{command}`", "", "| what | agree | differ | refused |", "|---|---|---|---|"]
+    found = [(_fate(one, other), what, which, one, other) for what, which, one, other in compared(sources, said)]
+    counted = Counter((what, fate) for fate, what, *_ in found)
+    lines = ["# Whether names stay", "", f"`{command}`", "", f"| what | {' | '.join(FATES)} |", "|---" * 5 + "|"]
     for what in (NOISE, *HALVES, "rounds"):
-        lines += [f"| {what} | {counted[what, True]} | {counted[what, False]} | {counted[what, None]} |"]
-    lines += ["", "| what | recordings | names | names there |", "|---|---|---|---|"]
-    differing = [each for each in found if _agrees(*each[2:]) is not True]
-    lines += [f"| {what} | {which} | {_told(one)} | {_told(other)} |" for what, which, one, other in differing]
+        lines += [f"| {what} | {' | '.join(str(counted[what, fate]) for fate in FATES)} |"]
+    lines += ["", "| fate | what | recordings | names and probabilities | there |", "|---|---|---|---|---|"]
+    for fate, *cells in sorted(found, key=lambda each: (-FATES.index(each[0]), *each[1:3])):
+        if fate != AGREE:
+            lines += [f"| {fate} | {' | '.join(REFUSED if cell is None else str(cell) for cell in cells)} |"]
     return "\n".join(lines) + "\n"
 
 
-def _agrees(one: Names, other: Names) -> bool | None:
-    return None if one is None or other is None else one == other
-
-
-def _told(those: Names) -> str:
-    return "refused" if those is None else ", ".join(those) or "none"
+def _fate(one: Answer | None, other: Answer | None) -> str:
+    return REFUSED if one is None or other is None else one.beside(other)

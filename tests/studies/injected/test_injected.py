@@ -14,7 +14,7 @@ from bench.validation.into import NONE
 from tests.shared import needs_shared
 from tests.studies.injected.cases import FAILED, STRENGTHS, Case, Row, draw, keep, kept, possible, write_case
 from tests.studies.injected.sources import Source, real
-from tests.studies.injected.stability import HALVES, NOISE, WHOLE, compared, markdown, variants
+from tests.studies.injected.stability import HALVES, NOISE, WHOLE, Answer, compared, markdown, variants
 from tests.studies.injected.table import calibration_error, headline, pairs
 from tests.studies.nuisance.realistic import one
 from tests.validation.test_into import OWN
@@ -71,16 +71,21 @@ def test_what_a_simulated_recording_holds_besides_is_no_false_name():
 
 
 def test_names_are_compared_with_variants_and_other_rounds():
-    sources = [Source("axis", f"axis/{name}", None, None) for name in ("r1", "r2")]
+    axis = [Source("axis", f"axis/r{k}", None, None) for k in (1, 2)]
+    one, two, none = Answer(("a",), {"a": 0.99}), Answer(("a", "b"), {"a": 1.0, "b": 0.9}), Answer((), {"a": 0.04})
     said = {
-        "axis/r1": {WHOLE: ("a",), NOISE: ("a",), HALVES[0]: ("a", "b"), HALVES[1]: None},
-        "axis/r2": {WHOLE: ("a",), NOISE: (), HALVES[0]: ("a",), HALVES[1]: ("a",)},
+        "axis/r1": {WHOLE: one, NOISE: one, HALVES[0]: two, HALVES[1]: None},
+        "axis/r2": {WHOLE: one, NOISE: none, HALVES[0]: one, HALVES[1]: one},
     }
-    assert ("rounds", "axis/r1, axis/r2", ("a",), ("a",)) in list(compared(sources, said))
-    told = markdown(sources, said, "command")
-    for line in (f"| {NOISE} | 1 | 1 | 0 |", f"| {HALVES[0]} | 1 | 1 | 0 |", f"| {HALVES[1]} | 1 | 0 | 1 |"):
-        assert line in told
-    assert "| rounds | 1 | 0 | 0 |" in told
+    assert ("rounds", "axis/r1, axis/r2", one, one) in list(compared(axis, said))
+    text = markdown(axis, said, "command")
+    for line in (
+        f"| {NOISE} | 1 | 0 | 1 | 0 |",
+        f"| {HALVES[0]} | 1 | 1 | 0 | 0 |",
+        f"| {HALVES[1]} | 1 | 0 | 0 | 1 |",
+    ):
+        assert line in text
+    assert "| rounds | 1 | 0 | 0 | 0 |" in text
 
 
 def test_variants_keep_all_samples_and_add_the_noise_that_there_is():
