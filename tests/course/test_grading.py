@@ -203,3 +203,9 @@ def test_an_answer_that_the_mistake_does_not_give_is_not_put_down_to_it():
     expected = {"J": 20.0, "K_fric_w": 1e-3, "K_fric_0": 0.08}
     given = {"J": 30.0, "K_fric_w": 2e-3, "K_fric_0": 1.7}
     assert told(expected, given, mistakes=ways) == {"J": MISTAKE, "K_fric_w": MISTAKE, "K_fric_0": ""}
+
+
+def test_a_mistake_that_gives_zero_explains_no_answer_but_zero():
+    """Nothing is a share of zero away from it."""
+    _, found = graded_answers({"J": 20.0}, {"J": 30.0}, mistakes=[([MISTAKE], {"J": 0.0})])
+    assert (found["J"].verdict, found["J"].mistake) == ("wrong", "")

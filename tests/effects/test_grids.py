@@ -35,6 +35,13 @@ def test_a_scaled_axis_is_searched_where_the_usual_one_is(effect, shape, factor)
 
 
 @pytest.mark.parametrize(("effect", "shape"), MEASURED, ids=lambda one: getattr(one, "name", ""))
+def test_what_a_shape_goes_with_has_the_power_of_its_unit(effect, shape):
+    """Twice the speed in half the time: seconds halve, what is per second doubles, and per angle of speed halves."""
+    by = {"s": 0.5, "rad/s": 2.0, "1/rad": 0.5}[shape.quantity.unit]
+    assert shape.measure.factor(scaled(2.0)) == by
+
+
+@pytest.mark.parametrize(("effect", "shape"), MEASURED, ids=lambda one: getattr(one, "name", ""))
 def test_angles_say_nothing_on_a_linear_axis(effect, shape):
     scope = replace(scaled(1e-3), kind=LINEAR)
     stated = set(shape.grid) & set(places(shape, scope))
