@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -26,58 +27,66 @@ from tests.studies.mutation.reach import REACH
 
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
 PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--tb=no", "--no-header"]
+#: Tests of a second at most are shown first, whatever folder they are of.
+QUICK = 1.0
 
 
 @dataclass(frozen=True)
 class Fate:
-    """What became of a mutant: the first test that failed with it, or none of so many files; after so many seconds."""
+    """What became of a mutant: the first test that failed with it, or none of so many; after so many seconds."""
 
     mutant: Mutant
     killed_by: str
-    files: int
+    tests: int
     seconds: float
 
 
 @dataclass(frozen=True)
 class Reach:
-    """A file of tests, what it runs of the bench (`path:line` of functions), and how long it takes - s."""
+    """What the tests run of the bench.
 
-    path: str
-    seconds: float
-    ran: frozenset[str]
+    Attributes:
+        seconds: of each test, as pytest calls it.
+        running: tests that run a function, by its `path:line`.
+    """
 
-    def sees(self, mutant: Mutant) -> bool:
-        """Whether it runs the function that was changed, or any of its folder where a constant was."""
-        if mutant.function is not None:
-            return f"{mutant.path}:{mutant.function[1]}" in self.ran
-        return any(place.startswith(mutant.path.rpartition("/")[0]) for place in self.ran)
+    seconds: Mapping[str, float]
+    running: Mapping[str, set[str]]
+
+    def seeing(self, mutant: Mutant) -> list[str]:
+        """Tests that run what a mutant may change: those of its own folder first, and quick ones."""
+        tests = set().union(*(self.running.get(function, ()) for function in mutant.functions))
+        own, spent = "/".join(("tests", *mutant.path.split("/")[1:2], "")), self.seconds
+        return sorted(tests, key=lambda test: (spent[test] > QUICK, not test.startswith(own), spent[test]))
 
 
-def reaches(folder: Path, anew: bool) -> list[Reach]:
-    """Of all files of tests, quick ones first; measured where the folder does not hold them."""
+def reached(folder: Path, anew: bool) -> Reach:
+    """Of all tests, measured where the folder does not hold them."""
     if anew or not any(folder.glob("*.json")):
         folder.mkdir(parents=True, exist_ok=True)
         command = [sys.executable, "-m", "pytest", "-q", "-p", "tests.studies.mutation.reach", "--no-header", "--tb=no"]
         reach = {REACH: str(folder.resolve())}  # tests change the working folder
         subprocess.run(command, cwd=ROOT, env={**os.environ, **ENVIRONMENT, **reach}, check=True)
-    parts = [json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.json")]
-    found = [Reach(part["path"], part["seconds"], frozenset(part["ran"])) for part in parts]
-    return sorted(found, key=lambda reach: reach.seconds)
+    seconds: dict[str, float] = {}
+    running: dict[str, set[str]] = defaultdict(set)
+    for path in folder.glob("*.json"):
+        told = json.loads(path.read_text(encoding="utf-8"))
+        for test, (spent, ran) in told["tests"].items():
+            seconds[test] = spent
+            for number in ran:
+                running[told["functions"][number]].add(test)
+    return Reach(seconds, running)
 
 
-def fate(mutant: Mutant, tests: Sequence[Reach], copy: Path, most: float) -> Fate:
-    """Shows a mutant to the tests that see it: those of its own folder first, then the quick ones.
+def fate(mutant: Mutant, reach: Reach, copy: Path, most: float) -> Fate:
+    """Shows a mutant to the tests that see it.
 
     Args:
         mutant: to make.
-        tests: all of them.
+        reach: of the tests.
         copy: of the project, to make it in.
         most: seconds of tests that it is shown to, as they take without it.
     """
-    folder = "/".join(("tests", *mutant.path.split("/")[1:2]))
-    # what a fixture of the session runs is counted for the first file alone that asks for it
-    seeing = [test for test in tests if test.sees(mutant) or test.path.startswith(f"{folder}/")]
-    seeing.sort(key=lambda test: (not test.path.startswith(folder), test.seconds))
     path, began, shown, spent = copy / mutant.path, time.monotonic(), 0, 0.0
     text = path.read_text(encoding="utf-8")
     changed = mutant.applied(text)
@@ -85,23 +94,23 @@ def fate(mutant: Mutant, tests: Sequence[Reach], copy: Path, most: float) -> Fat
     path.write_text(changed, encoding="utf-8")
     killed_by = ""
     try:
-        for files in _batches(seeing):
+        for tests in _batches(reach.seeing(mutant), reach.seconds):
+            if spent > most:
+                break
+            seconds = sum(reach.seconds[test] for test in tests)
             done = subprocess.run(
-                [*PYTEST, *(test.path for test in files)],
+                [*PYTEST, *sorted(tests)],  # those of a file together, as they share what it sets up
                 cwd=copy,
                 env={**os.environ, **ENVIRONMENT, "PYTHONPATH": str(copy)},
                 capture_output=True,
                 check=False,
                 text=True,
-                timeout=60.0 + 20.0 * sum(test.seconds for test in files),
+                timeout=60.0 + 20.0 * seconds,
             )
-            shown += len(files)
+            shown, spent = shown + len(tests), spent + seconds
             if done.returncode not in (0, 5):  # 5: nothing to run
                 failed = [line.split()[1] for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
                 killed_by = failed[0] if failed else "the tests do not start"
-                break
-            spent += sum(test.seconds for test in files)
-            if spent > most:
                 break
     except subprocess.TimeoutExpired:
         killed_by = "it does not end"
@@ -110,14 +119,15 @@ def fate(mutant: Mutant, tests: Sequence[Reach], copy: Path, most: float) -> Fat
     return Fate(mutant, killed_by, shown, time.monotonic() - began)
 
 
-def _batches(tests: Iterable[Reach], seconds: float = 10.0) -> Iterable[list[Reach]]:
-    """Files that one process runs, so that starting it is not all it does."""
-    batch: list[Reach] = []
+def _batches(tests: Iterable[str], seconds: Mapping[str, float]) -> Iterable[list[str]]:
+    """Tests that one process runs, each time twice as many seconds, so that starting it is not all it does."""
+    batch: list[str] = []
+    enough = QUICK
     for test in tests:
         batch.append(test)
-        if sum(each.seconds for each in batch) > seconds:
+        if sum(seconds[each] for each in batch) > enough:
             yield batch
-            batch = []
+            batch, enough = [], 2.0 * enough
     if batch:
         yield batch
 
@@ -129,8 +139,8 @@ def markdown(fates: Sequence[Fate], command: str, equivalent: Mapping[str, str])
     killed, counted = len(fates) - len(survived), len(fates) - len(told)
     lines = ["# Mutants", "", f"`{command}`", ""]
     lines += [f"{len(fates)} mutants, {len(told)} of them equivalent; {killed} of {counted} killed.", ""]
-    lines += ["| survived | files of tests that ran it | equivalent, as |", "|---|---|---|"]
-    lines += [f"| `{each.mutant}` | {each.files} | {equivalent.get(str(each.mutant), '')} |" for each in survived]
+    lines += ["| survived | tests that ran it | equivalent, as |", "|---|---|---|"]
+    lines += [f"| `{each.mutant}` | {each.tests} | {equivalent.get(str(each.mutant), '')} |" for each in survived]
     lines += ["", "| killed | by |", "|---|---|"]
     lines += [f"| `{each.mutant}` | `{each.killed_by}` |" for each in fates if each.killed_by]
     return "\n".join(line.replace("||", "\\|\\|") for line in lines) + "\n"
@@ -142,7 +152,7 @@ def main(
     folders: Annotated[list[str] | None, typer.Option("--in", help="Folders of bench. Repeatable.")] = None,
     jobs: Annotated[int, typer.Option(min=1)] = 2,
     most: Annotated[float, typer.Option(help="Seconds of tests that a mutant is shown to.")] = 1e9,
-    reach: Annotated[Path, typer.Option(help="Folder of what each file of tests runs.")] = Path(".reach"),
+    reach: Annotated[Path, typer.Option(help="Folder of what each test runs.")] = Path(".reach"),
     anew: Annotated[bool, typer.Option("--anew", help="Measure that anew.")] = False,
     listed: Annotated[bool, typer.Option("--list", help="List the mutants and stop.")] = False,
     equivalent: Annotated[Path | None, typer.Option(help="JSON: mutants that change nothing, and why.")] = None,
@@ -153,7 +163,7 @@ def main(
     if listed:
         typer.echo("\n".join(map(str, chosen)))
         return
-    tests = reaches(reach, anew)
+    tests = reached(reach, anew)
     same = json.loads(equivalent.read_text(encoding="utf-8")) if equivalent is not None else {}
     with TemporaryDirectory() as made, ThreadPoolExecutor(jobs) as pool:
         copies: SimpleQueue[Path] = SimpleQueue()

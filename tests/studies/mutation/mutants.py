@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import random
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -30,6 +32,8 @@ COMPARISONS = {
     ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,
 }
+#: Parts of an expression that are left as they are: an index that is another is an error at once.
+SKIPPED = ("annotation", "returns", "decorator_list", "slice")
 CALLS = {"max": "min", "min": "max", "any": "all", "all": "any", "maximum": "minimum", "minimum": "maximum"}
 CALLS |= {"fmin": "fmax", "fmax": "fmin", "argmin": "argmax", "argmax": "argmin", "floor": "ceil", "ceil": "floor"}
 
@@ -42,7 +46,8 @@ class Mutant:
         path: of the file, from the root.
         line, column, end_line, end_column: of what is changed, as `ast` counts: columns in bytes of UTF-8.
         before, after: the text there, and what takes its place.
-        function: name of the outermost function or method that it is in, with its first line; empty at the top level.
+        function: outermost function or method that it is in, as `path:line`; empty at the top level.
+        names: what is assigned there at the top level, of a module or a class.
     """
 
     path: str
@@ -52,7 +57,13 @@ class Mutant:
     end_column: int
     before: str
     after: str
-    function: tuple[str, int] | None
+    function: str
+    names: tuple[str, ...]
+
+    @property
+    def functions(self) -> set[str]:
+        """Functions that it may change: its own, or all that mention what is assigned."""
+        return {self.function} if self.function else mentioning(self.names)
 
     def __str__(self) -> str:
         return f"{self.path}:{self.line}: {' '.join(self.before.split())} -> {' '.join(self.after.split())}"
@@ -81,28 +92,77 @@ def mutants_of(path: Path) -> list[Mutant]:
     text = path.read_text(encoding="utf-8")
     name = str(path.relative_to(ROOT))
     found = []
-    for node, function in _deciding(ast.parse(text), None):
+    for node, line, names in _deciding(ast.parse(text), name):
         for after in _changed(node):
             before = ast.get_source_segment(text, node) or ""  # which splits the text into lines each time
             place = (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
-            found.append(Mutant(name, *place, before, f"({after})", function))
+            found.append(Mutant(name, *place, before, f"({after})", f"{name}:{line}" if line else "", names))
     return found
 
 
-def _deciding(node: ast.AST, function: tuple[str, int] | None) -> Iterator[tuple[ast.expr, tuple[str, int] | None]]:
-    """Expressions that decide, without annotations, messages and what only type checkers read."""
-    if isinstance(node, ast.FunctionDef) and function is None:
-        function = (node.name, min([node.lineno, *(each.lineno for each in node.decorator_list)]))
+@cache
+def _mentions() -> dict[str, tuple[set[str], set[str]]]:
+    """Of each name the functions of the bench that mention it, and what is assigned from it at the top level."""
+    found: dict[str, tuple[set[str], set[str]]] = defaultdict(lambda: (set(), set()))
+    for path in sorted((ROOT / "bench").rglob("*.py")):
+        name, tree = str(path.relative_to(ROOT)), ast.parse(path.read_text(encoding="utf-8"))
+        imported = {
+            alias.asname or alias.name: f"{(node.module or '').replace('.', '/')}.py:{alias.name}"
+            for node in ast.walk(tree)
+            if isinstance(node, ast.ImportFrom)
+            for alias in node.names
+        }
+        for node, line, names in _deciding(tree, name, SKIPPED[:-1]):
+            plain = isinstance(node, ast.Name)
+            mentioned = imported.get(node.id, f"{name}:{node.id}") if plain else f".{getattr(node, 'attr', '')}"
+            functions, assigned = found[mentioned]
+            functions |= {f"{name}:{line}"} if line else set()
+            assigned |= set() if line else {*names}
+    return found
+
+
+def mentioning(names: tuple[str, ...]) -> set[str]:
+    """Functions that mention one of these names, or what is assigned from it."""
+    functions: set[str] = set()
+    known, open_ = set(names), [*names]
+    while open_:
+        own, assigned = _mentions()[open_.pop()]
+        functions |= own
+        open_ += assigned - known
+        known |= assigned
+    return functions
+
+
+def _deciding(
+    node: ast.AST,
+    path: str,
+    skipped: tuple[str, ...] = SKIPPED,
+    line: int = 0,
+    names: tuple[str, ...] = (),
+    attribute: bool = False,
+) -> Iterator[tuple[ast.expr, int, tuple[str, ...]]]:
+    """Expressions that decide, without annotations, messages and what only type checkers read.
+
+    With the first line of the outermost function they are in, zero at the top level, and the names assigned there:
+    `path:NAME` of a module, `.name` of a class.
+    """
+    attribute |= isinstance(node, ast.ClassDef)
+    if isinstance(node, ast.FunctionDef) and not line:
+        line = min([node.lineno, *(each.lineno for each in node.decorator_list)])
+    if isinstance(node, ast.Assign | ast.AnnAssign) and not line:
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        assigned = [each.id for one in targets for each in ast.walk(one) if isinstance(each, ast.Name)]
+        names = tuple(f".{each}" if attribute else f"{path}:{each}" for each in assigned)
     if isinstance(node, ast.expr):
-        yield node, function
+        yield node, line, names
     for field, value in ast.iter_fields(node):
-        if field in ("annotation", "returns", "decorator_list", "slice") or isinstance(node, ast.Raise | ast.JoinedStr):
+        if field in skipped or isinstance(node, ast.Raise | ast.JoinedStr):
             continue
         if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
-                yield from _deciding(child, function)
+                yield from _deciding(child, path, skipped, line, names, attribute)
 
 
 def _changed(node: ast.expr) -> Iterator[str]:
