@@ -4,9 +4,10 @@
 
 U, V - logarithms of what a set leaves beyond noise, over what the bare axis leaves and over noise; numbers - fitted
 (`bench.diagnosis.score`). What holds an effect from outside the catalogue weighs `outside` less and, together with a
-constant weight for what was not tried, makes up "none of the catalogue". The weights, of `bench.diagnosis.policy`, are
-those under which recordings whose truth is known were likeliest (`python -m tests.studies.certainty`). The likelihood
-of the recording itself adds nothing to U and V: its weight beside them came out as zero.
+constant weight for what was not tried, makes up "none of the catalogue"; of names beside such an effect the share
+`beside` is there. The weights, of `bench.diagnosis.policy`, are those under which recordings whose truth is known were
+likeliest (`python -m tests.studies.certainty`). The likelihood of the recording itself adds nothing to U and V: its
+weight beside them came out as zero.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.score import Contender
 from bench.effects.effect import Effect
+from bench.effects.rivals import Outside
 from bench.effects.signals import Scope
 from bench.fit.fit import Fit
 
@@ -49,19 +51,23 @@ class Probabilities:
         sets: of names of the torque balance, likeliest first; the empty one says that it lacks nothing.
         none: probability that it lacks something and none of the catalogue is it.
         detected: names that the signals show directly.
+        beside: probability that each name is there beside an effect from outside the catalogue, a part of `none`.
         fits: the best of each set, as long as they are searched; what is told of them keeps none.
     """
 
     sets: tuple[NameSet, ...]
     none: float
     detected: frozenset[str] = frozenset()
+    beside: Mapping[str, float] = field(default_factory=dict)
     fits: Mapping[frozenset[str], Fit] = field(default_factory=dict)
 
     @cached_property
     def names(self) -> dict[str, float]:
         """Probability of every name that was considered, likeliest first."""
-        every = {name for each in self.sets for name in each.names}
-        found = {name: sum(each.probability for each in self.sets if name in each.names) for name in every}
+        found = dict(self.beside)
+        for each in self.sets:
+            for name in each.names:
+                found[name] = found.get(name, 0.0) + each.probability
         found |= dict.fromkeys(self.detected, DETECTED)
         return dict(sorted(found.items(), key=lambda one: (-one[1], one[0])))
 
@@ -86,7 +92,7 @@ class Probabilities:
 
     def instead_of(self, name: str) -> dict[str | None, float]:
         """What stands in the place of a chosen name in the sets without it; None: none of the catalogue."""
-        found: dict[str | None, float] = {None: self.none}
+        found: dict[str | None, float] = {None: self.none - self.beside.get(name, 0.0)}
         for each in self.sets:
             for other in each.names - self.chosen.names if name not in each.names else ():
                 found[other] = found.get(other, 0.0) + each.probability
@@ -115,7 +121,8 @@ class Probabilities:
         lost = left.pop(frozenset(), 0.0) - bare
         sets = [NameSet(frozenset(), bare), *(NameSet(*each) for each in left.items())]
         sets.sort(key=lambda one: -one.probability)
-        return Probabilities(tuple(sets), self.none + lost, self.detected - names)
+        beside = {name: share for name, share in self.beside.items() if name not in names}
+        return Probabilities(tuple(sets), self.none + lost, self.detected - names, beside)
 
 
 def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy: Policy) -> Probabilities:
@@ -123,16 +130,21 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
     logs = [_log(each, policy) for each in scored]
     weights = np.exp(np.array([*logs, policy.none]) - max(*logs, policy.none))
     shares = (weights / weights.sum()).tolist()
+    ranked = sorted(zip(scored, shares, strict=False), key=lambda one: (one[0].outside, -one[1]))
     called: dict[str, str] = {}
     shared: dict[frozenset[str], float] = {}
+    beside: dict[str, float] = {}
     fits: dict[frozenset[str], Fit] = {}
-    for each, share in sorted(zip(scored, shares, strict=False), key=lambda one: -one[1]):
-        if not each.outside:
-            names = frozenset(_called(term.effect, each.fitted.scope, called) for term in each.fitted.terms)
+    for each, share in ranked:
+        held = (term.effect for term in each.fitted.terms if not isinstance(term.effect, Outside))
+        names = frozenset(_called(effect, each.fitted.scope, called) for effect in held)
+        if each.outside:
+            beside |= {name: beside.get(name, 0.0) + policy.beside * share for name in names}
+        else:
             fits.setdefault(names, each.fitted)
             shared[names] = shared.get(names, 0.0) + share
-    ranked = sorted((NameSet(*each) for each in shared.items()), key=lambda one: -one.probability)
-    return Probabilities(tuple(ranked), 1.0 - sum(each.probability for each in ranked), detected, fits)
+    sets = sorted((NameSet(*each) for each in shared.items()), key=lambda one: -one.probability)
+    return Probabilities(tuple(sets), 1.0 - sum(each.probability for each in sets), detected, beside, fits)
 
 
 def _log(one: Contender, policy: Policy) -> float:

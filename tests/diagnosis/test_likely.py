@@ -7,9 +7,12 @@ import pytest
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.probability import DETECTED, NameSet, Probabilities, probabilities
 from bench.diagnosis.score import Contender
+from bench.effects.rivals import RIVALS
+from bench.fit.hypothesis import Term
 from tests.diagnosis.hand_made import level, made, term
 
 SPRING, COGGING = term("torsion_spring"), term("cogging_torque", 6.0)
+OUTSIDE = Term(RIVALS[0], tuple(shape.grid[0] for shape in RIVALS[0].shapes))
 
 
 def of(sets, none, detected=()):
@@ -75,10 +78,29 @@ def test_the_logarithm_is_the_sum_of_what_speaks_for_and_against():
 
 
 def test_what_no_catalogue_holds_gets_no_name():
-    every = [contender(0.0, 5.0), contender(-5.0, 0.0, COGGING, numbers=2, outside=True)]
+    every = [contender(0.0, 5.0), contender(-5.0, 0.0, OUTSIDE, numbers=2, outside=True)]
     found = probabilities(every, frozenset(), POLICY)
     assert found.names == {}
     assert found.none > 0.99
+
+
+def test_a_name_beside_what_no_catalogue_holds_counts_a_part():
+    """The spring is in both sets, and as likely as the better one and half of the other, which costs a number less."""
+    weighs = POLICY.outside - POLICY.number
+    every = [
+        contender(0.0, 9.0),
+        contender(-5.0, 0.0, COGGING, SPRING, numbers=3),
+        contender(-5.0, 0.0, SPRING, OUTSIDE, numbers=2, outside=True),
+    ]
+    found = probabilities(every, frozenset(), POLICY)
+    (both,) = (each.probability for each in found.sets if each.names)
+    beside = POLICY.beside * both * math.exp(-weighs)
+    assert found.names == pytest.approx({"torsion_spring": both + beside, "cogging_torque": both}, rel=1e-6)
+    assert found.none == pytest.approx(1.0 - both, abs=1e-6)
+    assert found.instead_of("torsion_spring") == pytest.approx({None: found.none - beside})
+    assert found.instead_of("cogging_torque") == pytest.approx({None: found.none})
+    left = found.without(frozenset({"torsion_spring"}))
+    assert left.names == pytest.approx({"cogging_torque": both})
 
 
 def test_sets_that_a_recording_cannot_tell_apart_count_as_one():

@@ -23,7 +23,7 @@ OF_EFFECTS = (
 )
 FACTORS = {"off": 0.0, "half": 0.5, "double": 2.0}
 #: Weights of the probability, with which a search finds the same.
-WEIGHTS = frozenset({"left", "over", "number", "outside", "none"})
+WEIGHTS = frozenset({"left", "over", "number", "outside", "none", "beside"})
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from scipy.optimize import minimize
 from bench.arrays import Array
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.probability import LEAST, MUCH
+from bench.effects.catalogue import catalogue
 from bench.files import write_text
 from tests.studies.blind.__main__ import workers
 from tests.studies.blind.score import same
@@ -99,8 +100,8 @@ def names_of(case: Known, shares: Array) -> dict[str, float]:
     """Probability of each name of a case; of two that no recording tells apart, of either."""
     found: dict[frozenset[str], float] = {}
     for one, share in zip(case.hypotheses, shares.tolist(), strict=False):
-        for name in same(one.names) if not one.outside else ():
-            found[name] = found.get(name, 0.0) + share
+        for name in same([name for name in one.names if name in catalogue()]):
+            found[name] = found.get(name, 0.0) + share * (POLICY.beside if one.outside else 1.0)
     return {min(name): share for name, share in found.items()}
 
 
@@ -115,6 +116,19 @@ def reliability(cases: Sequence[Known], shares: Array) -> tuple[list[str], float
             rows.append(f"| {k / BINS:.1f} | {own.sum()} | {said[own].mean():.3f} | {true[own].mean():.3f} |")
             error += abs(said[own].mean() - true[own].mean()) * own.mean()
     return rows, error
+
+
+def beside_outside(cases: Sequence[Known], shares: Array) -> tuple[float, float]:
+    """Probability of all names beside an effect from outside the catalogue, and the share of it of true ones."""
+    pairs = [
+        (share, case.true(name))
+        for case, row in zip(cases, shares, strict=True)
+        for one, share in zip(case.hypotheses, row.tolist(), strict=False)
+        for name in (one.names if one.outside else ())
+        if name in catalogue()
+    ]
+    said, true = np.array(pairs, dtype=float).T
+    return float(said.sum()), float(said @ true / said.sum())
 
 
 def by_group(cases: Sequence[Known], shares: Array, right: Array) -> list[str]:
@@ -157,6 +171,8 @@ def markdown(cases: Sequence[Known], found: Mapping[str, float], command: str) -
     lines += ["| from | names | mean probability | true |", "|---|---|---|---|", *rows]
     shown = [case.true(name) for case in cases for name in case.detected if "withheld" not in case.group]
     lines += ["", f"Of {len(shown)} names that the signals show directly {sum(shown)} are true."]
+    said, there = beside_outside(cases, shares)
+    lines += [f"Of names beside an effect from outside the catalogue, {said:.1f} by probability, {there:.0%} are true."]
     return "\n".join(lines) + "\n"
 
 
