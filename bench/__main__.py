@@ -76,7 +76,7 @@ def main() -> None:
 
     def leave() -> None:
         """End before Python is taken down: a thread of Arrow that lets go of an object by then aborts the process."""
-        with suppress(OSError, ValueError):  # what came before an error that is told already
+        with suppress(OSError, ValueError):  # what came before an error that is printed already
             if sys.stdout is not None:
                 sys.stdout.flush()
         os._exit(_STOPPED[0] if _STOPPED else status)

@@ -30,7 +30,7 @@ from bench.trace.trace import Trace
 
 #: Chance that a map without an effect gets a name, for all shapes of all effects tried together.
 CHANCE = 1e-3
-#: Speeds in each direction below which curvature is not told from scatter.
+#: Speeds in each direction below which curvature is lost in scatter.
 LEAST = 8
 #: Parts of a recording whose mean speeds tell whether it keeps one, and how far apart they may lie as share of it: a
 #: screw drive at its slowest, published as steady, has 0.35, a ramp from rest 1.75.

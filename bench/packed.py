@@ -94,7 +94,7 @@ def _pack(value: object, arrays: dict[str, Array]) -> Any:  # noqa: ANN401 - wha
     raise TypeError(f"found {type(value).__name__}, which cannot be stored")
 
 
-def _unpack(packed: Any, arrays: Mapping[str, Array]) -> Any:  # noqa: ANN401 - whatever was told
+def _unpack(packed: Any, arrays: Mapping[str, Array]) -> Any:  # noqa: ANN401 - whatever was packed
     match packed:
         case {"effect": name}:
             return catalogue()[name]

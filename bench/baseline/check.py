@@ -142,7 +142,7 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     both_sets = None if all(one.chance <= rate / family for one in names) else under
     quantities = [*_of_quantities(baseline, state, under, both_sets, allowed, motion)]
     missing = [name for name in baseline.quantities if name not in state.quantities]
-    quantities += [_untold(name, "it is not told now", baseline.quantities[name]) for name in missing]
+    quantities += [_undetermined(name, "it is not determined now", baseline.quantities[name]) for name in missing]
     comparisons = [*quantities, *pairs, *names]
     if rig:
         comparisons = [replace(one, chance=1.0, held_back="the rig is not that of the baseline") for one in comparisons]
@@ -192,7 +192,7 @@ def _of_quantities(
         before, values, least_chance = baseline.quantities[name], [own], 0.0
         between, margin = allowed.between_of(name, before), allowed.margin_of(name, before, baseline)
         if before.unit != own.unit:
-            yield _untold(name, f"now in {own.unit}", before)
+            yield _undetermined(name, f"now in {own.unit}", before)
             continue
         if name == TORQUE_GAP:  # what the effects of the baseline leave now, whatever else was found
             if under is not None:
@@ -209,7 +209,7 @@ def _of_quantities(
         yield found.tested(least_chance)
 
 
-def _untold(name: str, why: str, before: Measured | None = None, effect: str = "") -> Comparison:
+def _undetermined(name: str, why: str, before: Measured | None = None, effect: str = "") -> Comparison:
     """A quantity, or the torque of an effect, that has no value now to be held against the baseline's."""
     unit, value = ("", None) if before is None else (before.unit, before.value)
     return Comparison(name, unit, value, None, (), 0.0, effect, why)
@@ -308,7 +308,7 @@ def _of_torque(
     """Comparison of the torque of an effect of the baseline, whatever its name is now."""
     was = before.torque
     if was is None or now is None:
-        return _untold(name, "the torque balance does not hold it, so its strength is not told", effect=effect)
+        return _undetermined(name, "the torque balance does not hold it, so its strength is not known", effect=effect)
     difference = Difference.of(was, now, allowed.between_of(before.name, was))
     margin = motion.margin(OF_EFFECTS * was.value, was.value)
     return Comparison(name, was.unit, was.value, now.value, (difference,), margin, effect, motion.unlike).tested()
@@ -318,8 +318,8 @@ def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, motion: Le
     """Comparison of the torque of an effect that is new with what the baseline's recording would have shown."""
     torque = after.torque
     if torque is None or baseline.shows is None:
-        why = "told by its signals alone, which do not say from when on the baseline would have shown it"
-        return _untold(after.label, why, effect="appeared")
+        why = "shown by its signals alone, which do not say from when on the baseline would have shown it"
+        return _undetermined(after.label, why, effect="appeared")
     least = motion.factor * baseline.shows.named_from(max(len(after.quantities), 1))
     nothing = Measured(0.0, torque.unit, torque.std_error)
     difference = Difference.of(nothing, torque, allowed.between_of(after.name, torque))

@@ -54,7 +54,7 @@ HEAD = "# What `bench check` holds the axis against. `bench check --update` writ
 NO_SPREAD = "not told by fewer than two recordings"
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?: (.+))?")
 _ALLOWED = "allowed: as bench check --update wrote it"
-#: Magnitudes of what is told of an axis, unless it is zero: their fourth powers, which comparisons take, are numbers.
+#: Magnitudes of what is known of an axis, unless it is zero: their fourth powers, which comparisons take, are numbers.
 LEAST, MOST = 1e-60, 1e60
 
 

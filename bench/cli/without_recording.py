@@ -67,7 +67,7 @@ def plan(
     rig: RigOption,
     out: Annotated[Path, typer.Option("--out", help="CSV of the motion, for a controller.")],
     wanted: Annotated[
-        str | None, typer.Option("--for", help="NAME:key=value,... of an effect that is to be told; see bench effects.")
+        str | None, typer.Option("--for", help="NAME:key=value,... of an effect to determine; see bench effects.")
     ] = None,
     period: Annotated[float, typer.Option("--period", help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
 ) -> None:

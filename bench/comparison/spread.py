@@ -132,7 +132,7 @@ def spread_warning(name: str, own: Sequence[Parameter]) -> str:
     )
 
 
-#: Recordings below which nothing can be told: two means, and one number for the scatter about them.
+#: Recordings below which nothing can be said: two means, and one number for the scatter about them.
 FEWEST = 3
 
 

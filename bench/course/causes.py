@@ -31,8 +31,8 @@ from bench.course.run import LabRun, made_run
 from bench.rig.rig import Rig
 
 DEG = math.pi / 180.0
-#: Causes that are told of one recording; more are none.
-TOLD = 3
+#: Causes that are named of one recording; more are none.
+NAMED = 3
 #: Between this and its inverse a factor on the current is no unit, and below √2.
 SCALE = 1.38
 #: Share of samples that two recordings of one motion never have in common.
@@ -157,17 +157,17 @@ def refusals(runs: Mapping[str, LabRun], rig: Rig) -> dict[str, str]:
     longest = {name: replace(run, missing=(0.0, 0.0)) for name, run in runs.items()}
     left_out = [{left, *without} for without in dict.fromkeys((frozenset(), cut)) for left in twins or ("",)]
     causes = _causes(longest, [tuple(name for name in runs if name not in left) for left in left_out], rig)
-    told = {}
+    faults = {}
     for name in {**contradicted, **{name: "" for cause in causes for name in cause}}:
         same = twins if name in twins else (name,)
         undone = dict.fromkeys(cause[one] for cause in causes for one in same if cause.get(one))
         words = list(dict.fromkeys(", and ".join(mistake.words for mistake in made) for made in undone))
         why = [f"{' and '.join(twins)} are one and the same recording"] if name in twins else []
-        why += [" - or ".join(words)] if 0 < len(words) <= TOLD else []
+        why += [" - or ".join(words)] if 0 < len(words) <= NAMED else []
         found = contradicted.get(name) or f"its J contradicts that of {', '.join(contradicted)}"
         known = "record it again" if name in cut else "no known mistake explains it: look at its signals"
-        told[name] = f"{found}; {', and '.join(why) or known}"
-    return told
+        faults[name] = f"{found}; {', and '.join(why) or known}"
+    return faults
 
 
 def _alike(one: LabRun, other: LabRun) -> bool:

@@ -20,7 +20,7 @@ ONE, TWO, COPIED, UNKNOWN = 1e-2, 1e-4, 1e-3, 1e-3
 SLIPPED, HALF = 1e-3, 0.5
 #: Any answer: width of the spread of its logarithm about what is expected.
 WIDE = 1.5
-#: An explanation so many times likelier than the next is told alone.
+#: An explanation so many times likelier than the next is named alone.
 SURE = 20.0
 #: A mistake made in another task, by one and the same function, is so many times likelier made in this one too.
 CARRIED = 50.0
@@ -49,11 +49,11 @@ class Explanation:
     @property
     def text(self) -> str:
         """The mistakes, or both explanations where none is much likelier."""
-        told = " and ".join(self.names)
+        own = " and ".join(self.names)
         return (
-            told
+            own
             if self.odds >= SURE or NOT_KNOWN in (*self.names, *self.next)
-            else f"{told}, or {' and '.join(self.next)}"
+            else f"{own}, or {' and '.join(self.next)}"
         )
 
     @property

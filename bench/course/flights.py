@@ -49,7 +49,7 @@ LEAST = 3
 _ADVICE = "y and z on each line, named in the first one: y [m],z [m]"
 
 Cells = list[str]
-#: Points of each flight, (n, 2) y and z - m, and whether the file told their unit.
+#: Points of each flight, (n, 2) y and z - m, and whether the file states their unit.
 FoundFlights = tuple[list[Array], bool]
 
 

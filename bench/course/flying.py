@@ -1,6 +1,6 @@
 """Whether a catapult's experiments are flights of one throw: each falls, its points lie on a path, the paths are alike.
 
-What does not is told with the mistake without which it would: axes exchanged, another unit, mirrored, one point off.
+What does not is named with the mistake without which it would: axes exchanged, another unit, mirrored, one point off.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ def contradiction(flights: Sequence[Array]) -> str:
     wrong = list(_wrong(flights))
     if not wrong:
         return ""
-    told = [f"flight {k + 1} {found}: {_why(flights, k)}" for k, found in wrong]
+    faults = [f"flight {k + 1} {found}: {_why(flights, k)}" for k, found in wrong]
     turned = [flight[:, ::-1] for flight in flights]
     if len(wrong) > len(flights) // 2:
-        return "y and z of all flights look exchanged" if not [*_wrong(turned)] else f"most flights: {told[0]}"
-    return "; ".join(told)
+        return "y and z of all flights look exchanged" if not [*_wrong(turned)] else f"most flights: {faults[0]}"
+    return "; ".join(faults)
 
 
 def _paths(flights: Sequence[Array]) -> list[Array]:

@@ -250,12 +250,12 @@ def _beside_task_6(loads: list[Number], recordings: LabRecordings) -> tuple[str,
         before = inertia_without_friction(recordings)
     except BenchError:
         return ()
-    told = []
+    sentences = []
     for load in loads[:1]:
         other = before["J_load"]
         apart, half = load.value - other.value, math.hypot(load.half or 0.0, other.half or 0.0)
         agree = "the two agree" if abs(apart) <= half else "the two contradict each other"
-        told.append(
+        sentences.append(
             f"J_load is {apart / other.value:+.2%} off the one of task 6, {apart:+.2g} ± {half:.2g} kg·cm²: {agree}."
         )
-    return tuple(told)
+    return tuple(sentences)

@@ -66,7 +66,7 @@ class GradedAnswer:
 
     @property
     def off(self) -> str:
-        """Share by which it is off what is expected; empty where that cannot be told."""
+        """Share by which it is off what is expected; empty where that is not known."""
         if not math.isfinite(self.value) or not self.expected:
             return ""
         ratio = self.value / self.expected
@@ -198,12 +198,12 @@ def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:
     of_student = known[submission.student]
     graded = [_graded(question, submission.answers.get(question.name), of_student) for question in QUESTIONS]
     tasks = [list(of_task) for _, of_task in groupby(graded, lambda answer: answer.question.task)]
-    told = [_explanation(of_task, submission.student, known) for of_task in tasks]
-    sure = [{*one.names} - {NOT_KNOWN} if one is not None and one.odds >= SURE else set() for one in told]
+    explanations = [_explanation(of_task, submission.student, known) for of_task in tasks]
+    sure = [{*one.names} - {NOT_KNOWN} if one is not None and one.odds >= SURE else set() for one in explanations]
     for k, of_task in enumerate(tasks):
-        if told[k] is not None and not sure[k]:  # what a task leaves open the others may tell
-            told[k] = _explanation(of_task, submission.student, known, set().union(*sure))
-    named = [_named(answer, one) for of_task, one in zip(tasks, told, strict=True) for answer in of_task]
+        if explanations[k] is not None and not sure[k]:  # what a task leaves open the others may settle
+            explanations[k] = _explanation(of_task, submission.student, known, set().union(*sure))
+    named = [_named(answer, one) for of_task, one in zip(tasks, explanations, strict=True) for answer in of_task]
     return GradedStudent(submission.student, tuple(named))
 
 
@@ -250,10 +250,10 @@ def _explanation(
     return explanation(given, tolerances, known[student], others, elsewhere)
 
 
-def _named(answer: GradedAnswer, told: Explanation | None) -> GradedAnswer:
+def _named(answer: GradedAnswer, explanation: Explanation | None) -> GradedAnswer:
     """A wrong answer with what explains its task, if that gives it."""
-    explained = told is not None and answer.verdict == "wrong" and answer.question.name in told.given
-    return replace(answer, explained=told) if explained else answer
+    explained = explanation is not None and answer.verdict == "wrong" and answer.question.name in explanation.given
+    return replace(answer, explained=explanation) if explained else answer
 
 
 def write_grades(graded: GradedClass, out: Path) -> list[Path]:

@@ -254,8 +254,8 @@ def _tail_findings(kept: LabRun, found: Decline) -> tuple[str, ...]:
 
 def _missing_findings(measured: Array) -> tuple[str, ...]:
     missing = [f"{speed:.0f}" for speed, value in zip(SPEEDS, measured, strict=True) if not math.isfinite(value)]
-    told = f"At {', '.join(missing)} rpm the motor's torque was not measured: the drive's set speed ends the run-up."
-    return (told,) if missing else ()
+    note = f"At {', '.join(missing)} rpm the motor's torque was not measured: the drive's set speed ends the run-up."
+    return (note,) if missing else ()
 
 
 def operating_range(recordings: LabRecordings) -> TaskResult:

@@ -197,5 +197,5 @@ def between(inertias: Mapping[str, float | None]) -> dict[str, str]:
     if len(found) == 2:
         limits = dict.fromkeys(found, max(limits[name] for name in found) / 2.0)
     apart = {name: abs(value / middle - 1.0) > limits[name] for name, value in found.items()}
-    told = ", ".join(f"{value * KG_CM2:.4g} by {name}" for name, value in found.items())
-    return {name: f"J in kg*cm**2 is {told}: one axis has one J" for name, is_apart in apart.items() if is_apart}
+    values = ", ".join(f"{value * KG_CM2:.4g} by {name}" for name, value in found.items())
+    return {name: f"J in kg*cm**2 is {values}: one axis has one J" for name, is_apart in apart.items() if is_apart}

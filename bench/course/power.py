@@ -28,7 +28,7 @@ EVERY = 40
 
 
 @dataclass(frozen=True)
-class CircuitTold:
+class CircuitValues:
     """What one circuit says of the corner at MAINS, the winding being hot unless it is said to be cold.
 
     Attributes:
@@ -76,7 +76,7 @@ class CircuitTold:
         return voltages * self.voltage / self.idle
 
 
-def circuits(rig: Rig, other: PeakCurve) -> list[CircuitTold]:
+def circuits(rig: Rig, other: PeakCurve) -> list[CircuitValues]:
     """The course's circuit, one whose power balances, Ke = kT(Iq), and both with the voltage across that w*p*L*Iq is.
 
     The last again, with the voltage that the datasheet's no-load speed asks of it, 4.6 % more in the lab's motor.
@@ -93,12 +93,12 @@ def circuits(rig: Rig, other: PeakCurve) -> list[CircuitTold]:
     course, balanced = (COURSES, motor.back_emf_constant, motor.back_emf_constant), (BALANCED, saturated, idle)
     usual, enough = motor.voltage, idle * low.no_load_speed
     cases = [(one, usual, crossed) for one in (course, balanced) for crossed in (False, True)]
-    told = []
+    values = []
     for (name, ke, of_none), given, crossed in (*cases, (balanced, enough, True)):
         drop, across = _of_both(ke, given, low, other) if crossed else (given - ke * low.corner_speed, 0.0)
         words = f"{name}{', with ω·p·L·Iq' * crossed}{f', {given:.0f} V' * (given != usual)}"
-        told.append(CircuitTold(words, ke, drop, across, given, motor.cold_share, saturated / ke, of_none))
-    return told
+        values.append(CircuitValues(words, ke, drop, across, given, motor.cold_share, saturated / ke, of_none))
+    return values
 
 
 def _of_both(ke: float, voltage: float, low: PeakCurve, high: PeakCurve) -> tuple[float, float]:
@@ -120,13 +120,13 @@ def _positive_root(a: float, b: float, c: float) -> float:
     return (-b + math.sqrt(b**2 - 4.0 * a * c)) / (2.0 * a)
 
 
-def balanced_winding(rig: Rig, told: CircuitTold, temperature: float) -> WindingModel:
+def balanced_winding(rig: Rig, found: CircuitValues, temperature: float) -> WindingModel:
     """The winding of a circuit whose power balances, at a temperature - degC - as it starts."""
     motor, peak = circuit(rig), motor_value(rig, "peak_current")
-    resistance = told.drop / peak
+    resistance = found.drop / peak
     heating = motor.thermal_resistance * motor.resistance / resistance
     own = replace(motor, resistance=resistance, thermal_resistance=heating)
-    return replace(WindingModel.of(rig, temperature, True, own), across=told.across / peak)
+    return replace(WindingModel.of(rig, temperature, True, own), across=found.across / peak)
 
 
 @dataclass(frozen=True)
@@ -179,8 +179,8 @@ def of_circuits(rig: Rig, axis: AxisParameters, found: Split) -> TaskResult:
     other = next((curve for curve in rig.motor.peak_curves if curve.mains_voltage != MAINS), None)
     if other is None:
         return TaskResult(("The datasheet has one mains voltage only, so what the circuit leaves out does not show.",))
-    told = circuits(rig, other)
-    course, both, fed = told[0], told[3], told[-1]
+    values = circuits(rig, other)
+    course, both, fed = values[0], values[3], values[-1]
     _, demand = full_speed(rig, axis)
     windings = {start: balanced_winding(rig, both, start) for start in (HOT, COLD, 0.5 * (HOT + COLD))}
     hot, cold, half_way = (run_winding(winding, axis, demand) for winding in windings.values())
@@ -191,7 +191,7 @@ def of_circuits(rig: Rig, axis: AxisParameters, found: Split) -> TaskResult:
         f"The {found.by_temperature * RPM:.0f} rpm are those of the course's circuit, and no bound. Of the power that "
         f"its back-EMF takes at the corner {course.into_shaft:.0%} come out at the shaft, as torque saturates and Ke "
         f"does not: {before.lost:.0f} W from the terminals are in neither heat, field nor axis. With Ke = kT(Iq) it "
-        f"balances, and the shift is {told[2].shift * RPM:.0f} rpm. Both put the corner at "
+        f"balances, and the shift is {values[2].shift * RPM:.0f} rpm. Both put the corner at "
         f"{other.mains_voltage:g} V far above the datasheet's {other.corner_speed * RPM:.0f} rpm, as they leave out "
         "the voltage ω·p·L·Iq at a right angle to the back-EMF.",
         "A winding that balances and meets both curves has flux of two axes, p·ψ_d = kT(Iq), which saturates, and "
@@ -218,14 +218,14 @@ def of_circuits(rig: Rig, axis: AxisParameters, found: Split) -> TaskResult:
         findings,
         tuple(numbers),
         (_power_chart(before, after), _curves_chart(rig, other, course, both)),
-        tables=(_circuits_table(told, other),),
+        tables=(_circuits_table(values, other),),
     )
 
 
-def _circuits_table(told: list[CircuitTold], other: PeakCurve) -> Table:
+def _circuits_table(values: list[CircuitValues], other: PeakCurve) -> Table:
     voltages = other.mains_voltage / MAINS
     rows = []
-    for one in told:
+    for one in values:
         speeds = (f"{speed * RPM:.0f}" for speed in (one.corner(voltages=voltages), one.no_load()))
         rows.append((one.name, f"{one.shift * RPM:+.0f}", *speeds, f"{one.into_shaft:.0%}"))
     at_other = f"corner at {other.mains_voltage:g} V / rpm>"
@@ -247,7 +247,7 @@ def _power_chart(before: PowerOfRun, after: PowerOfRun) -> Chart:
     return chart("Task 11: power of the run-up, cold", *panels)
 
 
-def _curves_chart(rig: Rig, other: PeakCurve, *told: CircuitTold) -> Chart:
+def _curves_chart(rig: Rig, other: PeakCurve, *values: CircuitValues) -> Chart:
     """Peak torque over speed at both mains voltages: the datasheet's, and what circuits make of it."""
     peak, constant = motor_value(rig, "peak_current"), torque_constant(rig)
     full = float(constant.torque(np.asarray(peak)))
@@ -255,14 +255,14 @@ def _curves_chart(rig: Rig, other: PeakCurve, *told: CircuitTold) -> Chart:
     for sheet in (peak_curve(rig.motor, MAINS, rig.source), other):
         limit = np.array([0.0, sheet.corner_speed, sheet.no_load_speed])
         curves = [curve(limit * RPM, full * sheet.share(limit), "datasheet", "dashes")]
-        for one in told:
+        for one in values:
             speed, current = speed_of_current(one, peak, constant, sheet.mains_voltage / MAINS)
             curves.append(curve(np.append(0.0, speed) * RPM, np.append(full, constant.torque(current)), one.name))
         panels.append(panel("speed n / rpm", f"M_max at {sheet.mains_voltage:g} V / (N·m)", *curves))
     return chart("Task 11: peak curves of both mains voltages, hot", *panels)
 
 
-def speed_of_current(one: CircuitTold, peak: float, constant: TorqueConstant, voltages: float) -> tuple[Array, Array]:
+def speed_of_current(one: CircuitValues, peak: float, constant: TorqueConstant, voltages: float) -> tuple[Array, Array]:
     """Highest speed - rad/s - at which a hot circuit drives a current - A -, (POINTS,), from peak current to none.
 
     Args:

@@ -63,7 +63,7 @@ class LabRun:
         return self.truth[name] * factor if name in self.truth else None
 
     def at(self, samples: NDArray) -> LabRun:
-        """Some samples of it alone, told by (n,)."""
+        """Some samples of it alone, chosen by (n,)."""
         signals = ("time", "velocity", "current", "acceleration", "torque", "angle")
         return replace(self, **{name: getattr(self, name)[samples] for name in signals})
 

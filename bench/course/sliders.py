@@ -26,7 +26,7 @@ from bench.trace.filter import GaussianFilter
 
 #: Tasks that sliders redraw.
 REDRAWN = ("8", "9", "10", "11")
-#: What the script is told of each slider, beside the tasks that it redraws.
+#: What the script gets of each slider, beside the tasks that it redraws.
 OF_A_SLIDER = ("key", "label", "unit", "start", "step", "below", "above")
 SCRIPT = asset("data", "lab", "sliders.js")
 

@@ -107,7 +107,7 @@ def find_submissions(folder: Path) -> list[Path]:
 
 
 def _is_form(path: Path) -> bool:
-    """Whether it looks like one; what cannot be read is told as a form that cannot."""
+    """Whether it looks like one; what cannot be read is reported as a form that cannot."""
     try:
         content = read_bytes(path, "a filled form", replaced=True)
     except InputError:

@@ -22,7 +22,7 @@ from bench.rig.rig import Rig
 
 
 def feedforwards(rig: Rig, identified: float) -> dict[str, float]:
-    """J_load - kg*m**2 - that each drive is told of; raises InputError where the rig has no geometry of a disk."""
+    """J_load - kg*m**2 - that each drive is set to; raises InputError where the rig has no geometry of a disk."""
     theory = rig.load.disk_inertia if rig.load else None
     if theory is None:
         raise InputError(f"{rig.source}: load", "found no geometry of a disk", "the theoretical J_load comes from it")

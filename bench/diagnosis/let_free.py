@@ -21,7 +21,7 @@ from bench.trace.trace import Trace
 
 #: Longest that it is let free - s -, and how many windows begin within the length of one.
 LONGEST, BEGIN = 5.0, 4
-#: After so long it is told how far off it is, and begins anew where that is shown - s.
+#: After so long it is shown how far off it is, and begins anew where that is shown - s.
 HORIZONS = (0.5, 1.0, 2.0, 5.0)
 #: How a model is run that a weak cascade keeps near its recording, with and without its effects.
 HELD, BARE = "held softly", "held, without what was found"

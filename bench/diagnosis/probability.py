@@ -25,7 +25,7 @@ from bench.effects.rivals import Outside
 from bench.effects.signals import Scope
 from bench.fit.fit import Fit
 
-#: Least of U: what is left is no longer told from noise.
+#: Least of U: what is left is no more than noise.
 LEAST = -9.0
 #: Largest V that counts: real axes leave more than noise whatever is named.
 MUCH = 3.0
@@ -52,7 +52,7 @@ class Probabilities:
         none: probability that it lacks something and none of the catalogue is it.
         detected: names that the signals show directly.
         beside: probability that each name is there beside an effect from outside the catalogue, a part of `none`.
-        fits: the best of each set, as long as they are searched; what is told of them keeps none.
+        fits: the best of each set, as long as they are searched; what is stored of them keeps none.
     """
 
     sets: tuple[NameSet, ...]

@@ -30,7 +30,7 @@ from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 
-#: Noise power beside which what is left beyond noise is no more told apart.
+#: Noise power beside which what is left beyond noise no longer counts.
 BESIDE_NOISE = 0.03
 #: Blocks that a holdout is judged in, and residual over noise floor above which no hypothesis explains one.
 BLOCKS, EXPLAINED = 32, 3.0

@@ -3,7 +3,7 @@
     M = K_w*omega + K_0*sgn(omega) + D_0/2 + D_w/2*|omega|
 
 D_0, D_w - Coulomb and viscous friction forward less backward - N*m (N), N*m*s/rad (N*s/m). The constant part cannot be
-told from a torque offset by any recording: they are each other's `ambiguous_with`.
+distinguished from a torque offset by any recording: they are each other's `ambiguous_with`.
 Source: A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019 (EMPS, asymmetric friction).
 """
 

@@ -75,7 +75,7 @@ class ElasticCoupling(Coupling, FiltersMotion, Native):
         return shape[1] < OVERDAMPED and super().physical(strengths, shape, base)
 
     def credible(self, shape: Sequence[float]) -> bool:
-        """It rings well enough to be told from a lag."""
+        """It rings well enough to be distinguished from a lag."""
         return shape[1] < DULL
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:

@@ -4,7 +4,7 @@
 
 M_e - N*m (N); t - time since the recording's start (that of the first, of several that are joined) - s.
 
-A short one is told from what else a model leaves by its edges: that runs as a parabola through the event and as long
+A short one differs from what else a model leaves by its edges: that runs as a parabola through the event and as long
 beside it. Where one takes many times what any other stretch of time does, it is no part of what comes again and again
 (level shifts and outliers of a series: R. S. Tsay, Journal of Forecasting 7, 1988, 1-20).
 """

@@ -8,7 +8,7 @@ current; a friction level that varies with position; what the drive itself does 
 
 What resists is asked of all effects at once: native ones through MuJoCo, which makes their torques of position and
 speed; the others through their own hooks, as in a simulation. Time stands at its end: what warms up is warm, what
-happens for a while is over. How much better a drive tracks with it is told by simulation of the model.
+happens for a while is over. How much better a drive tracks with it says a simulation of the model.
 
 `DriveUnits` writes it as tables in the drive's own units: those that its recorder speaks, as the rig's columns have
 them.
@@ -70,7 +70,7 @@ class TorqueTable:
 
 @dataclass(frozen=True, eq=False)
 class Feedforward:
-    """What a drive is told: J - kg*m**2 (kg), F over speed, C over position, and effects that are in neither."""
+    """What a drive is given: J - kg*m**2 (kg), F over speed, C over position, and effects that are in neither."""
 
     inertia: float
     friction: TorqueTable

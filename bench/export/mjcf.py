@@ -10,7 +10,7 @@ effects are asked for their parts by building the axis alone (`AxisModel.spec`);
 an effect adds comes along. A coupling of motor and load becomes a second joint of the link, behind the first one:
 then the first joint is the motor's shaft, its armature the motor's inertia.
 
-Ranges for domain randomisation say how far each value may lie from the one told: its interval at 95 %; where several
+Ranges for domain randomisation say how far each value may lie from the one given: its interval at 95 %; where several
 recordings tell it, the interval of what one more may tell, which holds what the axis differs by from day to day.
 """
 

@@ -60,7 +60,7 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[PlannedMotion]:
 
     Args:
         rig: with `[drive]` and `[simulation]`, which is what is expected of axis and sensors.
-        wanted: an effect that is to be told, as strong as it may be; None: inertia and friction are.
+        wanted: an effect that is to be determined, as strong as it may be; None: inertia and friction are.
 
     Raises:
         InputError: the rig lacks what a simulation needs, or no torque balance tells the effect.

@@ -85,7 +85,7 @@ class SimulatedJoint:
         rise, velocity = rising.rise * self.ratio, rising.velocity / self.ratio
         return FrictionLaw(rise, velocity, rising.exponent, loaded.motor, loaded.external), names
 
-    def told(self, carried: Sequence[str], *notes: str) -> list[str]:
+    def summary(self, carried: Sequence[str], *notes: str) -> list[str]:
         """What a file holds of the joint, and what not, in sentences."""
         model, left = self.stored.model, [present.name for present in self.stored.model.effects]
         for name in carried:
@@ -127,7 +127,7 @@ def _mjlab(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
                 found[kind] = tuple(values)
                 carried.append(name)
         steps = [f"its bristles are laid out for steps of {TIMESTEP:g} s"] if found["lugre"] else []
-        lines += joint.told(carried, "its input is torque of the motor, before the gear, in N*m", *steps)
+        lines += joint.summary(carried, "its input is torque of the motor, before the gear, in N*m", *steps)
         values = {"armature": joint.armature, "frictionloss": 0.0 if found["lugre"] else joint.coulomb}
         entries.append(
             {"target_names_expr": (re.escape(joint.name),), "gear": joint.ratio, **effort, **values}
@@ -174,7 +174,7 @@ def _bam(joints: Sequence[SimulatedJoint], actuator: str | None) -> Written:
     else:
         values |= {"kt": float(winding.torque_constant) * joint.ratio, "R": float(winding.resistance)}
     content = {**values, "q_offset": 0.0, "model": name, "actuator": actuator}
-    return json_text(content) + "\n", joint.told(list(names.values()), *notes)
+    return json_text(content) + "\n", joint.summary(list(names.values()), *notes)
 
 
 def _isaaclab(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
@@ -183,7 +183,7 @@ def _isaaclab(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
     for joint in joints:
         law, names = joint.friction()
         risen = [names["rise"]] if law.rise else []
-        lines += joint.told(risen, *["of its rise towards standstill the static level, at no speed" for _ in risen])
+        lines += joint.summary(risen, *["of its rise towards standstill the static level, at no speed" for _ in risen])
         values = {"armature": joint.armature, "friction": joint.coulomb + max(law.rise, 0.0)}
         values |= {"dynamic_friction": joint.coulomb, "viscous_friction": joint.damping}
         entries.append(
@@ -205,7 +205,7 @@ def _newton(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
     for joint in joints:
         springs = {name: float(spec.joint(AXIS).stiffness[0]) for name, spec in joint.native()}
         carried = [name for name, stiffness in springs.items() if stiffness]
-        lines += joint.told(carried)
+        lines += joint.summary(carried)
         values = {"armature": joint.armature, "friction": joint.coulomb, "damping": joint.damping}
         values["stiffness"] = sum(springs.values()) * joint.ratio**2
         entries[joint.name] = values | ({"effort_limit": joint.limit} if math.isfinite(joint.limit) else {})

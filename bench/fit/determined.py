@@ -83,7 +83,7 @@ def only_direction(equations: NormalEquations) -> str | None:
 
 
 def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
-    """Why each term that the rows leave open is, in the order in which it is told; the inertia's alone if it is one."""
+    """Why each term that the rows leave open is, in the order of the report; the inertia's alone if it is one."""
     least, open_terms = ROWS_PER_COLUMN * len(equations.names), _not_excited(equations, kind)
     if equations.count < least:
         reason = f"only {equations.count} filtered samples move clearly in one direction, {least} are needed"

@@ -41,7 +41,7 @@ from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Share of what stands above the noise that a delay has to explain to be told: what a model lacks may look like one
+#: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
 #: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
 A_DELAY = 0.25
 

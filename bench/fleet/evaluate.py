@@ -209,7 +209,7 @@ def plan(
 ) -> list[PlannedRecording]:
     """Every recording of the manifest, in its order; InputError where an effect of another package is none.
 
-    Rigs are read and recordings told apart in worker processes, within the limits of one recording.
+    Rigs are read and recordings distinguished in worker processes, within the limits of one recording.
     """
     options: Plain = {"diagnose": diagnose, "bounds": [str(value) for value in asdict(bounds()).values()]}
     if diagnose:

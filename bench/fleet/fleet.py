@@ -75,7 +75,7 @@ def fleet(
         InputError: a bad manifest, a folder that cannot be written to, or no scheduler at the address.
     """
     manifest = read_manifest(path)
-    tabulate(replace(manifest, table=manifest.table.slice(0, 0)), [], [])  # names that clash are told before any work
+    tabulate(replace(manifest, table=manifest.table.slice(0, 0)), [], [])  # names that clash end it before any work
     with keeping(manifest.inputs), held(out):
         require_writable(out / TABLE)
         planned = plan(manifest, diagnose, storages, limits, workers, lambda share: progress(PLANNING * share))

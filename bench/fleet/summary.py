@@ -21,11 +21,11 @@ from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.manifest import Manifest
 from bench.fleet.store import Plain
 
-#: Chance of being told that any axis changed of a fleet in which none did.
+#: Chance of a report that any axis changed of a fleet in which none did.
 ALARM = 0.01
 #: Standard errors over the median one beyond which a recording says too little of a quantity to be compared.
 VAGUE = 5.0
-#: Quantities of the axis itself; what follows from them, or is the drive's, would be told twice.
+#: Quantities of the axis itself; what follows from them, or is the drive's, would be reported twice.
 COMPARED = (INERTIA, VISCOUS, COULOMB, OFFSET)
 #: Share of the effort's variance below which the model of an axis misses too much to be believed unseen.
 EXPLAINED = 0.9

@@ -55,7 +55,7 @@ def absent(name: str, found: str, allowed: str) -> Check:
     return Check(name, "not_applicable", found, allowed)
 
 
-#: Deviation of a step from whole sample periods, as share of one, that is told; a loss cannot be told from more.
+#: Deviation of a step from whole sample periods, as share of one, that is reported; more looks like a loss.
 JITTER = 0.05
 #: Least number of windows.
 LEAST = 60

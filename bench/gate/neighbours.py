@@ -1,7 +1,7 @@
 """Do the joints stand that were stated to stand? What the torque of a joint beside them leaves may say that one moved.
 
 What a joint that moves asks of another follows a path that is not in the log: to the other it is a torque that changes
-over time and not with its own motion. So it is told by what the joint's own terms leave and a spline in time explains.
+over time and not with its own motion. So it is what the joint's own terms leave and a spline in time explains.
 What else pushes over time looks the same; which of the two it was, the log of one joint does not tell.
 """
 

@@ -10,7 +10,7 @@ from bench.axis_kind import INERTIA
 from bench.gate.check import Check, Seen, absent
 
 NAME = "agrees_with_rig"
-#: Factor between what is found and what the rig says that is told, and that is refused.
+#: Factor between what is found and what the rig says that is reported, and that is refused.
 WARNED, REFUSED = 1.2, 3.0
 #: Share of the effort that motion explains from which on the coarse balance tells an inertia.
 EXPLAINED = 0.8

@@ -186,8 +186,8 @@ def repaired(trace: Trace, damage: Damage) -> Trace:
     base = trace.time_base
     if base is not None:
         holes = np.flatnonzero(gap > HOLE + 1.0)
-        told = tuple((float(time[k]), float(gap[k] * period)) for k in holes)
-        base = replace(base, holes=told, interpolated=base.interpolated + filled.size)
+        filled_holes = tuple((float(time[k]), float(gap[k] * period)) for k in holes)
+        base = replace(base, holes=filled_holes, interpolated=base.interpolated + filled.size)
     return replace(trace, time=np.concatenate([time, between])[order], signals=signals, time_base=base)
 
 

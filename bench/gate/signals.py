@@ -36,7 +36,7 @@ BEYOND, WINDOWS = 0.05, 8
 DROPPED = 0.3
 #: Samples of these windows: short, to lie within a clipped stretch.
 SHORT = (4, 16)
-#: Steps within a signal's spread that are told, and refused.
+#: Steps within a signal's spread that are reported, and refused.
 FINE, COARSE = 8.0, 1.0
 #: Samples from which a spread says something.
 LEAST = 64

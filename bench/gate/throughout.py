@@ -3,7 +3,7 @@
     gain of a block = (demand . effort)/(demand . demand),  demand = the balance of all blocks along the block's motion
 
 A block is a stretch of time. Physics changes the gain by tens of percent; a sign that turns makes it -1, a sensor that
-drops out 0, another unit a thousand. A delay is told by how much less the balance leaves with the effort shifted.
+drops out 0, another unit a thousand. A delay is recognised by how much less the balance leaves with the effort shifted.
 """
 
 from __future__ import annotations

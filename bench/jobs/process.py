@@ -155,7 +155,7 @@ def _memory(number: int) -> int:
 def serve(handle: int) -> None:
     """Do the work that comes through a pipe of this handle, in the worker process, until the other end is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: the waiting process decides
-    sys.unraisablehook = lambda _: None  # of a library's half-made objects, which would be told beside the one line
+    sys.unraisablehook = lambda _: None  # of a library's half-made objects, which would be printed beside the one line
     with Connection(handle) as calls, Path(os.devnull).open("w") as nowhere:
         try:
             work, deadline = calls.recv()

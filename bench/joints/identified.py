@@ -63,10 +63,10 @@ class IdentifiedJoint:
         rig: with what the MJCF knows of its links; None where the MJCF or the logs do not tell the joint.
         diagnosis: with effects; None where the logs do not decide on them.
         estimate: inertia and friction alone, where there is no diagnosis; None where they tell nothing.
-        refused: why a parameter, or whether anything is missing, is not told, by its name.
+        refused: why a parameter, or whether anything is missing, is not determined, by its name.
         record: the motion that would tell it; empty where nothing is refused.
         left_out: why a log was not used, by its file.
-        failed: what is wrong with the input, if that is why nothing is told.
+        failed: what is wrong with the input, if that is why nothing is determined.
         motion: of a diagnosis with a model that moves.
     """
 
@@ -82,7 +82,7 @@ class IdentifiedJoint:
 
     @property
     def parameters(self) -> dict[str, Parameter]:
-        """Those that are told, by name."""
+        """Those that are determined, by name."""
         found = self.diagnosis or self.estimate
         parameters = {} if found is None else found.parameters
         return {name: parameter for name, parameter in parameters.items() if name not in self.refused}
@@ -102,7 +102,7 @@ class IdentifiedJoint:
 
     @property
     def model(self) -> StoredModel | None:
-        """Of the joint for MuJoCo; without armature where that is not told; None without friction."""
+        """Of the joint for MuJoCo; without armature where that is not determined; None without friction."""
         if self.diagnosis is not None and self.diagnosis.model is not None:
             return self.diagnosis.model
         if self.rig is None:

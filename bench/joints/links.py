@@ -115,7 +115,7 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
             rows = Rows.of(trace, rig)
             columns = [lay_out(rows, plain(rows)).columns[:, : len(BASE)], rows.table(_frictions)]
             columns += [rows.effort - Rows.of(one, rig, conditioning=rows.conditioning).effort for one in changed]
-        except BenchError:  # told where the joint is identified
+        except BenchError:  # reported where the joint is identified
             continue
         table = np.column_stack([*columns, rows.effort])
         found += [part.T @ part for part in np.array_split(table, STRETCHES)]
@@ -202,7 +202,7 @@ def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float
     Robot.of(work[0].mjcf, work[0].joint, (AddedBody(body),))
     products = of_joints(work, [AddedBody(body, 1.0, (x, y, z)) for x, y, z in PLACES.tolist()], progress)
     if not products:
-        raise UndeterminedError(f"the payload of '{body}'", "no joint is told by the logs", "a log of all joints")
+        raise UndeterminedError(f"the payload of '{body}'", "no joint is determined by the logs", "a log of all joints")
     mix, found, mass, centre = _carried(products, body, np.zeros(3))
     for _ in range(ROUNDS - 1):
         mix, found, mass, centre = _carried(products, body, centre)

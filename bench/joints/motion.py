@@ -71,7 +71,7 @@ def joint_motion(
 
 
 def _position(velocity: Array, trace: Trace) -> Array:
-    """By a model's speed, from where each stretch without holes begins - rad (m) - (n,); nan where it is not told."""
+    """By a model's speed, from where each stretch without holes begins - rad (m) - (n,); nan where it is not known."""
     position = np.full(len(trace), np.nan)
     for part in stretches_of(trace):
         speed, begin = velocity[part], trace["position"][part.start]

@@ -29,8 +29,8 @@ class IdentifiedRobot:
     Attributes:
         mjcf: its file.
         joints: each by its name, in the order of the MJCF.
-        payload: what a body carried in the logs, where that was sought and is told.
-        links: whose inertia is not the MJCF's; joints are told with what theirs is.
+        payload: what a body carried in the logs, where that was sought and is determined.
+        links: whose inertia is not the MJCF's; joints are reported with what theirs is.
         warnings: what concerns no joint alone.
         added: what the joints were identified with beside the MJCF.
     """
@@ -44,7 +44,7 @@ class IdentifiedRobot:
 
     @property
     def answered(self) -> tuple[str, ...]:
-        """Names of the joints of which anything is told."""
+        """Names of the joints of which anything is determined."""
         return tuple(name for name, joint in self.joints.items() if joint.parameters)
 
     @property

@@ -158,7 +158,7 @@ def write_truth(trace: str | Path, truth: Truth) -> Path:
     return path
 
 
-#: Width by which a measured speed is smoothed before a drive is told to follow it - s.
+#: Width by which a measured speed is smoothed before a drive is commanded to follow it - s.
 SMOOTHED = 5e-3
 #: In which a motion comes from rest, or to it, where its recording does not - s.
 RAMP = 0.1
@@ -186,7 +186,7 @@ class Sampled:
 
 
 def motion_of(recording: Trace) -> Sampled:
-    """The motion that a recording's drive was told to make; where that is not recorded, the one that it made."""
+    """The motion that a recording's drive was commanded to make; where that is not recorded, the one that it made."""
     time = recording.time
     if "velocity_reference" in recording:
         speed = recording["velocity_reference"]
@@ -204,7 +204,7 @@ def _known(time: Array, values: Array) -> tuple[Array, Array]:
 
 
 def followed(motion: Trace | ArrayLike, step: float, period: float) -> References:
-    """What a drive is told to follow along a recording, or along speeds - rad/s (m/s) - (n,).
+    """What a drive is commanded to follow along a recording, or along speeds - rad/s (m/s) - (n,).
 
     Args:
         motion: the recording, or speeds.

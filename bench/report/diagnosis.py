@@ -41,7 +41,7 @@ DRAWN = ("position", "velocity", "current", "time")
 STEPS = 6
 #: Probability with which a set of names holds the truth.
 SURE = 0.9
-#: Alternatives that are told in a sentence at most, and the least probability of one.
+#: Alternatives that are named in a sentence at most, and the least probability of one.
 MOST_SHOWN, LEAST_SHOWN = 3, 1e-3
 
 
@@ -286,7 +286,7 @@ def _sure(found: Diagnosis) -> str:
     if found.holdout.same is False:
         lines.append("The holdout is of another axis, or of this one changed.")
     lines += [
-        f"{sentence(words(effect.name))} cannot be told here from {' or '.join(map(words, effect.ambiguous_with))}."
+        f"{sentence(words(effect.name))} and {' or '.join(map(words, effect.ambiguous_with))} look alike here."
         for effect in found.effects
         if effect.ambiguous_with
     ]

@@ -123,9 +123,9 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
             of_peak.setdefault(reserve(cold, speed, torque).peak, []).append(f"{volts} cold")
             at = np.linspace(0.0, cold.curve.no_load_speed, 300)
             curves.append(doc.series("peak, winding at 20 °C", "dotted", "ink", at * RPM, cold.peak(at)))
-        told = {one.name for panel in panels for one in panel.series}  # one legend serves all panels
+        in_legend = {one.name for panel in panels for one in panel.series}  # one legend serves all panels
         coloured = (
-            one.model_copy(update={"colour": colour, "name": "" if one.name in told else one.name})
+            one.model_copy(update={"colour": colour, "name": "" if one.name in in_legend else one.name})
             for one, colour in zip(curves, doc.COLOURS, strict=False)
         )
         label = f"torque M at {volts} / (N·m)"

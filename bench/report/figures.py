@@ -25,7 +25,7 @@ from bench.report.over_time import unpacked
 
 #: More points than this do not show in a figure; the extremes of each stretch stand for it.
 POINTS = 8000
-#: What is measured, what a model makes, what is left, and noise: the same everywhere, and told apart in grey too.
+#: What is measured, what a model makes, what is left, and noise: the same everywhere, and distinct in grey too.
 MEASURED, MODELLED, REST, NOISE = "#4c5c6e", "#c0480a", "#25704e", "#d6e0e8"
 #: Colours of a document on paper.
 COLOURS = {"ink": MEASURED, "model": MODELLED, "left": REST, "floor": NOISE, "first": "#7d8894"}

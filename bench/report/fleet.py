@@ -177,7 +177,7 @@ def _answers(fleet: Fleet) -> dict[str, str]:
 
 
 def _reasons(summary: Summary) -> dict[str, list[str]]:
-    """By axis, why a person should look: what changed surely comes before what could not be told, gravest first."""
+    """By axis, why a person should look: what changed surely comes before what could not be decided, gravest first."""
     reasons: dict[str, list[str]] = {}
     for one in summary.changed:
         why = f"{words(one.history.quantity)} {by_how_much(one)} since {one.since}"

@@ -28,7 +28,7 @@ FLEET = "fleet.html"
 DOTS = 200
 #: Characters of a name.
 NAME = 80
-#: Seconds of the units that times are told in, the largest first.
+#: Seconds of the units that times are given in, the largest first.
 CLOCK = {"d": 86400.0, "h": 3600.0, "min": 60.0, "s": 1.0}
 #: Of these units there are at least so many from the first recording to the last.
 SEVERAL = 3.0
@@ -248,7 +248,7 @@ def drawn_values(
         bands = expected(history.values, history.errors, *places)
         if places and places[0] <= near.start:
             places, bands = [], bands[1:]
-        named = "the next recording (95 %)" + (", as told before and after" if places else "")
+        named = "the next recording (95 %)" + (", as forecast before and after" if places else "")
         # the first is drawn to the end: what came after a change lies outside of it
         for place, (low, high) in zip((near.start, *places), bands, strict=True):
             ends, bounds = np.array([x[place], end]), (np.full(2, low), np.full(2, high))

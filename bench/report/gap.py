@@ -178,7 +178,7 @@ def states(found: Diagnosis) -> list[str]:
 
 #: A region is narrow, or near zero, within this share of what was seen; a trend and a wave are clear from this share.
 NARROW, CLEAR = 0.15, 0.6
-#: Suspects that are told.
+#: Suspects that are named.
 NEAREST = 2
 #: By coordinate: what to record, and the command for it.
 DECIDES = {

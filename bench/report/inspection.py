@@ -21,7 +21,7 @@ from bench.trace.choose import ReadingOptions, of_axis
 from bench.trace.inspect import ColumnSummary, Inspection
 from bench.trace.trace import Trace, assemble
 
-#: How the signals of one unit are told apart, in their order.
+#: How the signals of one unit are distinguished, in their order.
 ROLES: tuple[Literal["measured", "model", "left"], ...] = ("measured", "model", "left")
 #: Holes that are listed one by one.
 MOST_HOLES = 20
@@ -112,7 +112,7 @@ def _changes(channel: Channel) -> bool:
 def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, doc.Tone]:
     """What the recording is good for, in a sentence, and how that is meant."""
     if found.asks is not None or found.duration is None or found.rate is None:
-        return "It is not read as a recording yet: its signals have to be told first.", "refused"
+        return "It is not read as a recording yet: its signals have to be named first.", "refused"
     names = [words(signal.name) for signal in found.signals]
     held = f"It holds {number(found.duration, 's', 4)} of {', '.join(names)} at {number(found.rate, 'Hz', 6)}"
     failed = [words(check.name) for check in checks if check.status == "fail"]

@@ -11,11 +11,11 @@ from bench.parameter import Parameter
 #: Keeps a value, its interval and its unit on one line.
 SPACE = "\N{NO-BREAK SPACE}"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-#: Values outside of these are told with a power of ten.
+#: Values outside of these are written with a power of ten.
 SMALL, LARGE = 1e-2, 1e5
 #: Digits behind the point, where an interval is next to nothing.
 MOST_DECIMALS = 9
-#: Shares below it are not told apart.
+#: Shares below it are not distinguished.
 LEAST_SHARE = 1e-3
 
 

@@ -58,7 +58,7 @@ def _payload_json(found: IdentifiedRobot) -> dict[str, Any] | None:
 
 
 def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
-    """As `diagnose` has it; without a diagnosis what is told all the same."""
+    """As `diagnose` has it; without a diagnosis what is known all the same."""
     of_diagnosis: dict[str, Any] = {"verdict": None, "effects": []}
     if joint.diagnosis is not None:
         of_diagnosis = {key: value for key, value in diagnosis_content(joint.diagnosis).items() if key not in DROPPED}
@@ -124,16 +124,16 @@ def _verdict(found: IdentifiedRobot) -> str:
 def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     """A row for each joint; and what is open, where anything is."""
     columns = zip(*(_values(joint) for joint in found.joints.values()), strict=True)
-    told = [_column(name, column) for name, column in zip(("armature", "viscous", "Coulomb"), columns, strict=True)]
-    values = zip(*(cells for _, cells in told), strict=True)
+    table = [_column(name, column) for name, column in zip(("armature", "viscous", "Coulomb"), columns, strict=True)]
+    values = zip(*(cells for _, cells in table), strict=True)
     rows = [(name, *cells, _missing(joint)) for (name, joint), cells in zip(found.joints.items(), values, strict=True)]
-    headings = ("joint", *(heading for heading, _ in told), "what was missing, and how sure~")
+    headings = ("joint", *(heading for heading, _ in table), "what was missing, and how sure~")
     caption = "Values ± half of their intervals of 95 %, in SI, on the motor's side but the armature"
     tables = [doc.table(caption, headings, rows)]
     if found.payload is not None:
         finite = (math.isfinite(one.half_width) for one in found.payload.centre)
         x, y, z = (
-            interval(one) if known else "not told" for one, known in zip(found.payload.centre, finite, strict=True)
+            interval(one) if known else "unknown" for one, known in zip(found.payload.centre, finite, strict=True)
         )
         rows = [(found.payload.body, interval(found.payload.mass), f"{x}, {y}, {z}")]
         tables.append(doc.table("Payload", ("body", "mass>", "centre in the body's frame>"), rows))
@@ -149,7 +149,7 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
 
 
 def _values(joint: IdentifiedJoint) -> tuple[Parameter | None, ...]:
-    """Armature, viscous and Coulomb friction; None for one that is not told."""
+    """Armature, viscous and Coulomb friction; None for one that is not determined."""
     kind = None if joint.rig is None else joint.rig.axis_kind
     names = (ARMATURE, "", "") if kind is None else (ARMATURE, kind.parameter(VISCOUS), kind.parameter(COULOMB))
     return tuple(joint.parameters.get(name) for name in names)
@@ -165,13 +165,13 @@ def _column(name: str, values: Sequence[Parameter | None]) -> tuple[str, list[st
 def _missing(joint: IdentifiedJoint) -> str:
     """What was missing, and how sure that is."""
     if joint.diagnosis is None:
-        return "not told"
+        return "not determined"
     left = f" {'; '.join(map(words, joint.diagnosis.because))}" if joint.diagnosis.because else ""
     return f"{'' if joint.diagnosis.effects else 'None named. '}{likely_names(joint.diagnosis)}{sentence(left)}"
 
 
 def _open(joint: IdentifiedJoint) -> list[tuple[str, str]]:
-    """What is not told of a joint, and what to record instead."""
+    """What is not determined of a joint, and what to record instead."""
     if joint.failed:
         return [(joint.failed, "")]
     called = {EFFECTS: "whether anything is missing"}
@@ -184,7 +184,7 @@ def _open(joint: IdentifiedJoint) -> list[tuple[str, str]]:
 
 
 def _of_joint(k: int, joint: IdentifiedJoint, found: IdentifiedRobot) -> doc.Section:
-    """What is told of a joint."""
+    """What is determined of a joint."""
     key, heading = f"joint-{k + 1}", joint.name
     if joint.diagnosis is None:
         tables = [parameters_table("Inertia and friction", joint.parameters)] if joint.parameters else []

@@ -27,7 +27,7 @@ AROUND, ALONG = 12, 5
 CELLS, FEWER = 96, 0.85
 #: Groups of geoms that MuJoCo shows by itself.
 SHOWN = 3
-#: Instants at most at which joints are told that only pass by.
+#: Instants at most at which joints are counted that only pass by.
 INSTANTS = 1000
 #: Triangles by three of its vertices each (t, 3).
 Faces = NDArray[np.int64]

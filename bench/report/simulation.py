@@ -297,14 +297,14 @@ def _free_charts(motions: Mapping[str, JointMotion]) -> Iterator[doc.Chart]:
 
 
 def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) -> doc.Moving:
-    """A robot along a log by its joints' motions, the first of which is told in numbers; those of other logs stand as
+    """A robot along a log by its joints' motions, the first of which is given in numbers; those of other logs stand as
     measured in this one.
     """
     here = {name: one for name, one in motions.items() if one.origin == along}
     first, motion = next(iter(here.items()))
     robot = RobotAlong(mjcf, first, 1.0, motion.time, motion.measured)
-    told = dict.fromkeys(how for one in here.values() for how in one.runs)
-    runs = sorted(told, key=lambda how: [HELD, BARE, how].index(how))
+    ways = dict.fromkeys(how for one in here.values() for how in one.runs)
+    runs = sorted(ways, key=lambda how: [HELD, BARE, how].index(how))
 
     def apart(name: str, how: str) -> Array:
         """Of a joint that the log tells; as held softly where its model has nothing to leave out."""

@@ -36,7 +36,7 @@ TITLES = {
     "diagnose": "diagnose: the same, after it added what it named",
 }
 NOTE = (
-    "told: runs that tell the quantity, of all. Over the true value: bias with its interval, RMS error, median half "
+    "known: runs that give the quantity, of all. Over the true value: bias with its interval, RMS error, median half "
     "width of the interval of 95 %; ±/RMS by root mean squares, 1.96 of a normal distribution's. 50%, 80%, 95%: share "
     "of the intervals of that level that hold the truth; bounds: 95 % of the last, Clopper-Pearson."
 )
@@ -92,7 +92,7 @@ def _naming_json(found: Naming) -> dict[str, Any]:
 
 
 def validation(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> doc.Document:
-    """The document of a validation that `command` does again; on one's own axis how well it is told comes first."""
+    """The document of a validation that `command` does again; on one's own axis how well it is known comes first."""
     first, naming, note, runs = _first(found), found.naming, doc.Paragraph(text=NOTE), _outcomes(found.runs)
     numbers, parts = ([*_numbers(found, whole)] for whole in (True, False))
     names = [] if naming is None else [*_naming(naming)]
@@ -227,7 +227,7 @@ def _covered(found: Sequence[Coverage], title: str) -> doc.Table:
         for each in found
     )
     levels = (f"{level:.0%}>" for level in LEVELS)
-    return doc.table(title, ("runs", "of", "told>", "bias %>", "RMS %>", "± %>", "±/RMS>", *levels, "bounds>"), rows)
+    return doc.table(title, ("runs", "of", "known>", "bias %>", "RMS %>", "± %>", "±/RMS>", *levels, "bounds>"), rows)
 
 
 def _determined(runs: tuple[Run, ...]) -> tuple[doc.AnyPart, ...]:

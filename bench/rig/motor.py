@@ -101,7 +101,7 @@ class Motor(RigTable):
 
     Attributes:
         model: name it carries in the motor catalogue.
-        current: which current the motor's values are told for, `peak` or `effective`; kept are those for the peak.
+        current: which current the motor's values are stated for, `peak` or `effective`; kept are those for the peak.
         rotor_inertia: of the rotor alone - kg*m**2; on a linear axis `moving_mass` - kg.
         torque_constant: constant torque per ampere - N*m/A; or the four datasheet values, from which kT(Iq) follows;
             on a linear axis `force_constant` - N/A.
@@ -160,7 +160,7 @@ class Motor(RigTable):
 
     @model_validator(mode="after")
     def _as_peak_values(self) -> Motor:
-        """Values told for effective currents, as values for peaks, which are sqrt(2) times as high."""
+        """Values stated for effective currents, as values for peaks, which are sqrt(2) times as high."""
         if self.current == "peak":
             return self
         factors = {1.0 / math.sqrt(2.0): ("torque_constant", "force_constant")}

@@ -71,7 +71,7 @@ def si(unit: str, translated: bool = False) -> WrapValidator:
             raise PydanticCustomError("unit", "{found}; {allowed}", vars(error)) from error
         try:
             checked = check(value)
-        except ValidationError as error:  # of the bounds, which are told of the text that stands in the file
+        except ValidationError as error:  # of the bounds, which are reported of the text that stands in the file
             raise PydanticCustomError("bounds", "{found}", {"found": error.errors()[0]["msg"]}) from error
         return Toleranced(checked, tolerance) if tolerance else checked
 

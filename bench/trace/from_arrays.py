@@ -96,7 +96,7 @@ def _table(frame: ArrowStream, origin: str) -> pa.Table:
 
 
 def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> None:
-    """InputError naming the first signal of no unit, neither in its column's name nor told."""
+    """InputError naming the first signal of no unit, neither in its column's name nor stated."""
     names = {channel.name for channel in channels}
     for channel in channels:
         signal = signal_of(channel.name)
@@ -112,5 +112,5 @@ def _period(given: float | str, origin: str) -> float:
     where = f"{origin}: sample_period"
     period = parse(given, "s", where) if isinstance(given, str) else float(given)
     if not (math.isfinite(period) and period > 0.0):
-        raise InputError(where, f"found {given}", "allowed: a positive time, in s where no unit is told")
+        raise InputError(where, f"found {given}", "allowed: a positive time, in s where no unit is stated")
     return period

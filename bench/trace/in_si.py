@@ -145,7 +145,7 @@ def _between_known(values: Array) -> Array:
 
 
 def _known_samples(name: str, sampled: SampledSignal, channel: Channel, notes: list[str]) -> SampledSignal:
-    """A signal with its empty cells told: a few are holes; many mean that it was sampled more slowly."""
+    """A signal with its empty cells reported: a few are holes; many mean that it was sampled more slowly."""
     if all_finite(sampled.values):
         return sampled
     unknown, clock = np.isnan(sampled.values), sampled.clock

@@ -1,7 +1,7 @@
 """Which columns of a log are of which joint: `q_0`, `elbow.position`, `/joint_states/elbow/position`, `pos_meas1`.
 
 A name is cut into words. One of them tells the signal, some may tell that it is measured or a set-point; what is left
-is the joint, by its name or its number. Joints are told apart where names of the same making differ in them alone, as
+is the joint, by its name or its number. Joints are taken apart where names of the same making differ in them alone, as
 `q_0` and `q_1` do: a file of one axis has no such names.
 """
 

@@ -30,7 +30,7 @@ TOP = 0.3
 #: Variance of a mean of neighbouring Hann-weighted periodogram values over that of independent ones:
 #: 1 + 2*(2/3)**2 + 2*(1/6)**2 from the window's overlap of one and two bins.
 CORRELATION = 35.0 / 18.0
-#: Samples a distinct value at least, on average, in a signal of whose steps anything can be told.
+#: Samples a distinct value at least, on average, in a signal of whose steps anything can be said.
 REPEATED = 4
 #: Samples that mostly tell that there is no step of which all distances are multiples.
 FEW = 512

@@ -106,7 +106,7 @@ def read(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = 
     """Trace of a file: signals in SI units on one regular time base.
 
     Args:
-        path: file of any format, told by its content first and its ending second.
+        path: file of any format, recognised by its content first and its ending second.
         columns: signal -> column name with unit, as in a rig's `[trace.columns]`, see `assemble`; or all that
             a rig's `[trace]` tells, as `rig.trace`.
 

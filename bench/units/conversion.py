@@ -75,7 +75,7 @@ _KINDS = {
 }
 #: What pint raises on names that are no unit, beside errors of its own.
 _NO_UNIT = (AttributeError, LookupError, TypeError, ValueError, AssertionError, ArithmeticError)
-#: Efforts and accelerations told by the mass that weighs so much: N*m in kg*cm, m/s**2 in g. ISO 80000-3: g_n.
+#: Efforts and accelerations given by the mass that weighs so much: N*m in kg*cm, m/s**2 in g. ISO 80000-3: g_n.
 _MASS = {"N*m": "kg*m", "N": "kg"}
 _STANDARD_GRAVITY = 9.80665
 

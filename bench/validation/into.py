@@ -207,7 +207,7 @@ def judged(case: Injection, own: Own, effect: Effect, found: Diagnosis) -> Injec
 
 
 def believed(found: Diagnosis, effect: str, own: Sequence[str]) -> dict[str, float]:
-    """Probabilities of an effect, or what is not told from it, of names that are not the recording's own, of none."""
+    """Probabilities of an effect, or what looks like it, of names that are not the recording's own, of none."""
     likely = found.probabilities.names
     twin = next((one.name for one in found.effects if effect in (one.name, *one.ambiguous_with)), effect)
     others = {name: share for name, share in likely.items() if name not in (effect, twin, *own)}

@@ -50,7 +50,7 @@ class Case:
         index: of the run.
         plant: that moves it.
         axis, rig: its true values, and what is known of it.
-        motion, motion_name: that its drive is told to make, and its kind.
+        motion, motion_name: that its drive is commanded to make, and its kind.
         sensors: that record it.
         effects, severity: hidden in it, as strong as was drawn.
     """
@@ -185,7 +185,7 @@ class OwnAxis:
     Attributes:
         rig: of the axis.
         axis: its true values.
-        motion, motion_name: that its drive is told to make.
+        motion, motion_name: that its drive is commanded to make.
         sensors: that record it.
         plants: that can move it.
     """

@@ -203,7 +203,7 @@ def test_what_is_not_determined_now_is_not_called_the_same():
     assert found.result == "undecided"
     (missing,) = (one for one in found.comparisons if one.name == "coulomb_friction_torque")
     assert (missing.result, missing.now, missing.margin) == ("undecided", None, 0.0)
-    assert "it is not told now" in headline(found)
+    assert "it is not determined now" in headline(found)
 
 
 def chances(found):
@@ -318,10 +318,10 @@ def test_effects_outside_the_torque_balance_come_and_go_without_an_alarm():
     now = state(None, [lag], "explained")
     found = checked(state(), now, observed=GivenObserved(now))
     assert found.result == "undecided"
-    assert "told by its signals alone" in headline(found)
+    assert "shown by its signals alone" in headline(found)
     back = checked(now, state(), observed=GivenObserved(state()))
     assert back.result == "undecided"
-    assert "its strength is not told" in headline(back)
+    assert "its strength is not known" in headline(back)
 
 
 def test_comparisons_stand_worst_first_and_alike_by_chance():

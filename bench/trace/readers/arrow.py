@@ -56,14 +56,14 @@ def parquet_table(content: bytes, path: str) -> pa.Table:
     ):
         fields, meta = list(file.schema_arrow), file.metadata
         wanted = [field.name for field in fields if is_numeric(field.type)]
-        # Where what is told of a column is damaged, asking for it ends the process: Arrow raises while it reads alone.
+        # Where a column's description is damaged, asking for it ends the process: Arrow raises while it reads alone.
         plain = [field.name for field in fields if is_numeric(field.type) and not field.type.num_fields]
         for k in range(meta.num_row_groups if plain else 0):
             next(file.iter_batches(batch_size=1, row_groups=[k], columns=plain), None)
         groups = [meta.row_group(k) for k in range(meta.num_row_groups)]
         chunks = [(group.num_rows, group.column(j)) for group in groups for j in range(meta.num_columns)]
         whole = all(rows == one.num_values for rows, one in chunks if one.path_in_schema in plain)
-        if not whole or sum(group.num_rows for group in groups) != meta.num_rows:  # no sum is of what is told of a file
+        if not whole or sum(group.num_rows for group in groups) != meta.num_rows:  # no sum covers a description
             allowed = f"allowed: a complete {PARQUET.format} file"
             raise InputError(path, f"found columns that do not hold the {meta.num_rows} rows it tells of", allowed)
         read = [one for _, one in chunks if any(f"{one.path_in_schema}.".startswith(f"{name}.") for name in wanted)]
@@ -201,7 +201,7 @@ def speaks_of_moment(text: str) -> bool:
 def seconds(texts: pa.ChunkedArray | pa.Array) -> Array | None:
     """Seconds from the first moment - (n,), nan where a cell is empty; None where one is no moment.
 
-    Dates are told apart, not read: they count days in the order in which they appear, so that it does not matter which
+    Dates are compared, not read: they count days in the order in which they appear, so that it does not matter which
     of their numbers is the month. A clock without a date that falls back by most of a day has passed midnight.
     """
     pc = compute()

@@ -1,6 +1,6 @@
 """Readers of CODESYS V3 and Machine Expert traces: the trace editor's own file, and what it exports as CSV or text.
 
-XML of controllers is told apart by its root element: that of a Sinumerik frequency response is recognised so that the
+XML of controllers is recognised by its root element: that of a Sinumerik frequency response is recognised so that the
 user learns why it is no trace of a motion.
 
 `<Trace><TraceConfiguration>...<Single Name="MicroSeconds" Type="bool">False</Single>...</TraceConfiguration>

@@ -1,7 +1,7 @@
 """Reader of LeRobot's datasets, version 2 and 3: Parquet of lists, whose places `meta/info.json` names.
 
 https://huggingface.co/docs/lerobot/lerobot-dataset-v3: `features` tells of each column its `names`, a list or one under
-another key; the files of `data/` hold episodes one after another, each with times from zero. Units are told nowhere.
+another key; the files of `data/` hold episodes one after another, each with times from zero. Units are stated nowhere.
 """
 
 from __future__ import annotations

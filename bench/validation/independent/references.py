@@ -1,4 +1,4 @@
-"""Motions that a drive is told to make: position, speed and acceleration in closed form."""
+"""Motions that a drive is commanded to make: position, speed and acceleration in closed form."""
 
 from __future__ import annotations
 
