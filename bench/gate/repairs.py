@@ -193,6 +193,8 @@ def repaired(trace: Trace, damage: Damage) -> Trace:
 
 WRAPS = "position_wraps"
 ALLOWED_WRAPS = "a position that runs on, or wraps by one period"
+#: Periods beyond which a signal that wraps does not go, noise at its ends included.
+LEAVES = 1.25
 
 
 def runs_on(seen: Seen) -> Check | Repaired:
@@ -215,8 +217,12 @@ def runs_on(seen: Seen) -> Check | Repaired:
         advice = "record so that it runs on, cut the recording at the jumps, or leave the position out"
         return Check(WRAPS, "fail", found, ALLOWED_WRAPS, advice)
     wraps = Wraps(period, int(places.size))
-    wrapping = [name for name in ("position", "position_reference") if name in trace]
-    repaired = trace.with_signals({name: np.unwrap(trace[name], period=period) for name in wrapping}, {})
+    wrapping = {"position": position}
+    setpoint = trace.signals.get("position_reference")
+    if setpoint is not None and np.ptp(setpoint) < LEAVES * period:  # one that runs on may step by more than a half
+        wrapping["position_reference"] = setpoint
+    unwrapped = {name: np.unwrap(values, period=period) for name, values in wrapping.items()}
+    repaired = trace.with_signals(unwrapped, {})
     return _undone(trace, wraps), replace(repaired, wraps=wraps)
 
 

@@ -85,7 +85,8 @@ class MotionLimits:
             allowed = f"allowed: below half of the peak torque, {RESISTING_SHARE * torque:.3g} {rig.effort_unit}"
             raise InputError(f"{rig.source}: simulation", found, allowed)
         viscous = parameters.viscous_friction_coefficient
-        speeds = [speed for speed in (rig.motor.maximum_speed or rig.motor.rated_speed,) if speed is not None]
+        fastest = rig.motor.maximum_speed or rig.motor.rated_speed
+        speeds = [] if fastest is None else [fastest]
         if rig.motor.supply_voltage is not None and rig.motor.back_emf_constant is not None:
             speeds.append(rig.motor.supply_voltage / rig.motor.back_emf_constant)
         speed = SPEED_SHARE * min(speeds) if speeds else RUN_UP * full

@@ -24,6 +24,17 @@ def test_a_wrapped_position_runs_on_again(sound, rig, period):
     assert mended.wraps.period == pytest.approx(period, rel=1e-4)
 
 
+def test_a_set_point_wraps_or_runs_on_by_itself(sound, rig):
+    """One that runs on and steps by 0.7 of a turn is not moved to the other side."""
+    turn, late = 2.0 * np.pi, (sound.time > sound.time[1000]) * 0.7
+    wrapped = {"position": np.mod(sound["position"], turn)}
+    ahead = sound["position"] + late * turn
+    for setpoint, meant in ((ahead, ahead), (np.mod(sound["position"], turn), sound["position"])):
+        mended = gate(changed(sound, position_reference=setpoint, **wrapped), rig, [repairs.runs_on]).trace
+        apart = mended["position_reference"] - meant
+        np.testing.assert_allclose(apart, apart[0], atol=1e-3 * turn)
+
+
 @pytest.mark.parametrize("names", [("position", "current"), ("position", "velocity", "current")])
 def test_a_wrapped_position_gives_the_same_inertia(sound, rig, names):
     wrapped = changed(sound, position=np.mod(sound["position"], 2.0 * np.pi))
