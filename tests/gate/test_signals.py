@@ -30,6 +30,14 @@ def test_a_drive_switched_off_is_no_frozen_current(sound, rig):
     assert signals.moves(Seen(changed(sound, current=coasting), rig)).status == "pass"
 
 
+def test_a_sample_between_two_holes_has_no_speed(sound, rig):
+    """Of position alone it takes two; the axis rests around them."""
+    alone = np.r_[0:1000, 2000, 3000:4000]
+    rest = {"position": np.zeros(alone.size), "current": np.zeros(alone.size)}
+    trace = Trace(sound.time[alone], rest, {"position": "rad", "current": "A"}, "at rest")
+    assert signals.moves(Seen(trace, rig)).found == "position and current without any change"
+
+
 def test_a_current_clipped_by_its_sensor_is_refused(sound, rig):
     limit = 0.4 * np.abs(sound["current"]).max()
     clipped = changed(sound, current=np.clip(sound["current"], -limit, limit))

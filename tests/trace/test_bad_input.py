@@ -57,6 +57,10 @@ TEXT = {
         _rows(l8="6,6O,6\n"),
         r"run.csv: line 8, column 'velocity \[deg/s\]': found '6O'; allowed: a number",
     ),
+    "infinite above rows that a spreadsheet left empty": (
+        _rows(l8="6,6,-inf\n") + ",,\n,,\n",
+        r"line 8, column 'current \[mA\]': found -inf",
+    ),
     "a number of Python's alone": (_rows(l8="6,6,1_0\n"), r"line 8, column 'current \[mA\]': found '1_0'"),
     "infinite": (_rows(l8="6,6,-inf\n"), r"line 8, column 'current \[mA\]': found -inf"),
     "hardly a number": (HEAD + "".join(f"{k},nan,{k}\n" for k in range(60)), r"'velocity \[deg/s\]': found 0 numbers"),
