@@ -21,8 +21,11 @@ from bench.trace.filter import GaussianFilter
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
-#: A lag shorter than this share of the sample period is how a drive differences its encoder, not a filter.
+#: A lag shorter than this share of the tick is how a drive differences its encoder, not a filter; the same of the
+#: sample period where what is recorded as speed is the difference of the recorded positions.
 LEAST_SHARE = 0.6
+#: Share of the noise of differences of position that they leave of a speed which is made of them.
+OF_POSITION = 0.5
 #: Disagreement of speed and position above what their noise makes, and the share of it that a lag must explain.
 DISAGREE, EXPLAINED = 1.5, 0.7
 #: Share of the disagreement that a lag undone may leave and the speed is still of use.
@@ -64,13 +67,22 @@ class VelocityFilterLag(MotionLag, Detectable, FilteredSignal):
         rest_floor = float(np.hypot(floor, lag * noise["velocity"] * smooth.noise_gain(1)))
         before, after = (rms(off) / max(least, 1e-300) for off, least in ((difference, floor), (rest, rest_floor)))
         explained = 1.0 - float(rest @ rest) / max(float(difference @ difference), 1e-300)
-        if before < DISAGREE or explained < EXPLAINED or lag < LEAST_SHARE * trace.sample_period:
+        tick = rig.drive.control_period if rig.drive is not None else 0.0
+        least = LEAST_SHARE * (tick if tick and not _of_position(trace) else trace.sample_period)
+        if before < DISAGREE or explained < EXPLAINED or lag < least:
             return None
         error = float(np.sqrt(np.mean(rest**2) / max(power, 1e-300) * 4.0))
-        tick = rig.drive.control_period if rig.drive is not None else 0.0
         evidence = {"speed_against_position_before": before, "speed_against_position_after": after}
         errors = {"time_constant": NORMAL95 * error + 0.5 * tick}
         return Detected({"time_constant": lag}, errors, evidence, mends=after < max(DISAGREE, MENDED * before))
+
+
+def _of_position(trace: Trace) -> bool:
+    """Whether speed is made of the recorded positions: their noise is in it, too."""
+    parts = [part for part in trace.segments if part.stop - part.start > 1]
+    differences = [np.diff(trace["position"][part]) / trace.sample_period for part in parts]
+    left = [trace["velocity"][part][1:] - made for part, made in zip(parts, differences, strict=True)]
+    return white_noise(*left) < OF_POSITION * white_noise(*differences)
 
 
 EFFECT = VelocityFilterLag()

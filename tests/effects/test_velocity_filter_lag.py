@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bench.effects.velocity_filter_lag import EFFECT
+from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import RIG
 from tests.effects.axes import PERIOD
@@ -24,6 +25,26 @@ def test_undone_where_velocity_is_smooth():
     np.testing.assert_allclose(back[100:-1], velocity[100:-1], atol=0.01)
 
 
+def first_order_of(lag):
+    """Of a time constant - s."""
+    return lambda omega: 1.0 / (1.0 + 1j * omega * lag)
+
+
+def two_sines(response):
+    """Speed of two sines behind a filter of a complex gain by angular frequency, at 1 kHz, with noise of its own."""
+    time = 1e-3 * np.arange(8000)
+    position, reported = np.zeros_like(time), np.zeros_like(time)
+    for speed, omega in ((30.0, 9.0), (12.0, 250.0)):
+        position += speed / omega * np.sin(omega * time)
+        reported += speed * np.real(response(omega) * np.exp(1j * omega * time))
+    rng = np.random.default_rng(0)
+    signals = {
+        "position": position + 1e-5 * rng.normal(size=time.size),
+        "velocity": reported + 0.02 * rng.normal(size=time.size),
+    }
+    return Trace(time, signals, {"position": "rad", "velocity": "rad/s"}, "two sines")
+
+
 @pytest.mark.parametrize("first_order", [True, False])
 def test_a_lag_of_another_form_is_reported_and_not_mended(first_order):
     """Speed of two sines behind a first-order filter, and behind a mean over 8 ms, which is no such filter at 40 Hz.
@@ -31,20 +52,27 @@ def test_a_lag_of_another_form_is_reported_and_not_mended(first_order):
     Sine by sine: a filter H(i*w) multiplies amplitude and shifts phase. At 250 rad/s the mean over T, sinc(w*T/2) with
     a delay of T/2, differs from 1/(1 + i*w*T/2) by a tenth.
     """
-    time, mean, lag = 1e-3 * np.arange(8000), 8e-3, 4e-3
-    position, reported = np.zeros_like(time), np.zeros_like(time)
-    for speed, omega in ((30.0, 9.0), (12.0, 250.0)):
-        half = 0.5 * omega * mean
-        gain = 1.0 / (1.0 + 1j * omega * lag) if first_order else np.sin(half) / half * np.exp(-1j * half)
-        position += speed / omega * np.sin(omega * time)
-        reported += speed * np.real(gain * np.exp(1j * omega * time))
-    rng = np.random.default_rng(0)
-    signals = {
-        "position": position + 1e-5 * rng.normal(size=time.size),
-        "velocity": reported + 0.02 * rng.normal(size=time.size),
-    }
-    trace = Trace(time, signals, {"position": "rad", "velocity": "rad/s"}, "two sines")
+
+    def behind_a_mean(omega):
+        half = 0.5 * omega * 8e-3
+        return np.sin(half) / half * np.exp(-1j * half)
+
+    trace = two_sines(first_order_of(4e-3) if first_order else behind_a_mean)
     found = EFFECT.detect(trace, RIG, 1.5e-3)
     assert found is not None
     assert found.mends == first_order
     assert set(trace.without("velocity").signals) == {"position"}
+
+
+def test_a_lag_shorter_than_a_sample_is_a_filter_where_the_drive_ticks_faster():
+    """Half a sample late is also a difference of recorded positions, whose noise is then in the speed."""
+    ticking = RIG.model_copy(update={"drive": load_rig("sh30701p").drive})  # every 250 us
+    trace = two_sines(first_order_of(0.5e-3))
+    found = EFFECT.detect(trace, ticking, 1.5e-3)
+    assert found is not None
+    assert found.values["time_constant"] == pytest.approx(0.5e-3, rel=0.02)
+    assert EFFECT.detect(trace, RIG, 1.5e-3) is None  # nothing is known of what differenced it
+    assert EFFECT.detect(two_sines(first_order_of(0.14e-3)), ticking, 1.5e-3) is None  # of a tick
+    position = trace["position"]
+    differences = np.diff(position, prepend=2.0 * position[0] - position[1]) / trace.sample_period
+    assert EFFECT.detect(trace.with_signals({"velocity": differences}, {}), ticking, 1.5e-3) is None
