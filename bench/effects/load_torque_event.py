@@ -28,6 +28,8 @@ EDGES = 240
 LONGEST = 0.6
 #: Speed, as share of its RMS, below which an axis creeps.
 CREEPS = 0.05
+#: Coulomb frictions that static friction takes at most: beyond them, no friction holds an axis that creeps.
+STATIC = 3.0
 #: Of the most that a window takes, what others take that differ in rows alone where nothing moves: those decide then.
 ALIKE = 1.0 - 1e-9
 #: Widths of the filter that an event lasts at least: the full width at half maximum of its impulse response.
@@ -60,12 +62,13 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """The best window of time, all of them compared through cumulative sums; none beside what leaves bursts.
 
-        Where the axis stands or creeps, friction takes what it is given: nothing there speaks for an event.
+        Where the axis stands or creeps, friction takes what it is given, up to its static level: nothing below that
+        speaks for an event there.
         """
         if fitted.places(Contact).size:
             return []
-        speed = fitted.seen(lambda signals: [[(signals.velocity, 0)]], of_motion=True)[:, 0]
-        moves = (np.abs(speed) > CREEPS * fitted.scope.rms_speed).astype(np.float64)
+        moves = _moves(fitted)
+        weight = (moves | _beyond_friction(fitted, moves)).astype(np.float64)
         time = fitted.time
         edges = np.unique(np.linspace(0, time.size, EDGES + 1).astype(int))
         first, last = np.triu_indices(edges.size, 1)
@@ -74,7 +77,7 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
             instants = time[np.minimum(edges, time.size - 1)]
             kept &= instants[last] - instants[first] <= LONGEST * fitted.scope.duration
         first, last = first[kept], last[kept]
-        gain = _gains(fitted, moves, edges, first, last)
+        gain = _gains(fitted, weight, edges, first, last)
         most = np.flatnonzero(gain >= ALIKE * gain.max())
         best = int(most[np.argmax(_gains(fitted, np.ones(time.size), edges, first[most], last[most]))])
         stop = min(int(edges[last[best]]), time.size - 1)
@@ -112,6 +115,19 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         time, torque = at.began + at.time, values["torque"]
         xp = namespace(torque)
         return xp.where((time >= values["start"]) & (time < values["end"]), torque, xp.zeros_like(torque))
+
+
+def _moves(fitted: Fitted) -> NDArray[np.bool_]:
+    """Rows (m,) where the axis neither stands nor creeps."""
+    speed = fitted.seen(lambda signals: [[(signals.velocity, 0)]], of_motion=True)[:, 0]
+    return np.abs(speed) > CREEPS * fitted.scope.rms_speed
+
+
+def _beyond_friction(fitted: Fitted, moves: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Rows (m,) that ask for more than static friction, by the Coulomb friction of the rows that move."""
+    sign = fitted.seen(lambda signals: [[(signals.sign, 0)]], of_motion=True)[:, 0]
+    less = fitted.residual[moves] @ sign[moves] / max(float(sign[moves] @ sign[moves]), 1.0)
+    return np.abs(fitted.base.coulomb * sign + fitted.residual) > STATIC * abs(fitted.base.coulomb + less)
 
 
 def _short(fitted: Fitted) -> tuple[Array, Array]:

@@ -43,6 +43,16 @@ def test_an_event_begins_where_it_begins_however_long_the_axis_crept_before():
     assert found.strengths(0)[0] == pytest.approx(0.06, rel=0.03)
 
 
+@pytest.mark.parametrize(("level", "named"), [(1.5, False), (4.0, True)])
+def test_an_event_while_the_axis_creeps_is_what_no_static_friction_takes(level, named):
+    """Beside Coulomb friction, of which static friction is three times as much at most."""
+    trace = recorded(held(1.5, 3.2), only_during(level * COULOMB, 2.0, 2.6))
+    found = search(bare(trace), [catalogue()["load_torque_event"]], Policy()).last
+    assert [term.effect.name for term in found.terms] == ["load_torque_event"] * named
+    if named:
+        assert found.terms[0].shape == pytest.approx((2.0, 2.6), abs=5e-3)
+
+
 @pytest.mark.parametrize(("level", "name"), [(1.5, "torque_offset"), (0.5, "direction_dependent_friction")])
 def test_friction_never_drives(level, name):
     """What is beyond friction is a load: with it as a difference one direction would have none left."""
