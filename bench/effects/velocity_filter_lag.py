@@ -9,13 +9,14 @@ Source: W. Leonhard, Control of Electrical Drives (filtered speed feedback).
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from bench.arrays import NORMAL95, rms
 from bench.effects.acting import FilteredSignal
-from bench.effects.effect import Detectable, Detected, MotionLag, smoothed
-from bench.effects.signals import Scope
+from bench.effects.effect import Detectable, Detected, Distortion, MotionLag, smoothed
+from bench.effects.signals import Scope, Signals
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 from bench.trace.noise import white_noise
@@ -32,7 +33,7 @@ DISAGREE, EXPLAINED = 1.5, 0.7
 MENDED = 0.1
 
 
-class VelocityFilterLag(MotionLag, Detectable, FilteredSignal):
+class VelocityFilterLag(MotionLag, Distortion, Detectable, FilteredSignal):
     name = "velocity_filter_lag"
     summary = "reported velocity lags the motion"
     signal = "velocity"
@@ -40,6 +41,10 @@ class VelocityFilterLag(MotionLag, Detectable, FilteredSignal):
     def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
         """What is made of the reported speed."""
         return (shape[0] if source == "velocity" else 0.0), 0.0
+
+    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+        """Where the axis is: a position that is summed from the reported speed v is behind by T*v, exactly."""
+        return replace(signals, position=signals.position + shape[0] * signals.velocity)
 
     def sought(self, scope: Scope) -> bool:
         """Where speed alone is recorded; beside it, position tells the lag by itself."""

@@ -2,11 +2,15 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
+from bench.diagnosis.policy import POLICY
+from bench.diagnosis.search import search
+from bench.effects.catalogue import catalogue
 from bench.effects.velocity_filter_lag import EFFECT
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
-from tests.diagnosis.constructed import RIG
+from tests.diagnosis.constructed import RIG, bare, moved, recorded, wave
 from tests.effects.axes import PERIOD
 
 VALUES = {"time_constant": 2e-3}
@@ -76,3 +80,14 @@ def test_a_lag_shorter_than_a_sample_is_a_filter_where_the_drive_ticks_faster():
     position = trace["position"]
     differences = np.diff(position, prepend=2.0 * position[0] - position[1]) / trace.sample_period
     assert EFFECT.detect(trace.with_signals({"velocity": differences}, {}), ticking, 1.5e-3) is None
+
+
+def test_a_wave_of_position_beside_it_is_where_the_axis_is():
+    """Of speed alone position is summed, and behind as well: by half a turn of the wave at the top speed."""
+    trace, decay = recorded(moved(), wave(0.06, 12.0)), float(np.exp(-1e-3 / 4e-3))
+    late = lfilter([1.0 - decay], [1.0, -decay], trace["velocity"], zi=[decay * trace["velocity"][0]])[0]
+    reported = trace.with_signals({"velocity": late}, {}).without("position")
+    sought = [catalogue()[name] for name in ("velocity_filter_lag", "current_loop_lag", "cogging_torque")]
+    found = search(bare(reported), sought, POLICY).last
+    assert sorted(found.hypothesis.names) == ["cogging_torque", "velocity_filter_lag"]
+    assert found.chi < 1.1
