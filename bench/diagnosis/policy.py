@@ -167,7 +167,13 @@ class Policy:
         return worth(before, after) > self.by_chance(before, numbers) and self.physical(after)
 
     def undecided(self, one: Fit, other: Fit) -> bool:
-        """Whether the likelihood of `other`, of independent rows over noise, is within the odds of that of `one`."""
+        """Whether the likelihood of `other`, of independent rows over noise, is within the odds of that of `one`.
+
+        Or it has fewer numbers, and leaves no more for that than the others save by chance.
+        """
+        fewer = freedom(one) - freedom(other)
+        if fewer > 0 and worth(other, one) < self.by_chance(one, fewer):
+            return True
         rows = one.count / one.rows.correlation
         return rows * float(np.log(over_noise(other) / over_noise(one))) < np.log(self.odds)
 

@@ -12,6 +12,7 @@ from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from tests.diagnosis.constructed import COULOMB, bare, likely, moved, recorded, wave
+from tests.diagnosis.hand_made import made
 
 EFFECTS = [catalogue()[name] for name in ("quadratic_drag", "cogging_torque", "stribeck_friction", "torque_offset")]
 COGGING = Term(catalogue()["cogging_torque"], (7.0,))
@@ -55,6 +56,17 @@ def test_what_the_rows_decide_is_not_weighed_any_more():
     assert not Policy().undecided(right, wrong)
     assert Policy().undecided(right, right)
     assert Policy().undecided(wrong, right)
+
+
+@pytest.mark.parametrize(("saved", "undecided"), [(0.95, True), (1.05, False)])
+def test_what_more_numbers_save_by_chance_decides_nothing(saved, undecided):
+    """An event has two numbers more than an offset; white noise of so many rows alone would speak for it."""
+    noise, event = np.sqrt(0.01), Term(catalogue()["load_torque_event"], (1.0, 2.0))
+    other = made(np.full(10_000, noise), Term(catalogue()["torque_offset"]), floor=2.0 * noise, white=noise)
+    less = saved * Policy().by_chance(other, 2)
+    one = made(np.full(10_000, np.sqrt(0.01 - less / 10_000)), event, floor=2.0 * noise, white=noise)
+    assert Policy().undecided(one, other) == undecided
+    assert Policy().undecided(other, one)
 
 
 def test_what_was_as_good_as_an_earlier_name_is_weighed_with_what_it_needs_beside_it():
