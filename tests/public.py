@@ -54,7 +54,7 @@ class Line:
         return [self.command, *recordings, "--rig", str(rig), *holdout]
 
     @property
-    def told(self) -> str:
+    def heading(self) -> str:
         """The command as somebody would type it, files without their folders."""
         words = (word if word.startswith("-") else Path(word).name for word in self.arguments())
         return (
@@ -124,10 +124,10 @@ def _waves(effect: dict[str, Any]) -> str:
 
 
 def _quantities(parameters: dict[str, Any]) -> str:
-    told = {name: found for name, found in parameters.items() if name.startswith(BASE)}
+    quantities = {name: found for name, found in parameters.items() if name.startswith(BASE)}
     return ", ".join(
         f"{name.split('_')[0]} {found['value']:.4g} ± {0.5 * (found['ci95'][1] - found['ci95'][0]):.2g} {found['unit']}"
-        for name, found in told.items()
+        for name, found in quantities.items()
     )
 
 
@@ -138,7 +138,7 @@ def main(
     """Run every command and print the table."""
     chosen = [line for line in LINES if line.axis.startswith(only)]
     rows = [
-        f"| {line.axis} | `{line.told}` | {line.published} | {outcome(line)} |"
+        f"| {line.axis} | `{line.heading}` | {line.published} | {outcome(line)} |"
         for line in track(chosen, "axes", console=Console(stderr=True))
     ]
     text = "\n".join(

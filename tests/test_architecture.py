@@ -120,7 +120,7 @@ def known_by_name(tree: ast.AST) -> list[str]:
     """Where code knows one effect from another: by its name, by the module it is in, or by comparing names.
 
     Whether a name is in a set is no such knowledge: an effect declares the set, or the caller asked for it. Two names
-    held against each other are: what is one is told by `is`.
+    held against each other are: what is one is decided by `is`.
     """
     found = [f"{node.lineno}: {node.value!r}" for node in texts(tree) if NAMED.search(node.value)]
     for node in ast.walk(tree):

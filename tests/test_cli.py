@@ -211,7 +211,7 @@ def test_a_rig_with_an_unknown_key_names_it_and_its_neighbour(bench, trace, tmp_
 
 
 @pytest.mark.parametrize(
-    ("velocity", "words", "told"),
+    ("velocity", "words", "determined"),
     [
         (lambda t: 50.0 + 0.0 * t, ["moment of inertia", "record instead"], None),
         (
@@ -222,7 +222,7 @@ def test_a_rig_with_an_unknown_key_names_it_and_its_neighbour(bench, trace, tmp_
     ],
     ids=["constant speed", "one direction"],
 )
-def test_what_the_data_cannot_answer_is_status_one_with_what_to_record(bench, tmp_path, velocity, words, told):
+def test_what_the_data_cannot_answer_is_status_one_with_what_to_record(bench, tmp_path, velocity, words, determined):
     """What the data do answer is in the JSON all the same."""
     time = np.arange(4000) * 1e-3
     rng = np.random.default_rng(0)
@@ -235,10 +235,10 @@ def test_what_the_data_cannot_answer_is_status_one_with_what_to_record(bench, tm
     for word in words:
         assert word in err
     path = tmp_path / "found.json"
-    assert path.exists() == (told is not None)
-    if told is not None:
+    assert path.exists() == (determined is not None)
+    if determined is not None:
         found = json.loads(path.read_text(encoding="utf-8"))["parameters"]
-        assert told <= set(found)
+        assert determined <= set(found)
         assert "coulomb_friction_torque" not in found
 
 

@@ -67,7 +67,7 @@ def test_without_display_and_with_a_home_that_is_not_there(folder):
     }
 
 
-def test_where_nothing_but_ascii_can_be_told(folder):
+def test_where_nothing_but_ascii_can_be_written(folder):
     (folder / "run.csv").rename(folder / NAME)
     done = bench("inspect", NAME, "--rig", "rig.toml", "--json", "found.json", cwd=folder, **ASCII)
     assert (done.returncode, done.stderr) == (0, "")

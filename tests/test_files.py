@@ -103,7 +103,7 @@ def test_what_another_file_leads_to_is_an_input_too(folder, monkeypatch):
     assert {path: path.read_bytes() for path in before} == before
 
 
-def test_the_table_of_grades_of_an_earlier_run_is_no_form_and_what_cannot_be_read_is_told(folder):
+def test_the_table_of_grades_of_an_earlier_run_is_no_form_and_what_cannot_be_read_is_reported(folder):
     (folder / "grades.csv").write_text("student,task,quantity,given\n07,1,J,2\n")
     (folder / "x.csv").mkdir()
     (folder / "y.csv").symlink_to("y.csv")
@@ -334,7 +334,7 @@ def test_a_folder_that_cannot_be_made(tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no device that is full")
-def test_standard_output_that_takes_nothing_is_told(tmp_path):
+def test_standard_output_that_takes_nothing_is_reported(tmp_path):
     full, closed = ("> /dev/full", "No space left on device"), (">&-", "is closed")
     for asked, (redirected, words) in product(("rigs", "--version"), (full, closed)):
         line = f"{sys.executable} -m bench {asked} {redirected}"
@@ -344,7 +344,7 @@ def test_standard_output_that_takes_nothing_is_told(tmp_path):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no device that is full")
 @pytest.mark.parametrize("redirected", ["2> /dev/full", "2>&-"])
-def test_where_nobody_can_be_told_the_status_stands(tmp_path, redirected):
+def test_where_nothing_can_be_reported_the_status_stands(tmp_path, redirected):
     """It was 70, a fault of the bench: the line that says what is wrong could not be written."""
     line = f"{sys.executable} -m bench rigs none {redirected}"
     assert subprocess.run(["sh", "-c", line], cwd=tmp_path, check=False).returncode == 2
@@ -370,18 +370,18 @@ def test_a_command_ends_without_taking_python_down(tmp_path, line, status):
     assert "taken down" not in done.stdout and len(done.stdout + done.stderr) > 50
 
 
-def test_too_little_room_for_numpy_is_told_at_once(tmp_path):
+def test_too_little_room_for_numpy_is_reported_at_once(tmp_path):
     """OpenBLAS waits for ever for memory that it does not get."""
     assert_one_line(limited("-v 400000", "rigs", tmp_path), "ulimit -v", "1 GB")
 
 
-def test_files_and_processes_that_the_system_refuses_are_told(folder):
+def test_files_and_processes_that_the_system_refuses_are_reported(folder):
     (folder / "fleet.csv").write_text("file,rig\nrun.csv,rig.toml\n")
     assert_one_line(limited("-n 8", "fleet fleet.csv --out so", folder), "Too many open files", "ulimit -n")
 
 
 @pytest.mark.skipif(shutil.which("setpriv") is None, reason="root may start as many threads as it likes")
-def test_too_few_threads_are_told_before_a_library_aborts_the_process(tmp_path):
+def test_too_few_threads_are_reported_before_a_library_aborts_the_process(tmp_path):
     rights = ("--inh-caps", "+dac_override", "--ambient-caps", "+dac_override")
     other = ["setpriv", "--reuid", "54321", "--clear-groups", *rights] if os.geteuid() == 0 else []
     assert_one_line(limited("-u 4", "rigs", tmp_path, other), "ulimit -u", "allow more")

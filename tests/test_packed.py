@@ -28,20 +28,20 @@ def test_it_is_what_it_was_with_arrays_effects_and_what_is_not_known(tmp_path):
     ["os:system", "subprocess:Popen", "bench.files:write_text", "bench.files:Path", "bench.parameter:nothing", "x"],
 )
 def test_what_is_no_dataclass_of_the_bench_is_not_made(named, tmp_path):
-    told = json.dumps({"class": named, "fields": {"args": "touch ran"}})
-    np.savez(tmp_path / "x.npz", result=np.array(told))
+    content = json.dumps({"class": named, "fields": {"args": "touch ran"}})
+    np.savez(tmp_path / "x.npz", result=np.array(content))
     with pytest.raises(InputError, match="holds no result that this version knows"):
         unpack(tmp_path / "x.npz", Parameter)
 
 
 @pytest.mark.parametrize("content", [b"", b"PK", b"\x93NUMPY", b"x" * 100])
-def test_another_file_is_told(content, tmp_path):
+def test_another_file_is_reported(content, tmp_path):
     Path(tmp_path / "x.npz").write_bytes(content)
     with pytest.raises(InputError, match=r"x\.npz: "):
         unpack(tmp_path / "x.npz", Parameter)
 
 
-def test_another_result_is_told(tmp_path):
+def test_another_result_is_reported(tmp_path):
     pack(tmp_path / "x.npz", Between(1.0, (0.0, 2.0)))
     with pytest.raises(InputError, match="holds another result"):
         unpack(tmp_path / "x.npz", Parameter)

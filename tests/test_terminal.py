@@ -176,9 +176,9 @@ def test_the_verdict_comes_first_in_its_colour(tmp_path):
 def test_help_tells_every_command_whole(width, tmp_path):
     out = in_a_terminal([sys.executable, "-m", "bench", "--help"], tmp_path, width)
     assert "..." not in out.replace("[ARGS]...", "")
-    told = re.sub(r"\s+", "", out)
+    printed = re.sub(r"\s+", "", out)
     for command in COMMANDS:
-        assert f"{command.__name__}{command.__doc__}".replace(" ", "") in told
+        assert f"{command.__name__}{command.__doc__}".replace(" ", "") in printed
     assert max(map(len, out.splitlines())) <= width
 
 

@@ -47,7 +47,7 @@ DECLARED: dict[type[Effect], str] = {
 LETTERS: dict[str, str] = dict(zip(("alpha", "omega", "sigma", "phi", "mu", "tau", "pi"), "αωσφμτπ", strict=True))
 #: Gap over noise floor above which something is missing, as the verdict has it.
 SHOWS = 1.12
-#: Share of the squared gap from which another effect is told as a rival.
+#: Share of the squared gap from which another effect is named as a rival.
 NEAR = 0.05
 
 
@@ -71,8 +71,8 @@ def page(effect: Effect, found: Signature | None) -> str:
         ("Try it", "" if found is None else trial(found)),
         ("Source", source),
     ]
-    told = [f"## {heading}\n\n{text}" if heading else text for heading, text in sections if text]
-    return "\n\n".join([f"# {words(effect.name).capitalize()}", *told]) + "\n"
+    texts = [f"## {heading}\n\n{text}" if heading else text for heading, text in sections if text]
+    return "\n\n".join([f"# {words(effect.name).capitalize()}", *texts]) + "\n"
 
 
 def said(effect: Effect) -> tuple[str, str]:
@@ -124,8 +124,8 @@ def parameters(effect: Effect) -> str:
     for one in effect.quantities:
         linear = "–" if isinstance(effect, OncePerRevolution) else unit_cell(LINEAR.unit(one))
         null = "" if one.null is None else f"{one.null:g}".replace("inf", "∞")
-        told = (f"`{one.name}`", escaped(readable(one.symbol)), unit_cell(unit_of(one)), linear, bounds(one), null)
-        lines.append(f"| {' | '.join(told)} |")
+        cells = (f"`{one.name}`", escaped(readable(one.symbol)), unit_cell(unit_of(one)), linear, bounds(one), null)
+        lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
@@ -166,7 +166,7 @@ def broken(line: str) -> list[str]:
 
 
 def rivals(effect: Effect, found: Signature | None) -> str:
-    """What would explain the same recording, what it cannot be told from, and beside what it is not sought."""
+    """What would explain the same recording, what it cannot be distinguished from, and beside what it is not sought."""
     others = {name: other for name, other in catalogue().items() if other is not effect}
     lags = [name for name, other in others.items() if isinstance(other, Lag)]
     lines = [] if found is None else [*ambiguous(effect, found.bare.scope)]
@@ -175,17 +175,17 @@ def rivals(effect: Effect, found: Signature | None) -> str:
         ("In its place are tried", (name for name, other in others.items() if effect.name in replaced(other))),
         ("A recording tells but one of it and", lags if isinstance(effect, Lag) else ()),
     ]
-    for told, names in pairs:
+    for sentence, names in pairs:
         linked = ", ".join(link(name) for name in sorted(names))
-        lines += [f"{told}: {linked}."] if linked else []
+        lines += [f"{sentence}: {linked}."] if linked else []
     if found is not None:
         simpler = {name: [one.name for one in simpler_forms(other, found.bare.scope)] for name, other in others.items()}
         own = [one.name for one in simpler_forms(effect, found.bare.scope)]
         lines += [f"Where some of it is nil, it is: {', '.join(map(link, own))}."] if own else []
         wider = sorted(name for name, forms in simpler.items() if effect.name in forms)
         lines += [f"It is a special case of: {', '.join(map(link, wider))}."] if wider else []
-    told = "\n".join(f"- {line}" for line in lines)
-    return "\n\n".join(part for part in ("" if found is None else explained(effect, found), told) if part)
+    listed = "\n".join(f"- {line}" for line in lines)
+    return "\n\n".join(part for part in ("" if found is None else explained(effect, found), listed) if part)
 
 
 def replaced(effect: Effect) -> frozenset[str]:
@@ -216,11 +216,11 @@ def ambiguous(effect: Effect, scope: Scope) -> Iterable[str]:
         ("In one direction of motion nothing tells it from", replace(scope, one_way=True)),
     )
     always: Sequence[str] = ()
-    for told, such in kinds:
+    for sentence, such in kinds:
         names = [name for name in effect.ambiguous(such) if name not in always]
         always = always or names
         if names:
-            yield f"{told}: {', '.join(link(name) for name in names)}."
+            yield f"{sentence}: {', '.join(link(name) for name in names)}."
 
 
 def link(name: str) -> str:
@@ -239,9 +239,9 @@ def motions(effect: Effect, found: Signature) -> str:
         "It is not sought in motion of one direction.": replace(scope, one_way=True),
         "It is not sought where no position is recorded.": replace(scope, signals=scope.signals - {"position"}),
     }
-    told = [sentence for sentence, such in barred.items() if effect.sought(scope) and not effect.sought(such)]
-    told += [sentence for kind, sentence in DECLARED.items() if isinstance(effect, kind)]
-    return "\n".join([*lines, "", *(f"- {sentence}" for sentence in told)])
+    sentences = [sentence for sentence, such in barred.items() if effect.sought(scope) and not effect.sought(such)]
+    sentences += [sentence for kind, sentence in DECLARED.items() if isinstance(effect, kind)]
+    return "\n".join([*lines, "", *(f"- {sentence}" for sentence in sentences)])
 
 
 def trial(found: Signature) -> str:

@@ -46,7 +46,7 @@ class Signature:
     Attributes:
         present: the effect with its values.
         text: the same as the command line takes it.
-        told, plain: recordings with the effect and without it, under the same drive along the same motion.
+        affected, plain: recordings with the effect and without it, under the same drive along the same motion.
         bare: inertia, viscous and Coulomb friction fitted to the first; what they leave is the gap.
         motions: by name of the motion, RMS of the gap over its noise floor.
         detected: motions in which single signals show it.
@@ -56,7 +56,7 @@ class Signature:
 
     present: Present
     text: str
-    told: Trace
+    affected: Trace
     plain: Trace
     bare: Fit
     motions: Mapping[str, float]
@@ -82,19 +82,19 @@ def signature(effect: Effect) -> Signature:
     values = ",".join(f"{key}={float(value):.3g}" for key, value in drawn.quantities(own.axis).items())
     text = f"{effect.name}:{values}"
     present = parse_effect(text)
-    told = {name: recorded(name, present) for name in NAMES}
-    bare = {name: fit_bare(Rows.of(trace, rig())) for name, trace in told.items()}
+    affected = {name: recorded(name, present) for name in NAMES}
+    bare = {name: fit_bare(Rows.of(trace, rig())) for name, trace in affected.items()}
     motions = {name: rms(fitted.left) / fitted.floor for name, fitted in bare.items()}
     width = {name: fitted.rows.conditioning.filter.width for name, fitted in bare.items()}
     detected = frozenset(
         name
         for name in NAMES
-        if isinstance(effect, Detectable) and effect.detect(told[name], rig(), width[name]) is not None
+        if isinstance(effect, Detectable) and effect.detect(affected[name], rig(), width[name]) is not None
     )
     main = bare[DEFAULT]
     tried = candidates(main, [*catalogue().values(), *RIVALS])
     shares = {one.term.effect: one.gain / main.squares for one in tried}
-    return Signature(present, text, told[DEFAULT], recorded(DEFAULT), main, motions, detected, shares)
+    return Signature(present, text, affected[DEFAULT], recorded(DEFAULT), main, motions, detected, shares)
 
 
 def recorded(motion: str, *effects: Present) -> Trace:
@@ -110,8 +110,8 @@ def drawn(found: Signature) -> Figure:
     over_coordinates([axes[key] for key in "012"], found)
     for key, signal in (("v", "velocity"), ("i", "current")):
         beside(axes[key], found, signal)
-    told = [pair for key in "0v" for pair in zip(*axes[key].get_legend_handles_labels(), strict=True)]
-    handles, labels = zip(*told, strict=True)
+    entries = [pair for key in "0v" for pair in zip(*axes[key].get_legend_handles_labels(), strict=True)]
+    handles, labels = zip(*entries, strict=True)
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), markerscale=2.0)
     return figure
 
@@ -119,7 +119,7 @@ def drawn(found: Signature) -> Figure:
 def over_coordinates(places: list[Axes], found: Signature) -> None:
     """The gap, every row and the mean in bins, on one scale over as many coordinates as there are places."""
     kind, rows = rig().axis_kind, found.bare.rows
-    unit, current = rig().net_effort(found.told)[1], found.told["current"][rows.samples()]
+    unit, current = rig().net_effort(found.affected)[1], found.affected["current"][rows.samples()]
     lies = {one.name: one for one in coordinates(found.bare, kind, unit, current)}
     accounts = [one for one in where(found.bare, kind, unit, current) if one.coordinate in lies]
     for axes, account in zip(places, accounts, strict=False):
@@ -142,21 +142,21 @@ def over_coordinates(places: list[Axes], found: Signature) -> None:
 
 def beside(axes: Axes, found: Signature, signal: str) -> None:
     """A signal with the effect and without it, over the stretch of time in which they differ most."""
-    time, part = found.told.time, stretch(found)
+    time, part = found.affected.time, stretch(found)
     axes.plot(time[part], found.plain[signal][part], color=REST, lw=1.4, label="recorded without the effect")
-    axes.plot(time[part], found.told[signal][part], color=MODELLED, lw=1.1, ls="--", label="recorded with it")
+    axes.plot(time[part], found.affected[signal][part], color=MODELLED, lw=1.1, ls="--", label="recorded with it")
     axes.set_xlabel("time / s")
-    axes.set_ylabel(labelled(words(signal), found.told.units[signal]))
+    axes.set_ylabel(labelled(words(signal), found.affected.units[signal]))
 
 
 def stretch(found: Signature) -> slice:
     """The samples of a stretch of time in which speed and current differ most, each over its own size."""
 
     def differs(signal: str) -> Array:
-        off = found.told[signal] - found.plain[signal]
+        off = found.affected[signal] - found.plain[signal]
         return (off / rms(found.plain[signal])) ** 2
 
-    length = round(STRETCH / found.told.sample_period)
+    length = round(STRETCH / found.affected.sample_period)
     sums = np.convolve(differs("velocity") + differs("current"), np.ones(length), "valid")
     start = int(np.argmax(sums))
     return slice(start, start + length)

@@ -59,7 +59,7 @@ def named(name: str, rms: float, ambiguous_with=(), **values: float) -> NamedHer
 
 @dataclass(frozen=True)
 class GivenObserved(Observed):
-    """A state that says what it is told to say with the effects of the baseline.
+    """A state that says what it is made to say with the effects of the baseline.
 
     Attributes:
         torques: of these effects, by name.

@@ -85,10 +85,10 @@ def test_what_is_wrong_is_one_line(there, tmp_path):
         head, rest = head + "\nrig = 3", rest.replace("[rig]", "[rigs]")
         text = f"{head}\n[provenance]{rest}"
     path.write_text(text.replace(there, instead) if there != "[rig]" else text, encoding="utf-8")
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as refused:
         read_baseline(path)
-    assert message in str(told.value)
-    assert str(path) in str(told.value)
+    assert message in str(refused.value)
+    assert str(path) in str(refused.value)
 
 
 def test_no_baseline_says_how_to_make_one(tmp_path):

@@ -57,8 +57,8 @@ def test_an_update_on_a_full_disk_leaves_the_baseline_as_it_was(axis):
     write(again(2), Path("now.csv"))
     update = ("check", "now.csv", *BASE[1:], "--update", "--without-names")
     with room_for(len(before) // 2):
-        status, _, told = axis(*update)
-    assert (status, told.splitlines()[-1].split("; ")[0]) == (2, "bench: base.toml: cannot be written (File too large)")
+        status, _, text = axis(*update)
+    assert (status, text.splitlines()[-1].split("; ")[0]) == (2, "bench: base.toml: cannot be written (File too large)")
     assert Path("base.toml").read_bytes() == before
     assert {path.name for path in Path.cwd().iterdir()} == {"base.toml", "before.csv", "now.csv", "rig.toml"}
     assert axis(*update)[0] == 0
@@ -135,10 +135,10 @@ WRONG = {
 def test_what_is_wrong_is_one_line_and_status_2(what, axis):
     arguments, message = WRONG[what]
     before = Path("base.toml").read_bytes()
-    status, _, told = axis(*arguments)
+    status, _, error = axis(*arguments)
     assert status == 2
-    assert message in told
-    assert len(told.strip().splitlines()) == 1
+    assert message in error
+    assert len(error.strip().splitlines()) == 1
     assert Path("base.toml").read_bytes() == before
 
 
@@ -163,8 +163,8 @@ def test_github_gets_commands_of_its_own_alone(axis, monkeypatch):
 
 
 def test_a_workflow_command_is_escaped_as_github_does():
-    told = command("error", "a\r\nb::c % \x1b", {"file": "a:b,c\n%.toml"})
-    assert told == "::error file=a%3Ab%2Cc%0A%25.toml,title=bench check::a\\r%0Ab::c %25 \\x1b"
+    line = command("error", "a\r\nb::c % \x1b", {"file": "a:b,c\n%.toml"})
+    assert line == "::error file=a%3Ab%2Cc%0A%25.toml,title=bench check::a\\r%0Ab::c %25 \\x1b"
 
 
 def test_gitlab_gets_a_code_quality_report(axis):

@@ -45,13 +45,13 @@ def test_a_tenth_more_or_less_is_another_motion(name):
 
 
 def test_motions_differ_by_the_largest_of_their_ratios():
-    def told(**values):
+    def conditions(**values):
         return {name: Measured(value, "s", 0.0) for name, value in values.items()}
 
-    before = told(top_speed=2.0, duration=4.0, rms_acceleration=0.0, rms_effort=1.0)
+    before = conditions(top_speed=2.0, duration=4.0, rms_acceleration=0.0, rms_effort=1.0)
     assert motion_ratio(before, before) == 1.0
-    assert motion_ratio(before, before | told(top_speed=2.2, duration=3.2, rms_effort=9.0)) == pytest.approx(1.25)
-    assert motion_ratio(before, before | told(rms_acceleration=0.1)) == np.inf
+    assert motion_ratio(before, before | conditions(top_speed=2.2, duration=3.2, rms_effort=9.0)) == pytest.approx(1.25)
+    assert motion_ratio(before, before | conditions(rms_acceleration=0.1)) == np.inf
     assert motion_ratio(before, {}) == 1.0
 
 

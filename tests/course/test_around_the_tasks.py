@@ -82,7 +82,7 @@ def test_tracking_moves_the_axis_of_the_recording():
     assert "by construction" in task.findings[0]
 
 
-def test_the_drive_is_told_of_rotor_and_load():
+def test_the_drive_is_given_rotor_and_load():
     """Without friction an exact feed-forward leaves 0.6 % of the deviation without J_load; less the rotor, 1.0 %."""
     task = tracked(AxisParameters(30e-4, 0.0, 0.0, motor_inertia=ROTOR))
     rms = {name: task[f"RMS deviation, J_load {name}"].value for name in ("= 0", "identified")}

@@ -73,10 +73,10 @@ def test_6_inertia_is_the_mean_over_a_quarter_of_the_largest_acceleration_and_mo
     assert task["RMS of M - J·α"].value == pytest.approx(math.sqrt((0.01**2 + 0.04**2) / 3.0), rel=1e-9)
 
 
-@pytest.mark.parametrize(("backward", "told"), [(0.017, False), (0.023, True), (0.977, True), (0.983, False)])
-def test_9_both_directions_are_needed_by_a_fiftieth_of_the_samples(backward, told):
+@pytest.mark.parametrize(("backward", "enough"), [(0.017, False), (0.023, True), (0.977, True), (0.983, False)])
+def test_9_both_directions_are_needed_by_a_fiftieth_of_the_samples(backward, enough):
     run = there_and_back(backward)
-    if told:
+    if enough:
         assert friction.identify_friction(run).coulomb == pytest.approx(COULOMB, rel=1e-9)
     else:
         with pytest.raises(UndeterminedError, match="one way only"):

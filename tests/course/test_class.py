@@ -286,23 +286,27 @@ def test_forty_students(tmp_path):
     check(of, dict(enumerate(ALL_WRONG, 1)), tmp_path / "wrong")
     for k, how in enumerate(RIGHT[3:]):
         check(of, dict.fromkeys(of.students, ("", how)), tmp_path / f"right {k}")
-    told_as_two(of, dict(enumerate(drawn_pairs(40), 1)), tmp_path / "pairs")
+    named_as_two(of, dict(enumerate(drawn_pairs(40), 1)), tmp_path / "pairs")
 
 
-def told_as_two(of, ways, out):
-    """Of every two mistakes at once two or more are told, and of nine in ten both, in one task or in several."""
-    told = {number: {row["mistake"] for row in rows} - {""} for number, rows in graded(of, ways, out).items()}
-    assert not [(ways[n][0], found) for n, found in told.items() if len(found) < 2 and " and " not in "".join(found)]
-    named = [
-        ways[n][0] for n, found in told.items() if all(one in "; ".join(found) for one in ways[n][0].split(" and ", 1))
+def named_as_two(of, ways, out):
+    """Of every two mistakes at once two or more are named, and of nine in ten both, in one task or in several."""
+    mistakes = {number: {row["mistake"] for row in rows} - {""} for number, rows in graded(of, ways, out).items()}
+    assert not [
+        (ways[n][0], found) for n, found in mistakes.items() if len(found) < 2 and " and " not in "".join(found)
     ]
-    missed = {ways[n][0]: found for n, found in told.items() if ways[n][0] not in named}
-    print(f"{len(named)} of {len(told)} pairs named as they are; not: {missed}")
-    assert len(named) >= 0.9 * len(told)
+    named = [
+        ways[n][0]
+        for n, found in mistakes.items()
+        if all(one in "; ".join(found) for one in ways[n][0].split(" and ", 1))
+    ]
+    missed = {ways[n][0]: found for n, found in mistakes.items() if ways[n][0] not in named}
+    print(f"{len(named)} of {len(mistakes)} pairs named as they are; not: {missed}")
+    assert len(named) >= 0.9 * len(mistakes)
 
 
-def test_two_mistakes_at_once_are_told_to_be_two(four, tmp_path):
-    told_as_two(four, dict(enumerate(drawn_pairs(4), 1)), tmp_path)
+def test_two_mistakes_at_once_are_named_as_two(four, tmp_path):
+    named_as_two(four, dict(enumerate(drawn_pairs(4), 1)), tmp_path)
 
 
 def grades_of(four, out):
@@ -311,12 +315,12 @@ def grades_of(four, out):
     return [*csv.DictReader((out / "out" / "grades.csv").read_text(encoding="utf-8").splitlines())]
 
 
-def test_copied_answers_are_told_by_the_class_own_truths(four, tmp_path):
+def test_copied_answers_are_named_by_the_class_own_truths(four, tmp_path):
     fill(tmp_path / "in", 4, four.students[2].answers(), np.random.default_rng(0))
     rows = grades_of(four, tmp_path)
-    told = [row["mistake"] for row in rows if row["verdict"] == "wrong"]
-    assert all("copied from student 02" in one for one in told)
-    assert "copied from student 02" in told  # in tasks where no other neighbour has the same figures
+    mistakes = [row["mistake"] for row in rows if row["verdict"] == "wrong"]
+    assert all("copied from student 02" in one for one in mistakes)
+    assert "copied from student 02" in mistakes  # in tasks where no other neighbour has the same figures
     assert all("times likelier than" in row["likelier"] for row in rows if row["verdict"] == "wrong")
 
 

@@ -21,7 +21,7 @@ def throws(random, flights=10, points=20):
 
 
 def test_no_scatter_of_the_launch_is_a_mistake():
-    """Of 1000 students none is told so; at half the limit some five are, and a class of 40 fails one time in six."""
+    """Of 1000 students none is flagged; at half the limit some five are, and a class of 40 fails one time in six."""
     random = np.random.default_rng(1)
     assert [found for found in (contradiction(throws(random)) for _ in range(1000)) if found] == []
 

@@ -87,7 +87,7 @@ def unknown_names(folder):
         table(folder / f"{name}.csv", "time [s];rOmega [rad/s];rI [A]", time, velocity, current)
 
 
-def unknown_names_told_by_the_advice(folder):
+def unknown_names_in_the_advice(folder):
     unknown_names(folder)
     (folder / "rig.toml").write_text('[trace.columns]\nvelocity = "rOmega [rad/s]"\ncurrent = "rI [A]"\n')
 
@@ -192,7 +192,7 @@ STATES = [
     (german_names, set(), []),
     (group_suffixes, set(), []),
     (unknown_names, RECORDED - {"1"}, ["[trace.columns]", "'rOmega [rad/s]'"]),
-    (unknown_names_told_by_the_advice, set(), []),
+    (unknown_names_in_the_advice, set(), []),
     (a_full_rig, set(), []),
     (a_rig_of_another_motor, {"3", "4", "10", "11", "range", "tracking"}, ["rotor_inertia", "kT(Iq)"]),
     (two_samples, {"10"}, ["MaxAcc"]),

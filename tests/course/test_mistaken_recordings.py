@@ -1,4 +1,4 @@
-"""Recordings with a student's mistake, end to end by the command: no wrong number is said to be done, and why is told.
+"""Recordings with a student's mistake, end to end by the command: no wrong number is said to be done, and why is shown.
 
 Mistakes and their strengths are drawn at random; the truth is that of the simulated axis, which the folder lacks.
 """
@@ -75,7 +75,7 @@ def test_no_wrong_number_is_done(mistake, seed, recorded, truth, quick, tmp_path
     ],
     ids=lambda value: " and ".join(one.__name__ for one in value) if isinstance(value, tuple) else "",
 )
-def test_two_mistakes_are_both_told(pair, seed, recorded, truth, quick, tmp_path):
+def test_two_mistakes_are_both_named(pair, seed, recorded, truth, quick, tmp_path):
     """One in what the other hides: a file that stands twice, a hole, exchanged columns, exchanged files."""
     of, random = Folder(dict(recorded[0]), list(recorded[1])), np.random.default_rng(seed)
     for mistake in pair:

@@ -155,8 +155,8 @@ def test_run_up_with_another_winding(page):
 def test_winding_whose_power_balances(page):
     moved(page, T=6, L=3)
     rig = lab_rig()
-    told = circuits(rig, rig.motor.peak_curves[1])[3]
-    winding = balanced_winding(rig, told, 50.0)
+    figures = circuits(rig, rig.motor.peak_curves[1])[3]
+    winding = balanced_winding(rig, figures, 50.0)
     winding = replace(winding, circuit=replace(winding.circuit, time_constant=1.5 * winding.circuit.time_constant))
     found = shown(page, "9")
     theta = [float(found[name][1]) for name in ("J", "K_fric_w", "K_fric_0")]
@@ -210,16 +210,16 @@ def balances(constant):
     """The circuit whose power balances and that meets both peak curves, with another torque constant."""
     rig = lab_rig()
     ke, (low, high) = float(constant(np.asarray(5.7))), rig.motor.peak_curves
-    told = circuits(rig, high)[3]
+    figures = circuits(rig, high)[3]
     # by root finding, where the report solves a quadratic: R*I so that w*p*L*I is the same at both corners
-    volts = told.voltage * np.array([1.0, high.mains_voltage / low.mains_voltage])
+    volts = figures.voltage * np.array([1.0, high.mains_voltage / low.mains_voltage])
     corners = np.array([low.corner_speed, high.corner_speed])
 
     def squared(drop):
         return (volts**2 - (drop + ke * corners) ** 2) / corners**2
 
-    drop = brentq(lambda drop: np.diff(squared(drop))[0], 0.0, told.voltage)
-    return replace(told, ke=ke, drop=drop, across=float(np.sqrt(squared(drop)[0])))
+    drop = brentq(lambda drop: np.diff(squared(drop))[0], 0.0, figures.voltage)
+    return replace(figures, ke=ke, drop=drop, across=float(np.sqrt(squared(drop)[0])))
 
 
 def test_peak_curves_of_both_mains_voltages_with_another_torque_constant(page):
@@ -231,8 +231,8 @@ def test_peak_curves_of_both_mains_voltages_with_another_torque_constant(page):
         datasheet, course, balanced = drawn(svg)
         assert datasheet[:, 1] == pytest.approx([3.5, 3.5, 0.0], abs=0.02)
         assert datasheet[1:, 0] == pytest.approx(np.array([sheet.corner_speed, sheet.no_load_speed]) * RPM, abs=15.0)
-        for told, curve in ((circuits(rig, rig.motor.peak_curves[1])[0], course), (balances(weaker), balanced)):
-            speed, current = speed_of_current(told, 5.7, weaker, sheet.mains_voltage / 230.0)
+        for figures, curve in ((circuits(rig, rig.motor.peak_curves[1])[0], course), (balances(weaker), balanced)):
+            speed, current = speed_of_current(figures, 5.7, weaker, sheet.mains_voltage / 230.0)
             assert curve[1:, 0] == pytest.approx(speed * RPM, abs=15.0)
             assert curve[1:, 1] == pytest.approx(weaker.torque(current), abs=0.02)
 

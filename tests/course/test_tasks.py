@@ -250,7 +250,7 @@ def test_10_a_run_up_that_was_filtered_has_no_corner():
 
 
 def test_9_what_is_left_of_all_samples_is_a_small_part_of_the_torque(done):
-    (told,) = [finding for finding in done["9"].findings if "of the torque; over the fitted samples" in finding]
-    share = float(re.search(r"([\d.]+) ?% of the torque", told)[1])
-    print(told)
+    (sentence,) = [finding for finding in done["9"].findings if "of the torque; over the fitted samples" in finding]
+    share = float(re.search(r"([\d.]+) ?% of the torque", sentence)[1])
+    print(sentence)
     assert share < 10.0

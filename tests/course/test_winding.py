@@ -131,8 +131,8 @@ def test_11_without_warming_the_hot_corner_is_the_datasheets(circuit):
 
 def test_11_voltage_at_a_right_angle_meets_both_curves(circuit):
     low, high = lab_rig().motor.peak_curves
-    told = circuits(lab_rig(), high)[1]
-    shift, ratio = told.shift, told.across / (0.7 * told.drop)
+    figures = circuits(lab_rig(), high)[1]
+    shift, ratio = figures.shift, figures.across / (0.7 * figures.drop)
     ke, voltage = circuit.back_emf_constant, circuit.voltage
     # p*L*I = ratio*R_cold*I and R_hot*I = R_cold*I/0.7, both corners, one unknown
     drops = []
@@ -183,9 +183,9 @@ def balanced():
     """Motor, axis and winding whose power balances, at 20 degC, and its run-up."""
     rig = lab_rig()
     axis = AxisParameters.from_rig(rig)
-    told = circuits(rig, rig.motor.peak_curves[1])[3]
-    winding = balanced_winding(rig, told, COLD)
-    return rig, axis, told, winding, run_winding(winding, axis, full_speed(rig, axis)[1])
+    figures = circuits(rig, rig.motor.peak_curves[1])[3]
+    winding = balanced_winding(rig, figures, COLD)
+    return rig, axis, figures, winding, run_winding(winding, axis, full_speed(rig, axis)[1])
 
 
 def test_11_power_from_the_terminals_is_heat_field_and_motion(balanced, done):
@@ -266,9 +266,9 @@ def test_11_two_axes_agree_with_an_independent_integrator(balanced):
 
 
 def test_11_both_peak_curves_are_met_and_drawn(balanced, done):
-    rig, _, told, _, _ = balanced
+    rig, _, figures, _, _ = balanced
     for place, (ratio, corner) in enumerate(((1.0, 2100.0), (400.0 / 230.0, 4200.0))):
-        speed, current = speed_of_current(told, 5.7, torque_constant(rig), ratio)
+        speed, current = speed_of_current(figures, 5.7, torque_constant(rig), ratio)
         assert speed[0] * RPM == pytest.approx(corner, abs=1e-6)
         assert current[0] == 5.7
         # without current all voltage is back-EMF of the unsaturated motor
@@ -276,4 +276,4 @@ def test_11_both_peak_curves_are_met_and_drawn(balanced, done):
         assert speed[-1] * RPM == pytest.approx(top)
         drawn = {one.name: one for one in curves(done["11"], 3, place)}["Ke = kT(Iq), with ω·p·L·Iq"]
         assert (drawn.x[1], drawn.y[1], drawn.x[-1]) == pytest.approx((corner, 3.5, top), rel=1e-6)
-    assert done["11"]["power balances: shift by temperature"].value == pytest.approx(told.shift * RPM, abs=3.0)
+    assert done["11"]["power balances: shift by temperature"].value == pytest.approx(figures.shift * RPM, abs=3.0)

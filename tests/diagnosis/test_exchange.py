@@ -39,7 +39,7 @@ def test_names_that_leave_noise_alone_stay():
 
 
 def test_what_was_instead_of_each_as_the_only_name_is_weighed_too():
-    """A slow axis' torque is friction: a wave of it is hardly told from a wave of torque, and a search takes one."""
+    """A slow axis' torque is friction: a wave of it hardly differs from a wave of torque, and a search takes one."""
     trace = recorded(
         moved(20.0, ((6.0, 0.1, 0.3),)), lambda motion: 0.2 * COULOMB * np.sin(motion.position) * motion.sign
     )

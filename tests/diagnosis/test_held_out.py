@@ -56,7 +56,7 @@ def test_blocks_are_held_out_until_a_third_of_each_regime_is():
 
 
 def test_a_part_judges_what_fitted_and_judging_rows_both_tell(recordings):
-    """An event within a stretch of rows is told by those rows alone; a spring everywhere."""
+    """An event within a stretch of rows is determined by those rows alone; a spring everywhere."""
     held_out = HeldOut.of(recordings, False, True, fit(recordings.rows, Hypothesis()))
     inside = float(np.median(held_out.judge.time))
     hypothesis = Hypothesis((term("torsion_spring"), term("load_torque_event", inside, inside + 0.01)))

@@ -72,7 +72,7 @@ def test_its_model_is_the_last_that_has_an_inertia(lacking, recorded, tmp_path):
     assert load_model(tmp_path / "found" / "model.toml").model.effects == ()
 
 
-def test_it_is_told_in_json_on_the_terminal_and_on_the_page(lacking):
+def test_it_is_reported_in_json_on_the_terminal_and_on_the_page(lacking):
     content = json.loads(diagnosis_json(lacking))
     assert content["refused"] == lacking.refused
     assert "moment_of_inertia" not in content["parameters"]

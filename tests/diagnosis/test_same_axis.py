@@ -41,7 +41,7 @@ QUANTITIES = [
 
 
 @pytest.mark.parametrize("place", range(3))
-def test_what_may_differ_is_told_apart_from_other_conditions_and_another_axis(place):
+def test_what_may_differ_is_distinguished_from_other_conditions_and_another_axis(place):
     """Inertia by 1 and 3 %, viscous friction by 1.3 and 3, Coulomb friction by 1.1 and 1.5 times, either way."""
     value, signal, alike, other_conditions, another_axis = QUANTITIES[place]
     for factors, same, differs in ((alike, True, 0), (other_conditions, None, 1), (another_axis, False, 1)):

@@ -1,4 +1,4 @@
-"""Several recordings in one diagnosis: what belongs to each stays its own, and how they differ is told."""
+"""Several recordings in one diagnosis: what belongs to each stays its own, and how they differ is reported."""
 
 import json
 from dataclasses import replace
@@ -72,7 +72,7 @@ def test_hum_of_another_phase_in_every_recording_is_no_remainder():
 def test_recordings_that_differ_widen_the_interval_and_are_reported():
     runs = [run_of(k, Truth(inertia=Truth.inertia * (1.0 + 0.004 * (k - 2)))) for k in (1, 2, 3)]
     found = bench.diagnose(runs, RIG)
-    assert any("the recordings differ in moment_of_inertia" in told for told in found.warnings)
+    assert any("the recordings differ in moment_of_inertia" in warning for warning in found.warnings)
     low, high = found.parameters["moment_of_inertia"].ci95
     assert low < 0.997 * Truth.inertia < 1.003 * Truth.inertia < high
     assert found.between["moment_of_inertia"].std_dev == pytest.approx(0.004 * Truth.inertia, rel=0.1)
@@ -82,7 +82,7 @@ def test_recordings_that_differ_widen_the_interval_and_are_reported():
 def test_runs_that_each_go_one_way_are_one_recording_of_both(seed):
     """Through all of one of them an event would act as the offset does: what lasts that long is none."""
     runs = [run_of(seed + k, Truth(offset=0.03), bias=300.0 * (-1.0) ** k, position=False) for k in (0, 1)]
-    assert any("only" in told for told in bench.diagnose(runs[0], RIG).warnings)
+    assert any("only" in warning for warning in bench.diagnose(runs[0], RIG).warnings)
     found = bench.diagnose(runs, RIG)
     assert [effect.name for effect in found.effects] == ["torque_offset"]
     assert inside(found.effects[0].parameters["torque"], 0.03)

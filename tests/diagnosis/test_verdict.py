@@ -235,8 +235,8 @@ def test_the_rig_s_tolerances_are_in_every_interval():
         )
         for text in ("0.7 N*m/A", "0.7 +/- 0.035 N*m/A")
     )
-    told = [[found.parameters["moment_of_inertia"], found.effects[0].parameters["torque"]] for found in (sharp, wide)]
-    for own, found in zip(*told, strict=True):
+    pairs = [[found.parameters["moment_of_inertia"], found.effects[0].parameters["torque"]] for found in (sharp, wide)]
+    for own, found in zip(*pairs, strict=True):
         assert found.value == own.value
         half, before = found.ci95[1] - found.value, own.ci95[1] - own.value
         assert half == pytest.approx(np.hypot(before, 0.05 * found.value), rel=1e-3)

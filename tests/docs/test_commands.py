@@ -22,19 +22,19 @@ STANDS_FOR = re.compile(r"[A-Z_]{2,}(\.\w+)?|\.\.\.|…")
 #: What `python -m MODULE --help` says of each module, in one process, as they share what they import.
 HELP = """
 import contextlib, io, json, runpy, sys
-told = {}
+helps = {}
 for module in sys.argv[1:]:
     sys.argv = [module, "--help"]
     with contextlib.redirect_stdout(io.StringIO()) as printed, contextlib.suppress(SystemExit):
         runpy.run_module(module, run_name="__main__", alter_sys=True)
-    told[module] = printed.getvalue()
-print(json.dumps(told))
+    helps[module] = printed.getvalue()
+print(json.dumps(helps))
 """
 MEASURING = re.compile(r"python -m (tests\.[\w.]*\w)")
 
 
 @pytest.fixture(scope="module")
-def told():
+def helps():
     """Help of every measuring command that a page names."""
     modules = sorted({module for page in PAGES.values() for module in MEASURING.findall(page)})
     environment = {**os.environ, "COLUMNS": "200"}
@@ -43,9 +43,9 @@ def told():
     return json.loads(done.stdout)
 
 
-def require_options(command, told):
+def require_options(command, help_text):
     for option in re.findall(r"(?<=\s)--[a-z][a-z-]*", command):
-        assert option in told, f"{command}: no option {option}"
+        assert option in help_text, f"{command}: no option {option}"
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -65,10 +65,10 @@ def test_commands_of_the_bench_are_there_with_their_options(name):
 
 
 @pytest.mark.parametrize("name", [name for name, page in PAGES.items() if MEASURING.search(page)])
-def test_measuring_commands_are_there_with_their_options(name, told):
+def test_measuring_commands_are_there_with_their_options(name, helps):
     for line in [*commands(PAGES[name]), *spoken(PAGES[name])]:
         for module in MEASURING.findall(line):
-            require_options(line, told[module])
+            require_options(line, helps[module])
 
 
 @pytest.mark.parametrize("name", PAGES)

@@ -113,7 +113,7 @@ def test_the_picture_is_of_the_recording_that_the_pages_commands_make(tmp_path, 
     (line, _) = bench_commands(text)
     assert run(*line.split()[1:]) == 0
     recorded = read("run.csv.gz")
-    assert recorded["velocity"] == pytest.approx(found.told["velocity"], abs=1e-6)
+    assert recorded["velocity"] == pytest.approx(found.affected["velocity"], abs=1e-6)
     assert "position" in {axes.get_xlabel().split(" /")[0] for axes in signature.drawn(found).axes[:1]}
     assert all(found.motions[name] > 2.0 for name in ("identification", "slow_reversals", "multisine"))
     assert found.shares[effect] > 0.99

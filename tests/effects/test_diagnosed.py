@@ -79,21 +79,21 @@ def test_it_is_named_and_recovered(name, hidden, diagnosed):
     found = diagnosed(name)
     assert {effect.name for effect in found.effects} == {name, *(WITH[name].name for _ in range(name in WITH))}
     assert len(found.effects) == 1 + (name in WITH)
-    told = quantities(found, hidden[name])
-    print({key: (one.true, one.value, one.half_widths) for key, one in told.items()})  # pytest -s
-    assert told
-    for key, one in told.items():
+    recovered = quantities(found, hidden[name])
+    print({key: (one.true, one.value, one.half_widths) for key, one in recovered.items()})  # pytest -s
+    assert recovered
+    for key, one in recovered.items():
         assert one.inside if key in WHOLE else one.half_widths < REACH, key
     inertia = found.parameters["moment_of_inertia"]
     assert inertia.value == pytest.approx(AXIS.inertia, rel=3e-3)
 
 
 def test_intervals_of_95_percent_hold_what_is_true(hidden, diagnosed):
-    told = [
+    held = [
         one.inside
         for name, effect in hidden.items()
         for key, one in quantities(diagnosed(name), effect).items()
         if key not in WHOLE
     ]
-    assert len(told) > len(hidden)
-    assert told.count(False) <= binom.ppf(1.0 - CHANCE, len(told), 0.05)
+    assert len(held) > len(hidden)
+    assert held.count(False) <= binom.ppf(1.0 - CHANCE, len(held), 0.05)

@@ -32,6 +32,6 @@ def test_without_a_load_it_is_load_dependent_friction():
     np.testing.assert_array_equal(*motions)
 
 
-def test_the_coefficient_of_the_load_is_told_beside_that_of_the_motor():
+def test_the_coefficient_of_the_load_is_determined_beside_that_of_the_motor():
     found = catalogue()[NAME].report([0.2], (3.0,), Base(1.0, 0.0, 0.0))
     assert found == {"motor_coefficient": 0.2, "load_ratio": 3.0, "load_coefficient": pytest.approx(0.6)}

@@ -30,7 +30,7 @@ SLOW = 0.12 * np.sin(2.0 * np.pi * 0.7 * TIME) + 0.08 * np.sin(2.0 * np.pi * 1.9
 
 @pytest.mark.parametrize("other", [0.0 * TIME, SLOW])
 @pytest.mark.parametrize("pushes", [[(0.5, 3.0, 3.05)], [(-0.7, 4.0, 4.1), (0.6, 7.2, 7.27)]])
-def test_short_ones_are_told_by_themselves_from_what_runs_slowly(pushes, other):
+def test_short_ones_are_distinguished_by_themselves_from_what_runs_slowly(pushes, other):
     found = sorted(EFFECT.apart(left(TIME, pushes, other)), key=lambda one: one.shape)
     assert len(found) == len(pushes)
     for one, (_, start, stop) in zip(found, pushes, strict=True):
@@ -44,7 +44,7 @@ def test_short_ones_are_told_by_themselves_from_what_runs_slowly(pushes, other):
         [],  # nothing
         [(0.6 * (-1) ** k, 0.5 + 0.4 * k, 0.56 + 0.4 * k) for k in range(20)],  # at every reversal
         [(0.6 * 0.8**k, 0.5 + k, 0.56 + k) for k in range(9)],  # each a little weaker
-        [(0.6, 3.0, 4.5)],  # too long to be told from what else varies
+        [(0.6, 3.0, 4.5)],  # too long to be distinguished from what else varies
     ],
 )
 def test_none_where_nothing_stands_out(pushes):

@@ -19,7 +19,7 @@ AXIS = model().axis
 
 
 @every
-def test_lags_are_told_one_from_the_other_by_no_recording_or_by_some(effect):
+def test_lags_are_distinguished_by_no_recording_or_by_some(effect):
     if isinstance(effect, Lag):
         names = {name for scope in SCOPES for name in effect.ambiguous(scope)}
         assert names
@@ -71,7 +71,7 @@ def test_a_constant_torque_is_its_strength_in_every_motion(effect):
         assert Present.of(effect.name, values).values == tuple(values.items())
 
 
-# How it is told.
+# How it is reported.
 
 
 @every

@@ -86,7 +86,7 @@ def test_natively_and_step_by_step_alike(recordings):
 
 
 @pytest.mark.parametrize("case", [(), ("stribeck_friction",), ("velocity_filter_lag",), ("encoder_eccentricity",)])
-def test_position_is_told_as_the_sensor_has_it(case, recordings):
+def test_position_is_reported_as_the_sensor_has_it(case, recordings):
     trace = recordings[case]
     held = SoftTracking(model(*case), trace, AXIS.torque_constant * trace["current"], -PERIOD / 2.0)
     found, (again,) = track(held), track_all([held])

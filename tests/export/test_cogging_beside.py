@@ -1,4 +1,4 @@
-"""What `identify` makes of an elbow that has cogging, which its equation has not: a bias, told and counted."""
+"""What `identify` makes of an elbow that has cogging, which its equation has not: a bias, reported and counted."""
 
 import numpy as np
 import pytest

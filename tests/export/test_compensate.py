@@ -68,45 +68,45 @@ def test_tracking_errors_are_at_least_halved_with_a_model_that_is_off():
     off = [Present.of(name, perturbed(values, 0.97)) for name, values in HIDDEN.items()]
     guess = replace(plant.model, parameters=known, effects=tuple(off))
     motion = plan("slow_reversals", MotionLimits.from_rig(RIG, known, plant.cascade.control_period))
-    told = feedforward(guess, float(np.abs(motion.velocity).max()), (-10.0, 10.0))
-    before, after = tracking(plant.model, RIG, motion), tracking(plant.model, RIG, motion, told)
+    tables = feedforward(guess, float(np.abs(motion.velocity).max()), (-10.0, 10.0))
+    before, after = tracking(plant.model, RIG, motion), tracking(plant.model, RIG, motion, tables)
     print(f"\n{before} -> {after}")
     assert after.position < 0.5 * before.position
     assert after.velocity < 0.5 * before.velocity
 
 
 def test_what_the_tables_do_not_hold_is_named():
-    told = feedforward(model("torque_ripple", "cogging_torque", "current_loop_lag"), 20.0, (-1.0, 1.0))
-    assert set(told.left) == {"torque_ripple", "current_loop_lag"}
-    assert told.cogging.period == pytest.approx(2.0 * np.pi)
+    tables = feedforward(model("torque_ripple", "cogging_torque", "current_loop_lag"), 20.0, (-1.0, 1.0))
+    assert set(tables.left) == {"torque_ripple", "current_loop_lag"}
+    assert tables.cogging.period == pytest.approx(2.0 * np.pi)
 
 
 def test_torque_over_position_is_the_mean_of_both_directions():
     """Cogging stands in both directions, friction that varies with position turns its sign and is none of it."""
-    told = feedforward(model("cogging_torque", "position_dependent_friction"), 20.0, (-1.0, 1.0))
-    at, values = told.cogging.coordinate, VALUES["cogging_torque"]
+    tables = feedforward(model("cogging_torque", "position_dependent_friction"), 20.0, (-1.0, 1.0))
+    at, values = tables.cogging.coordinate, VALUES["cogging_torque"]
     cogging = values["amplitude"] * np.sin(values["harmonic"] * at + values["phase"])
-    np.testing.assert_allclose(told.cogging.torque, cogging, atol=1e-9)
+    np.testing.assert_allclose(tables.cogging.torque, cogging, atol=1e-9)
     # over a whole turn what varies with position has no mean
-    speeds = told.friction.coordinate
-    np.testing.assert_allclose(told.friction.torque, KW * speeds + K0 * np.sign(speeds), atol=1e-9)
+    speeds = tables.friction.coordinate
+    np.testing.assert_allclose(tables.friction.torque, KW * speeds + K0 * np.sign(speeds), atol=1e-9)
 
 
 def test_a_constant_torque_stands_once_over_speed_and_none_over_position():
-    told = feedforward(model("torque_offset"), 20.0, (-1.0, 1.0))
-    np.testing.assert_allclose(told.cogging.torque, 0.0, atol=1e-12)
-    assert told.friction(np.array([10.0, -10.0])) == pytest.approx([10.0 * KW + K0 - 0.12, -10.0 * KW - K0 - 0.12])
+    tables = feedforward(model("torque_offset"), 20.0, (-1.0, 1.0))
+    np.testing.assert_allclose(tables.cogging.torque, 0.0, atol=1e-12)
+    assert tables.friction(np.array([10.0, -10.0])) == pytest.approx([10.0 * KW + K0 - 0.12, -10.0 * KW - K0 - 0.12])
 
 
 def test_references_get_the_torque_of_both_tables():
-    told = feedforward(model("cogging_torque"), 20.0, (-1.0, 1.0))
+    tables = feedforward(model("cogging_torque"), 20.0, (-1.0, 1.0))
     speed, place = np.array([5.0, -5.0]), np.array([0.3, 0.9])
     values = VALUES["cogging_torque"]
     cogging = values["amplitude"] * np.sin(values["harmonic"] * place + values["phase"])
     still = np.zeros(2)
-    along = told.along(References(np.array([0.0, 1e-3]), place, speed, still))
+    along = tables.along(References(np.array([0.0, 1e-3]), place, speed, still))
     np.testing.assert_allclose(along.torque, KW * speed + K0 * np.sign(speed) + cogging, atol=1e-4)
-    assert along.feedforward(told.inertia) == pytest.approx(along.torque)
+    assert along.feedforward(tables.inertia) == pytest.approx(along.torque)
 
 
 def test_the_inertias_feedforward_is_in_the_units_of_the_drive():
@@ -122,10 +122,10 @@ def test_the_inertias_feedforward_is_in_the_units_of_the_drive():
 
 
 def test_a_torque_that_does_not_repeat_itself_spans_the_travel():
-    told = feedforward(model("torsion_spring"), 20.0, (-3.0, 5.0))
-    assert told.cogging.period is None
-    assert told.cogging.coordinate[0] == -3.0
-    slope = np.polyfit(told.cogging.coordinate, told.cogging.torque, 1)[0]
+    tables = feedforward(model("torsion_spring"), 20.0, (-3.0, 5.0))
+    assert tables.cogging.period is None
+    assert tables.cogging.coordinate[0] == -3.0
+    slope = np.polyfit(tables.cogging.coordinate, tables.cogging.torque, 1)[0]
     assert slope == pytest.approx(VALUES["torsion_spring"]["stiffness"], rel=1e-6)
 
 

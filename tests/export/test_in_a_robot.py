@@ -126,6 +126,6 @@ def test_wrong_input_is_one_line(folder, monkeypatch, capsys, arguments, says):
     monkeypatch.chdir(folder)
     bench = started(folder)
     assert bench(*shlex.split(arguments)) == 2
-    told = capsys.readouterr().err
-    assert says in told
-    assert told.count("\n") == 1
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1

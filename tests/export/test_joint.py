@@ -1,4 +1,4 @@
-"""A model on a joint of somebody's MJCF moves it as the axis of its own; what is not carried is told."""
+"""A model on a joint of somebody's MJCF moves it as the axis of its own; what is not carried is reported."""
 
 from dataclasses import replace
 
@@ -96,7 +96,7 @@ def test_a_joint_keeps_its_own_spring_beside_the_models():
         assert spec.compile().joint("elbow").stiffness[0] == pytest.approx(expected, rel=1e-12)
 
 
-def test_links_are_told_without_the_joints_own_armature():
+def test_links_are_stated_without_the_joints_own_armature():
     """The forearm of two_links about its elbow, I + m*c**2, whose joint has an armature of 0.5 kg*m**2 beside."""
     assert link_inertia(mujoco.MjSpec.from_string(MJCF), "elbow") == pytest.approx(I2 + M2 * C2**2, rel=1e-9)
     carried = onto(mujoco.MjSpec.from_string(MJCF), "elbow", stored())

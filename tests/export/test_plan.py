@@ -1,4 +1,4 @@
-"""A planned motion tells what it promises; it stays inside the rig's limits, and what cannot be planned is told."""
+"""A planned motion tells what it promises; it stays inside the rig's limits, and what cannot be planned is reported."""
 
 import numpy as np
 import pytest

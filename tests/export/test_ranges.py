@@ -51,16 +51,16 @@ def test_a_joint_has_them_behind_its_gear_and_never_below_zero(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("motor", "links", "told", "expected"),
+    ("motor", "links", "name", "expected"),
     [
         (0.0, 0.0, "moment_of_inertia", (1e-1, 0.99e-1, 1.01e-1)),
         (1e-4, 0.02, "armature", (1e-3, 0.99e-3, 1.01e-3)),
         (0.0, 0.0, "other", (0.0, 0.0, 0.0)),
     ],
 )
-def test_a_joints_armature_is_the_range_of_what_it_is_made_of(tmp_path, motor, links, told, expected):
+def test_a_joints_armature_is_the_range_of_what_it_is_made_of(tmp_path, motor, links, name, expected):
     """All that moves, on the joint's side; an armature that was found beside the links stands there already."""
-    parameters = {told: FOUND["parameters"]["moment_of_inertia"]}
+    parameters = {name: FOUND["parameters"]["moment_of_inertia"]}
     model = stored(parameters=replace(PARAMETERS, motor_inertia=motor), gear_ratio=10.0, link_inertia=links)
     joint = json.loads(ranges_json(model, written(tmp_path, {**FOUND, "parameters": parameters})))["joint"]
     assert joint["armature"] == pytest.approx(dict(zip(("value", "low", "high"), expected, strict=True)))

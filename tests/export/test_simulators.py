@@ -1,4 +1,4 @@
-"""Files for other simulators: values on the joint's side of the gear, what they lack told; and loaded by each of them.
+"""Files for other simulators: values on the joint's side of the gear, what they lack named; and loaded by each of them.
 
 The slow tests run where the Python of an environment with the simulator is named: `MJLAB_PYTHON`, `NEWTON_PYTHON`
 (`pip install "newton[sim]"`), `BAM_PYTHON` (`pip install better-actuator-models`, from Python 3.12 on).
@@ -40,7 +40,7 @@ def of(*effects, **parts):
     return replace(made, model=replace(made.model, **parts))
 
 
-class Told(SimpleNamespace):
+class Stub(SimpleNamespace):
     """A configuration of another simulator, as what it was given."""
 
 
@@ -49,9 +49,9 @@ def loaded(text, monkeypatch):
     for name in ("mjlab", "mjlab.actuator", "isaaclab", "isaaclab.actuators", "newton"):
         monkeypatch.setitem(sys.modules, name, ModuleType(name))
     for kind in ("BuiltinDcMotorActuatorCfg", "DcMotorPhysicalParams"):
-        setattr(sys.modules["mjlab.actuator"], kind, Told)
+        setattr(sys.modules["mjlab.actuator"], kind, Stub)
     sys.modules["mjlab.actuator"].DcMotorInputMode = SimpleNamespace(VOLTAGE=0)
-    sys.modules["isaaclab.actuators"].ImplicitActuatorCfg = sys.modules["newton"].ModelBuilder = Told
+    sys.modules["isaaclab.actuators"].ImplicitActuatorCfg = sys.modules["newton"].ModelBuilder = Stub
     names = {}
     exec(compile(text, "exported", "exec"), names)
     return names
@@ -81,24 +81,24 @@ def test_bams_friction_is_that_of_the_effects(effects, variant):
     """BAM's published law, on the joint's side, beside what the effects say on the motor's."""
     model = of(*effects, winding=WINDING)
     text, lines = simulator_file("bam", {"elbow": model}, "xl330")
-    told = json.loads(text)
-    assert (told["model"], told["actuator"]) == (variant, "xl330")
-    assert told["kt"] == pytest.approx(WINDING.torque_constant * RATIO)
+    values = json.loads(text)
+    assert (values["model"], values["actuator"]) == (variant, "xl330")
+    assert values["kt"] == pytest.approx(WINDING.torque_constant * RATIO)
     for motor, outside, speed in STATES:
-        assert bams(told, motor, outside, speed) == pytest.approx(level(effects, motor, outside, speed), rel=1e-9)
+        assert bams(values, motor, outside, speed) == pytest.approx(level(effects, motor, outside, speed), rel=1e-9)
     assert any("cogging_torque" in line for line in lines) == (COGGING in effects)
 
 
 STATES = [(0.0, 0.0, 0.01), (3.0, -1.0, 0.1), (-3.0, 1.5, 0.4), (1.0, 2.0, -0.2)]
 
 
-def bams(told, motor, outside, speed):
+def bams(values, motor, outside, speed):
     """Dry friction - N*m."""
-    rise = told.get("friction_stribeck", 0.0) * np.exp(
-        -(abs(speed / told.get("dtheta_stribeck", 1.0)) ** told.get("alpha", 1.0))
+    rise = values.get("friction_stribeck", 0.0) * np.exp(
+        -(abs(speed / values.get("dtheta_stribeck", 1.0)) ** values.get("alpha", 1.0))
     )
-    loaded = abs(told.get("load_friction_external", 0.0) * outside - told.get("load_friction_motor", 0.0) * motor)
-    return told["friction_base"] + rise + loaded
+    loaded = abs(values.get("load_friction_external", 0.0) * outside - values.get("load_friction_motor", 0.0) * motor)
+    return values["friction_base"] + rise + loaded
 
 
 def level(effects, motor, outside, speed):
@@ -128,7 +128,7 @@ def test_isaac_lab_gets_static_and_dynamic_friction(monkeypatch):
 
 def test_newton_gets_a_spring(monkeypatch):
     text, lines = simulator_file("newton", {"elbow": of(SPRING, COGGING)}, None)
-    builder = Told(joint_label=["world/arm/shoulder", "world/arm/elbow"], joint_qd_start=[0, 1])
+    builder = Stub(joint_label=["world/arm/shoulder", "world/arm/elbow"], joint_qd_start=[0, 1])
     for name in ("armature", "friction", "damping", "stiffness"):
         setattr(builder, f"joint_{name}", [7.0, 7.0])
     loaded(text, monkeypatch)["onto"](builder)

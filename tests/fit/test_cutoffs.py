@@ -1,4 +1,4 @@
-"""An estimate that moves with the cut-off, that leaves much, or that cannot be: told, widened or refused."""
+"""An estimate that moves with the cut-off, that leaves much, or that cannot be: reported, widened or refused."""
 
 import json
 
@@ -89,8 +89,8 @@ def test_noise_that_the_drive_feeds_back_moves_the_cut_off_and_leaves_the_inerti
 def test_it_is_reported_where_the_estimate_moves():
     truth, trace = fed_back(np.random.default_rng(2), gain=0.3, speed=0.04, duration=8.0)
     found = identify(trace, RIG)
-    (told,) = [warning for warning in found.warnings if "moves with the filter's cut-off" in warning]
-    assert "Hz" in told and "bench diagnose" in told
+    (moves,) = [warning for warning in found.warnings if "moves with the filter's cut-off" in warning]
+    assert "Hz" in moves and "bench diagnose" in moves
     assert found[INERTIA].ci95[0] < truth.inertia < found[INERTIA].ci95[1]
 
 
@@ -170,9 +170,9 @@ def test_one_way_tells_the_inertia_all_the_same(tmp_path, capsys):
     trace = recording(np.random.default_rng(9), speed=0.5, bias=300.0)
     with pytest.raises(RefusedEstimateError, match="forward only") as refused:
         identify(trace, RIG)
-    told = refused.value.estimate.parameters
-    assert told[INERTIA].value == pytest.approx(Truth().inertia, rel=5e-3)
-    assert "coulomb_friction_torque" not in told
+    parameters = refused.value.estimate.parameters
+    assert parameters[INERTIA].value == pytest.approx(Truth().inertia, rel=5e-3)
+    assert "coulomb_friction_torque" not in parameters
     write(trace, tmp_path / "run.csv")
     status = started(tmp_path)("identify", "run.csv", "--rig", "rig.toml", "--json", "found.json")
     assert status == 1

@@ -48,11 +48,11 @@ def coarse(motion):
 @pytest.mark.parametrize("noise", [None, coloured, hum, coarse], ids=["white", "coloured", "hum", "coarse"])
 def test_identify_and_diagnose_tell_the_same_of_a_null(seed, noise):
     trace = recorded(moved(), seed=seed, pick_up=noise)
-    told = diagnose(trace, RIG, excluded=frozenset(catalogue()) - {"unbalance"}).parameters
+    diagnosed = diagnose(trace, RIG, excluded=frozenset(catalogue()) - {"unbalance"}).parameters
     found = identify(trace, RIG).parameters
     for name in ("moment_of_inertia", "viscous_friction_coefficient", "coulomb_friction_torque"):
-        assert told[name].value == pytest.approx(found[name].value, rel=1e-9)
-        assert told[name].ci95 == pytest.approx(found[name].ci95, rel=1e-6)
+        assert diagnosed[name].value == pytest.approx(found[name].value, rel=1e-9)
+        assert diagnosed[name].ci95 == pytest.approx(found[name].ci95, rel=1e-6)
 
 
 def test_six_effects_on_one_axis_are_all_named():

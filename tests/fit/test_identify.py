@@ -188,16 +188,18 @@ def test_an_inertia_below_zero_is_refused_and_reported():
     trace = recording(np.random.default_rng(13), Truth(inertia=-1.5e-3))
     with pytest.raises(
         RefusedEstimateError, match="moment of inertia cannot be determined: it comes out negative"
-    ) as told:
+    ) as refused:
         identify(trace, RIG)
-    assert told.value.estimate["moment_of_inertia"].value < 0.0
+    assert refused.value.estimate["moment_of_inertia"].value < 0.0
 
 
-def test_a_friction_below_zero_is_refused_and_the_others_are_told():
+def test_a_friction_below_zero_is_refused_and_the_others_are_reported():
     trace = recording(np.random.default_rng(13), Truth(coulomb=-0.06))
-    with pytest.raises(RefusedEstimateError, match=r"Coulomb .* cannot be determined: it comes out negative") as told:
+    with pytest.raises(
+        RefusedEstimateError, match=r"Coulomb .* cannot be determined: it comes out negative"
+    ) as refused:
         identify(trace, RIG)
-    assert NAMES[0] in told.value.estimate.parameters and NAMES[2] not in told.value.estimate.parameters
+    assert NAMES[0] in refused.value.estimate.parameters and NAMES[2] not in refused.value.estimate.parameters
 
 
 @pytest.mark.parametrize("whole", [np.round, np.trunc])

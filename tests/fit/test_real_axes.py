@@ -123,7 +123,7 @@ def test_a_stand_whose_runs_go_one_way_gives_the_inertia_of_other_joint_fits(run
 
 def test_rounds_of_one_joint_agree():
     found = joint("damiao_m1", "r1", "r2", "r3")
-    assert not any("differ" in told for told in found.warnings)
+    assert not any("differ" in warning for warning in found.warnings)
     for alone in found.recordings:
         for name in NAMES:
             low, high = found.between[name].predictive95

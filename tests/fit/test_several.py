@@ -1,4 +1,4 @@
-"""Several recordings of one axis: what only one lacks the others give, and how they differ is told."""
+"""Several recordings of one axis: what only one lacks the others give, and how they differ is reported."""
 
 import json
 from dataclasses import replace
@@ -82,18 +82,18 @@ def test_runs_of_one_direction_determine_together_what_neither_does_alone(tmp_pa
 
 def test_an_offset_that_was_not_asked_for_is_reported():
     runs = [moving_at(side * np.array([20.0, 60.0]), seed, offset=0.02) for seed, side in enumerate((1.0, -1.0))]
-    assert any("torque offset of 0.02" in told and "--offset" in told for told in identify(runs, RIG).warnings)
-    assert not any("--offset" in told for told in identify(runs, OFFSET).warnings)
+    assert any("torque offset of 0.02" in warning and "--offset" in warning for warning in identify(runs, RIG).warnings)
+    assert not any("--offset" in warning for warning in identify(runs, OFFSET).warnings)
 
 
-@pytest.mark.parametrize(("offset", "told"), [(7e-4, False), (1.4e-3, True)])
-def test_an_offset_is_reported_from_its_own_interval_on(offset, told):
+@pytest.mark.parametrize(("offset", "reported"), [(7e-4, False), (1.4e-3, True)])
+def test_an_offset_is_reported_from_its_own_interval_on(offset, reported):
     """Beside friction of 0.06 N*m, which alone decides how well it is known: half or one and a half half widths."""
     runs = [moving_at(side * np.array([20.0, 60.0]), seed, offset) for seed, side in enumerate((1.0, -1.0))]
     asked = identify(runs, OFFSET, CUTOFF)["torque_offset"]
     assert 0.2 < abs(asked.value) / asked.half_width < 2.0
-    assert (abs(asked.value) > asked.half_width) == told
-    assert any("--offset" in warning for warning in identify(runs, RIG, CUTOFF).warnings) == told
+    assert (abs(asked.value) > asked.half_width) == reported
+    assert any("--offset" in warning for warning in identify(runs, RIG, CUTOFF).warnings) == reported
 
 
 def moving_at(speeds, seed, offset=0.0):
@@ -188,25 +188,27 @@ def test_the_next_recording_lies_where_it_was_expected_and_the_axis_in_the_joint
 
 
 def test_recordings_that_are_alike_leave_the_joint_interval_as_narrow_as_their_noise():
-    rng, held, width, told = np.random.default_rng(10), [], [], 0
+    rng, held, width, warned = np.random.default_rng(10), [], [], 0
     for _ in range(100):
         runs = [recording(rng, duration=3.0) for _ in range(3)]
         found = identify(runs, RIG, CUTOFF)
         held.append([inside(found[n], value) for n, value in zip(NAMES, Truth().values, strict=True)])
         width.append([found[n].std_error / found.recordings[0].parameters[n].std_error for n in NAMES])
-        told += any("differ" in warning for warning in found.warnings)
-    print(f"\ncoverage {np.mean(held, axis=0)}, width over one alone {np.median(width, axis=0)}, told {told} of 100")
+        warned += any("differ" in warning for warning in found.warnings)
+    print(
+        f"\ncoverage {np.mean(held, axis=0)}, width over one alone {np.median(width, axis=0)}, warned {warned} of 100"
+    )
     assert (np.mean(held, axis=0) > 0.95 - 3.0 * np.sqrt(0.95 * 0.05 / 100)).all()
     assert (np.median(width, axis=0) < 0.8).all()
-    assert told <= 5
+    assert warned <= 5
 
 
 def test_recordings_that_differ_are_reported_and_widen_the_interval():
     rng = np.random.default_rng(11)
     runs = [recording(rng, Truth(inertia=Truth.inertia * factor)) for factor in (0.97, 1.0, 1.03)]
     found = identify(runs, RIG)
-    (told,) = found.warnings
-    assert "the recordings differ in moment_of_inertia" in told
+    (warning,) = found.warnings
+    assert "the recordings differ in moment_of_inertia" in warning
     assert inside(found["moment_of_inertia"], Truth.inertia)
     assert found["moment_of_inertia"].std_error > 0.01 * Truth.inertia
     assert found.between["moment_of_inertia"].std_dev == pytest.approx(0.03 * Truth.inertia, rel=0.05)

@@ -65,12 +65,12 @@ def test_the_interval_of_the_inertia_holds_it_under_a_weak_drift():
 def test_the_interval_of_viscous_friction_holds_it_under_a_weak_drag():
     """Off by a third to a half of itself: without the hint no interval holds it, at 1.02 noise floors."""
     traces = [dragged(recording(np.random.default_rng(seed)), 2e-6) for seed in range(10)]
-    told = [identify(trace, RIG)["viscous_friction_coefficient"] for trace in traces]
-    assert all(found.value > 1.3 * Truth().viscous for found in told)
-    assert sum(found.ci95[0] < Truth().viscous < found.ci95[1] for found in told) >= 8
+    estimates = [identify(trace, RIG)["viscous_friction_coefficient"] for trace in traces]
+    assert all(found.value > 1.3 * Truth().viscous for found in estimates)
+    assert sum(found.ci95[0] < Truth().viscous < found.ci95[1] for found in estimates) >= 8
 
 
 def test_what_chance_makes_is_no_hint():
     """Some ten effects tried at three standard errors each: 3 in 100 recordings by chance."""
-    told = [hinted(recording(np.random.default_rng(seed))) is not None for seed in range(40)]
-    assert sum(told) <= 5  # of 40: by chance one time in 300
+    hints = [hinted(recording(np.random.default_rng(seed))) is not None for seed in range(40)]
+    assert sum(hints) <= 5  # of 40: by chance one time in 300

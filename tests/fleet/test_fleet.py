@@ -167,8 +167,8 @@ def test_the_axis_that_changed_is_named_with_its_day(found):
 
 
 def test_who_needs_a_person_is_reported_gravest_first(found):
-    told = [(one.axis, one.kind, one.recordings, one.of) for one in found[0].summary.concerns]
-    assert told == [
+    concerns = [(one.axis, one.kind, one.recordings, one.of) for one in found[0].summary.concerns]
+    assert concerns == [
         ("press 2", "failed", 1, 4),
         ("press 2", "timed_out", 1, 4),
         ("press 2", "missing", 1, 4),
@@ -183,8 +183,8 @@ def test_the_command_prints_and_writes_what_it_found(made, found):
         "fleet", made, "--out", out, "--workers", 1, *(word for one in STORAGES for word in ("--storage", one))
     )
     assert status == 0
-    for told in ("27 recordings of 3 axes", "17 done, 2 missing, 6 refused, 1 failed, 1 timed out", "0 evaluated now"):
-        assert told in printed
+    for line in ("27 recordings of 3 axes", "17 done, 2 missing, 6 refused, 1 failed, 1 timed out", "0 evaluated now"):
+        assert line in printed
     assert "press 1" in printed
     summary = json.loads((out / "summary.json").read_text())
     assert summary["schema"] == "bench.fleet/1"
@@ -215,7 +215,7 @@ def test_effects_are_named_where_that_is_asked_for(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "expected"),
     [
         ("file,axis\na.csv,x\n", "rig is missing"),
         ("file,rig\n,rig.toml\n", "row 1: file"),
@@ -227,11 +227,11 @@ def test_effects_are_named_where_that_is_asked_for(tmp_path):
         ("file,rig\na.csv\n", "found no table"),
     ],
 )
-def test_a_bad_manifest_is_one_line(text, told, tmp_path):
+def test_a_bad_manifest_is_one_line(text, expected, tmp_path):
     (tmp_path / "fleet.csv").write_text(text)
     status, _, message = bench("fleet", tmp_path / "fleet.csv", "--out", tmp_path / "out")
     assert (status, message.count("\n")) == (2, 1)
-    assert told in message
+    assert expected in message
     assert not (tmp_path / "out").exists()
 
 

@@ -27,15 +27,15 @@ def looked_over(values, times=None, rigs=None, errors=None, results=None):
     rigs = ["same"] * len(files) if rigs is None else rigs
     planned = [PlannedRecording(str(row), JOB, None, {"rig_sha256": rig}) for row, rig in enumerate(rigs)]
     errors = np.full(values.size, 1e-3) if errors is None else errors
-    told = [found(value, error) for value, error in zip(values.ravel(), errors, strict=True)]
-    return summarise(Manifest(Path("fleet.csv"), table), planned, results or told)
+    usual = [found(value, error) for value, error in zip(values.ravel(), errors, strict=True)]
+    return summarise(Manifest(Path("fleet.csv"), table), planned, results or usual)
 
 
 def found(value, error, **more):
     around = [float(value - 1.96 * error), float(value + 1.96 * error)]
     parameter = {"value": float(value), "unit": "kg*m**2", "std_error": float(error), "ci95": around}
-    told = {"status": "done", "reason": None, "parameters": {NAMES[0]: parameter}, "explained": 0.99, "checks": []}
-    return told | more
+    result = {"status": "done", "reason": None, "parameters": {NAMES[0]: parameter}, "explained": 0.99, "checks": []}
+    return result | more
 
 
 def test_of_fleets_in_which_nothing_changes_at_most_one_in_a_hundred_names_an_axis():
@@ -108,11 +108,11 @@ def test_an_alarm_is_held_against_one_in_a_hundred_of_all_axes_together():
 def test_what_was_not_done_or_has_no_error_is_not_compared():
     values = np.random.default_rng(1).normal(1.0, 0.01, (1, 12))
     values[0, 6:] += 0.3
-    told = [found(value, 1e-3) for value in values[0]]
+    results = [found(value, 1e-3) for value in values[0]]
     for place, other in ((3, {"status": "refused", "reason": "no"}), (8, {"status": "done"})):
-        told[place] = {**told[place], **other}
-    told[9]["parameters"][NAMES[0]]["std_error"] = None
-    (changed,) = looked_over(values, results=told).changed
+        results[place] = {**results[place], **other}
+    results[9]["parameters"][NAMES[0]]["std_error"] = None
+    (changed,) = looked_over(values, results=results).changed
     assert changed.history.rows == (0, 1, 2, 4, 5, 6, 7, 8, 10, 11)
     assert changed.counts == (5, 5)
 
@@ -134,7 +134,7 @@ def test_a_person_is_called_for(more, kind, reason):
 
 
 def test_nobody_is_called_for_what_is_explained():
-    told = {"explained": 0.5, "verdict": "explained", "effects": [{"name": "an_effect"}]}
-    summary = looked_over(np.ones((1, 2)), results=[found(1.0, 0.1), found(1.0, 0.1, **told)])
+    explained = {"explained": 0.5, "verdict": "explained", "effects": [{"name": "an_effect"}]}
+    summary = looked_over(np.ones((1, 2)), results=[found(1.0, 0.1), found(1.0, 0.1, **explained)])
     assert not summary.concerns
     assert [(one.name, one.recordings, one.of, one.since) for one in summary.shown] == [("an_effect", 1, 1, "1")]

@@ -23,7 +23,7 @@ def measures(trace: Trace, rig: Rig) -> Iterator[tuple[str, float]]:
     if {"position", "velocity"} <= set(trace.signals):
         both = velocity.compared(seen)
         assert both is not None
-        yield f"|ratio - 1| of speed (told {velocity.WARNED}, refused {velocity.REFUSED})", abs(both.ratio - 1.0)
+        yield f"|ratio - 1| of speed (warned {velocity.WARNED}, refused {velocity.REFUSED})", abs(both.ratio - 1.0)
         yield f"remainder of speed (refused {velocity.REMAINDER})", both.remainder
     damage = repairs.damage_of(trace)
     share = (damage.lost + damage.stale) / len(trace)
@@ -31,7 +31,7 @@ def measures(trace: Trace, rig: Rig) -> Iterator[tuple[str, float]]:
     fitted = seen.balance()
     if fitted is not None:
         yield (
-            f"effort unexplained (told {1.0 - effort.WARNED:.2f}, refused {1.0 - effort.REFUSED:.2f})",
+            f"effort unexplained (warned {1.0 - effort.WARNED:.2f}, refused {1.0 - effort.REFUSED:.2f})",
             (1.0 - fitted.by_position),
         )
     speeds = [seen.speed(part) for part in seen.stretches(timing.LEAST)]

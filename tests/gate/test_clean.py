@@ -42,9 +42,9 @@ def test_a_command_ends_with_one_line(tmp_path, monkeypatch, capsys, command):
     folder = SHARED / "data/real/damiao_m4"
     bench = started(tmp_path)
     assert bench(command, str(folder / "r1.csv.gz"), "--rig", str(folder / "rig.toml")) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1
-    assert "0.5027 times the derivative of position" in told
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "0.5027 times the derivative of position" in error
 
 
 @needs_shared

@@ -24,7 +24,7 @@ def test_another_axis_current_is_refused(sound, rig):
     assert "another axis" in found.advice
 
 
-def test_an_axis_that_stands_is_told_so_first(sound, rig):
+def test_that_an_axis_stands_is_reported_first(sound, rig):
     rng = np.random.default_rng(3)
     still = {"velocity": 1e-3 * rng.normal(size=len(sound)), "position": 1e-6 * rng.normal(size=len(sound))}
     foreign = np.sin(2.0 * np.pi * 1.7 * sound.time)
@@ -34,7 +34,7 @@ def test_an_axis_that_stands_is_told_so_first(sound, rig):
     assert found.advice.endswith("move it")
 
 
-def test_noise_alone_is_told_as_no_torque_signal(sound, rig):
+def test_noise_alone_is_reported_as_no_torque_signal(sound, rig):
     noise = np.random.default_rng(2).normal(size=len(sound))
     found = effort.follows_motion(Seen(changed(sound, current=noise), rig))
     assert found.status == "warn"

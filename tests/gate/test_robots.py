@@ -33,7 +33,7 @@ def check(trace, name):
 
 
 @pytest.mark.parametrize("fold", [np.abs, lambda values: -np.abs(values)], ids=["positive", "negative"])
-def test_a_torque_without_its_sign_is_told_as_that(fold):
+def test_a_torque_without_its_sign_is_reported_as_that(fold):
     found = check(joint(torque=fold), "effort_has_a_sign")
     assert found.status == "fail"
     assert "its sign is lost" in found.advice
@@ -87,7 +87,7 @@ def test_holes_are_no_irregular_time():
     assert check(joint(time=time[kept]), "time_is_regular").status in ("pass", "warn")
 
 
-def test_a_motion_sampled_too_coarsely_is_told_as_that():
+def test_a_motion_sampled_too_coarsely_is_reported_as_that():
     """At 2.5 Hz position and speed do not agree, for the reason that the rate has."""
     coarse = joint(period=0.4, duration=240.0)
     assert check(coarse, "velocity_is_derivative_of_position").status == "not_applicable"
@@ -95,7 +95,7 @@ def test_a_motion_sampled_too_coarsely_is_told_as_that():
         passed(coarse, RIG)
 
 
-def test_a_joint_that_creeps_is_told_as_that():
+def test_a_joint_that_creeps_is_reported_as_that():
     """Its torque follows what others ask of it, within what its friction holds."""
     rng = np.random.default_rng(0)
     time = np.arange(6000) * 5e-3

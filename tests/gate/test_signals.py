@@ -11,9 +11,9 @@ from tests.gate.damage import changed
 
 
 def test_a_current_that_never_changes_is_refused(sound, rig):
-    with pytest.raises(UnanswerableError, match=r"signal_moves.*current.*record instead") as told:
+    with pytest.raises(UnanswerableError, match=r"signal_moves.*current.*record instead") as refused:
         passed(changed(sound, current=np.full(len(sound), 0.3)), rig)
-    assert [check.name for check in told.value.checks] == [check.name for check in gate(sound, rig).checks]
+    assert [check.name for check in refused.value.checks] == [check.name for check in gate(sound, rig).checks]
 
 
 @pytest.mark.parametrize("name", ["position", "velocity", "current"])

@@ -49,8 +49,8 @@ def test_what_is_wrong_for_a_while_is_named_with_its_time(sound, rig, damage, wo
 @pytest.mark.parametrize("delay", [20, -20, 60])
 def test_a_delay_is_named_with_its_size(sound, rig, delay):
     found = throughout.holds(Seen(changed(sound, current=np.roll(sound["current"], delay)), rig))
-    (told,) = re.findall(rf"([\d.]+) ms {'late' if delay > 0 else 'early'}", found.found)
-    assert found.status == "fail" and float(told) == pytest.approx(abs(delay), abs=3.0)
+    (milliseconds,) = re.findall(rf"([\d.]+) ms {'late' if delay > 0 else 'early'}", found.found)
+    assert found.status == "fail" and float(milliseconds) == pytest.approx(abs(delay), abs=3.0)
 
 
 @pytest.mark.parametrize("delay", [1, 5, -5])

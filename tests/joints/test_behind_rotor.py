@@ -1,4 +1,4 @@
-"""Torque that is measured on the joint's side of the gear: the rotor is not in it, and friction is told."""
+"""Torque that is measured on the joint's side of the gear: the rotor is not in it, and friction is determined."""
 
 from dataclasses import replace
 

@@ -10,7 +10,7 @@ from tests.export.two_links import HIDDEN, MJCF, log, write_log
 
 
 @pytest.mark.parametrize("joint", ["shoulder", "elbow"])
-def test_what_is_left_of_a_joint_that_is_told_wholly_is_the_floor(tmp_path, joint):
+def test_what_is_left_of_a_joint_that_is_explained_wholly_is_the_floor(tmp_path, joint):
     """The shoulder's inertia is largest where the MJCF stands: counted twice, its floor was a tenth too high."""
     (tmp_path / "arm.xml").write_text(MJCF)
     logged = write_log(tmp_path / "log.csv", log(replace(HIDDEN, cogging=0.0)))

@@ -1,4 +1,4 @@
-"""A delay between torque and motion is told where there is one, and not where something else is missing."""
+"""A delay between torque and motion is reported where there is one, and not where something else is missing."""
 
 from dataclasses import replace
 
@@ -15,7 +15,9 @@ def apart(mjcf, joint, logged):
     """What is said of torque and motion that are apart."""
     robot = Robot.of(mjcf, joint)
     rig = joint_rig(None, robot)
-    return [told for told in bench.identify(read_log(logged, rig, robot, {}), rig).warnings if "ms apart" in told]
+    return [
+        warning for warning in bench.identify(read_log(logged, rig, robot, {}), rig).warnings if "ms apart" in warning
+    ]
 
 
 @needs_shared
@@ -26,11 +28,11 @@ def test_friction_that_a_model_lacks_is_no_delay():
 
 
 @pytest.mark.parametrize("late", [0.0, 0.012])
-def test_a_delay_that_is_there_is_told(tmp_path, late):
+def test_a_delay_that_is_there_is_reported(tmp_path, late):
     (tmp_path / "arm.xml").write_text(MJCF)
     columns = log(replace(HIDDEN, cogging=0.0))
     time, torque = columns["time [s]"], columns["elbow.torque [N*m]"]
     columns["elbow.torque [N*m]"] = np.interp(time - late, time, torque)
-    told = apart(tmp_path / "arm.xml", "elbow", write_log(tmp_path / "log.csv", columns))
-    assert bool(told) is (late > 0.0)
-    assert all("12" in each or "11.9" in each for each in told)
+    warnings = apart(tmp_path / "arm.xml", "elbow", write_log(tmp_path / "log.csv", columns))
+    assert bool(warnings) is (late > 0.0)
+    assert all("12" in each or "11.9" in each for each in warnings)

@@ -1,4 +1,4 @@
-"""A link's inertia that the MJCF has wrong, and what a body carried: both told by all joints together."""
+"""A link's inertia that the MJCF has wrong, and what a body carried: both determined by all joints together."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ def of_arm(folder, columns, text=MJCF):
     return [JointLogs(joint, folder / "arm.xml", (logged,)) for joint in ("shoulder", "elbow")]
 
 
-def test_an_inertia_that_is_counted_twice_is_told_with_its_factor(tmp_path):
+def test_an_inertia_that_is_counted_twice_is_reported_with_its_factor(tmp_path):
     assert ONCE in MJCF
     columns = log(replace(HIDDEN, cogging=0.0))
     (found,) = doubt_links(of_arm(tmp_path, columns, MJCF.replace(ONCE, TWICE)))
@@ -69,7 +69,7 @@ def test_a_payload_is_found_with_its_place(tmp_path):
     assert y.half_width == float("inf")
 
 
-def test_where_nothing_is_carried_no_payload_is_told(tmp_path):
+def test_where_nothing_is_carried_no_payload_is_reported(tmp_path):
     with pytest.raises(UndeterminedError, match="the payload of 'forearm' cannot be determined: its mass comes out as"):
         seek_payload(of_arm(tmp_path, log(replace(HIDDEN, cogging=0.0))), "forearm", lambda share: None)
 

@@ -2,15 +2,15 @@
 
 import pytest
 
-from tests.studies.pulses import told_of
+from tests.studies.pulses import reported_push
 
 
-def test_a_push_is_told_in_size_and_time_beside_another_misfit(tmp_path):
-    assert told_of(5, True, tmp_path, 5.0).right
+def test_a_push_is_found_in_size_and_time_beside_another_misfit(tmp_path):
+    assert reported_push(5, True, tmp_path, 5.0).right
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("floors", [1.0, 5.0])
 def test_none_without_one(tmp_path, floors):
-    assert told_of(2, True, tmp_path, floors).right
-    assert not told_of(2, False, tmp_path, floors).found
+    assert reported_push(2, True, tmp_path, floors).right
+    assert not reported_push(2, False, tmp_path, floors).found

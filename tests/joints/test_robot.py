@@ -63,8 +63,8 @@ def test_the_page_shows_the_arm_moving_with_its_models(arm):
     time, shoulder, elbow = motion()
     at = moving["start"] + moving["step"] * np.arange(moving["count"])
     np.testing.assert_allclose(floats(moving["position"]), np.interp(at, time, shoulder[0]), atol=1e-3)
-    (told,) = moving["robot"]["poses"]
-    np.testing.assert_allclose(floats(told), np.interp(at, time, elbow[0]), atol=1e-3)
+    (poses,) = moving["robot"]["poses"]
+    np.testing.assert_allclose(floats(poses), np.interp(at, time, elbow[0]), atol=1e-3)
     runs = {run["name"]: floats(run["others"][0]) for run in moving["runs"]}
     assert list(runs) == ["held softly", "held, without what was found", "let free every 0.5 s", "let free every 5 s"]
     held, bare, often, seldom = (rms(one) for one in runs.values())
@@ -113,8 +113,8 @@ def test_where_no_joint_can_be_answered_the_command_says_why(arm, tmp_path, caps
     write_log(tmp_path / "torqueless.csv", {name: values for name, values in columns.items() if "torque" not in name})
     line = ("robot", "torqueless.csv", "--mjcf", str(arm / "robot.xml"), "--out", "none", "--json", "found.json")
     assert started(tmp_path)(*line) == 2
-    told = capsys.readouterr().err.strip().splitlines()[-1]
-    assert "none of the joints could be answered" in told
+    last = capsys.readouterr().err.strip().splitlines()[-1]
+    assert "none of the joints could be answered" in last
     assert not (tmp_path / "none").exists()
     assert json.loads((tmp_path / "found.json").read_text())["joints"]["elbow"]["failed"]
 

@@ -19,7 +19,7 @@ def loose(tmp_path_factory):
 
 @pytest.mark.slow
 def test_play_in_the_first_gear_is_called_nothing_else(loose):
-    """That what is left is more than noise is told of every joint, and all true values are inside their intervals."""
+    """That what is left is more than noise is said of every joint, and all true values are inside their intervals."""
     for joint, one in loose["joints"].items():
         assert not one["named"], joint
         assert one["verdict"] == "unexplained_remainder", joint
@@ -42,7 +42,7 @@ def test_every_joint_is_named_and_nothing_else(figures):
 
 
 @pytest.mark.slow
-def test_armature_and_friction_are_told(figures):
+def test_armature_and_friction_are_determined(figures):
     for joint, one in figures["joints"].items():
         assert abs(one["off"]["armature"]) < 0.01, joint
         assert abs(one["off"]["viscous_friction_coefficient"]) < 0.03, joint
@@ -50,7 +50,7 @@ def test_armature_and_friction_are_told(figures):
 
 
 @pytest.mark.slow
-def test_what_it_carried_is_told(figures):
+def test_what_it_carried_is_determined(figures):
     assert abs(figures["payload"]["mass"]) < 0.02
     assert figures["payload"]["centre"] < 5e-3
 

@@ -169,7 +169,7 @@ def motion(duration=20.0, period=2e-3, seed=0, scale=1.0):
 
 
 def behind_play(time, q, w, a, play, payload=None, frequency=40.0, damping=0.2):
-    """Motion (3, n, 6) of the links where the first joint's gear has play - rad - and its motor moves as told.
+    """Motion (3, n, 6) of the links where the first joint's gear has play - rad - and its motor moves as commanded.
 
     About the vertical the links' momentum is M*w_1 + b, M and b of the other joints alone, and the gear's torque
     changes it: M*a_1 + M'*w_1 + b' = T(p), p the motor's angle less the link's. The teeth are a spring of `frequency` -

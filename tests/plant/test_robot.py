@@ -109,7 +109,7 @@ def test_the_joint_is_identified_among_its_links(arm, tmp_path):
 
 
 def test_the_motors_side_of_a_gear(arm, tmp_path):
-    """The log has the motor's angle and torque; the armature is told on the joint's side all the same."""
+    """The log has the motor's angle and torque; the armature is reported on the joint's side all the same."""
     ratio, hidden, columns = 8.0, replace(HIDDEN, cogging=0.0), log(replace(HIDDEN, cogging=0.0))
     for name in ("elbow.position [rad]", "elbow.velocity [rad/s]"):
         columns[name] = columns[name] * ratio
@@ -151,8 +151,10 @@ def test_a_finger_that_follows_another_needs_no_column(tmp_path):
     robot, logged = Robot.of(path, "elbow"), write_log(tmp_path / "log.csv", columns)
     followed = read_log(logged, rig_within(ELBOW, robot), robot, {})
     columns["right.position [m]"] = columns["left.position [m]"]
-    told = read_log(write_log(tmp_path / "both.csv", columns), rig_within(ELBOW, robot), robot, {})
-    np.testing.assert_allclose(less_known(followed, followed["torque"]), less_known(told, told["torque"]), atol=1e-6)
+    recorded = read_log(write_log(tmp_path / "both.csv", columns), rig_within(ELBOW, robot), robot, {})
+    np.testing.assert_allclose(
+        less_known(followed, followed["torque"]), less_known(recorded, recorded["torque"]), atol=1e-6
+    )
     for finger in ("left", "right"):
         with pytest.raises(InputError, match=f"joint '{finger}': found an equality that couples it"):
             Robot.of(path, finger)

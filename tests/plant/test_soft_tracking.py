@@ -61,9 +61,9 @@ def test_an_effort_that_is_reported_late_is_read_ahead(late):
         effort = 0.1 * (np.maximum(TIME, 0.05) - delay - 0.05) ** 2
         return track(SoftTracking(FREE, at_rest(), effort, misalignment), BANDWIDTH).velocity
 
-    in_time, told = velocity(0.0, 0.0), velocity(late, late)
+    in_time, read_ahead = velocity(0.0, 0.0), velocity(late, late)
     inside = slice(100, -10)
-    assert np.abs(told - in_time)[inside].max() < 0.02 * np.abs(velocity(late, 0.0) - in_time)[inside].max()
+    assert np.abs(read_ahead - in_time)[inside].max() < 0.02 * np.abs(velocity(late, 0.0) - in_time)[inside].max()
 
 
 def model(*effects):

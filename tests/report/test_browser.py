@@ -90,7 +90,7 @@ def test_the_mouse_zooms_moves_and_tells(opened, found):
     x, y, wide = box["x"], box["y"] + 40, box["width"]
     page.mouse.move(x + 0.5 * wide, y)
     readouts = [page.locator(".readout").nth(k).inner_text() for k in range(4)]
-    assert all("at 2.0" in told or "at 1.99" in told for told in readouts)
+    assert all("at 2.0" in readout or "at 1.99" in readout for readout in readouts)
     assert "simulated" in readouts[0]
     page.mouse.move(x + 0.25 * wide, y)
     page.mouse.down()
@@ -192,19 +192,19 @@ def test_pages_that_share_a_script_work_beside_it(opened, found, bench, tmp_path
 
 
 def test_numbers_on_the_page_are_those_of_the_json(opened, found):
-    told = json.loads((found / "diagnosis.json").read_text(encoding="utf-8"))
+    content = json.loads((found / "diagnosis.json").read_text(encoding="utf-8"))
     page = opened(found / "report.html")
     heading = page.get_by_role("heading", level=1).inner_text().replace("\N{NO-BREAK SPACE}", " ")
     assert heading.startswith("Unbalance was missing; with it ")
-    before, after = told["gap"]["torque"]["identify"]["before"], told["gap"]["torque"]["identify"]["after"]
+    before, after = content["gap"]["torque"]["identify"]["before"], content["gap"]["torque"]["identify"]["after"]
     assert f"{100 * (1 - after / before):.0f} % of the torque gap is gone" in heading
     text = page.locator("dl").inner_text().replace("\N{NO-BREAK SPACE}", " ")
     for asked in ("Moment of inertia?", "What was missing?", "How sure?", "Does it move like the axis now?"):
         assert asked in text
-    amplitude = told["effects"][0]["parameters"]["amplitude"]["value"]
+    amplitude = content["effects"][0]["parameters"]["amplitude"]["value"]
     assert f"amplitude {amplitude:#.3g} N·m ±" in text
-    assert f"{told['parameters']['moment_of_inertia']['value']:#.3g} kg·m²" in text
-    assert f"{told['gap']['velocity']['holdout']['after']:.3g}" in text
+    assert f"{content['parameters']['moment_of_inertia']['value']:#.3g} kg·m²" in text
+    assert f"{content['gap']['velocity']['holdout']['after']:.3g}" in text
 
 
 def test_what_was_missing_how_sure_and_the_picture_are_on_the_first_screen(opened, found):

@@ -87,9 +87,9 @@ def test_the_command_writes_it(bench):
     status, out, _ = bench("check", "now.csv", *BASE, "--report", "check.html")
     assert status == 0
     assert "wrote check.html" in out
-    told = Path("check.html").read_text(encoding="utf-8")
-    assert "The same: " in told
-    assert "before.csv" in told
+    page = Path("check.html").read_text(encoding="utf-8")
+    assert "The same: " in page
+    assert "before.csv" in page
     assert bench("check", "now.csv", *BASE, "--report", "check.txt")[0] == 2
     assert bench("check", "now.csv", *BASE, "--update", "--report", "check.html")[0] == 2
 

@@ -13,7 +13,7 @@ from bench.trace.write import write
 from tests.diagnosis.test_commands import run_of
 
 
-def told(page):
+def text_of(page):
     return page.read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
 
 
@@ -27,7 +27,7 @@ def test_identify_leaves_a_page(bench, tmp_path):
     assert page.verdict.startswith("The moment of inertia is")
     graphs = [block for section in page.sections for block in section.blocks if isinstance(block, TimeGraph)]
     assert len(graphs) == 2
-    assert "run2.csv" in told(tmp_path / "result" / "report.html")
+    assert "run2.csv" in text_of(tmp_path / "result" / "report.html")
 
 
 @pytest.mark.parametrize(("ending", "head"), [("pdf", b"%PDF"), ("svg", b"<?xml"), ("png", b"\x89PNG")])
@@ -59,7 +59,7 @@ def test_replay_writes_a_page_where_asked(bench, found, tmp_path):
     status, out, _ = bench(*asked, "--report", "replay.html")
     assert status == 0
     assert out.splitlines()[-2:] == ["wrote replay.csv", "wrote replay.html"]
-    text = told(tmp_path / "replay.html")
+    text = text_of(tmp_path / "replay.html")
     (left,) = re.findall(r"velocity gap ([\d.]+) of", out)
     assert f"off by {float(left):.3g} rad/s" in text
     status, _, err = bench(*asked, "--report", "replay.txt")
@@ -77,7 +77,7 @@ def test_friction_writes_a_page_where_asked(bench, tmp_path):
     status, out, _ = bench("friction", *names, "--rig", "rig.toml", "--report", "friction.html")
     assert status == 0
     assert "wrote friction.html" in out
-    text = told(tmp_path / "friction.html")
+    text = text_of(tmp_path / "friction.html")
     assert "Stribeck friction (static friction 0.07" in text
     (speed,) = re.findall(r"Stribeck velocity ([\d.]+) rad/s\)", text)[:1]
     assert float(speed) == pytest.approx(STRIBECK, rel=0.1)

@@ -48,7 +48,7 @@ def test_what_is_drawn_over_time_has_the_gaps_that_are_reported(found, page):
         for panel, what in ((graph.panels[1], "velocity"), (graph.panels[3], "torque")):
             before, after = (unpacked(curve.samples)[0] for curve in panel.curves)
             assert rms(before) == pytest.approx(gap[what][name]["before"], rel=5e-3)
-            # torque is told over the rows of the balance, every one of which is drawn
+            # torque is stated over the rows of the balance, every one of which is drawn
             assert rms(after) == pytest.approx(gap[what][name]["after"], rel=0.01)
 
 

@@ -48,8 +48,8 @@ def fleet_of(values, results=None, name="axis {}", dated=True, evaluated=0):
     }
     manifest = Manifest(Path("fleet.csv"), pa.table(columns))
     planned = [PlannedRecording(f"{row:064x}", JOB, None, {"rig_sha256": "same"}) for row in rows]
-    told = [(results or {}).get(row, found(value, 1e-3)) for row, value in enumerate(values.ravel())]
-    return Fleet(manifest, planned, told, summarise(manifest, planned, told), evaluated)
+    evaluations = [(results or {}).get(row, found(value, 1e-3)) for row, value in enumerate(values.ravel())]
+    return Fleet(manifest, planned, evaluations, summarise(manifest, planned, evaluations), evaluated)
 
 
 def stepped(count, each, changed, step=0.3):
@@ -123,7 +123,7 @@ def test_a_change_is_drawn_over_time_outside_of_what_was_expected_before():
     assert after.x == (5.0, 9.0)
 
 
-def test_times_that_are_numbers_are_told_as_they_are():
+def test_times_that_are_numbers_are_given_as_they_are():
     (chart,) = blocks(page_of(fleet_of(stepped(3, 10, [1]), dated=False)), Chart)
     assert (chart.panels[0].x_label, chart.panels[0].x_unit) == ("time", "")
 
@@ -181,11 +181,11 @@ def test_the_page_is_the_same_however_many_were_evaluated_now():
 def test_every_axis_has_a_row_by_how_much_it_needs_a_person():
     (dashboard, *_) = blocks(page_of(fleet_of(stepped(6, 10, [4]), {3: refused("too short"), 59: MISSING})), Table)
     assert [row[0] for row in dashboard.rows] == [f"axis {k}" for k in (4, 5, 0, 1, 2, 3)]
-    told = {row[0]: row[1:5] for row in dashboard.rows}
-    assert told["axis 4"][:2] == ("inertia", dashboard.rows[0][2])
-    assert re.fullmatch(r"\+\d+\s±\s\S+\s% since 2026-03-07 06:00:00, by chance < 0.1\s%", told["axis 4"][1])
-    assert [told[f"axis {k}"][1:3] for k in (5, 0, 1)] == [("none", "missing"), ("none", "refused"), ("none", "–")]
-    assert told["axis 1"][3] == "0.997\xa0kg·m²\xa0±\xa00.2\xa0%"
+    cells = {row[0]: row[1:5] for row in dashboard.rows}
+    assert cells["axis 4"][:2] == ("inertia", dashboard.rows[0][2])
+    assert re.fullmatch(r"\+\d+\s±\s\S+\s% since 2026-03-07 06:00:00, by chance < 0.1\s%", cells["axis 4"][1])
+    assert [cells[f"axis {k}"][1:3] for k in (5, 0, 1)] == [("none", "missing"), ("none", "refused"), ("none", "–")]
+    assert cells["axis 1"][3] == "0.997\xa0kg·m²\xa0±\xa00.2\xa0%"
 
 
 def test_a_sketch_has_the_band_that_the_next_recording_is_expected_in():

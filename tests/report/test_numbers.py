@@ -7,7 +7,7 @@ from bench.report.html import ticks
 from bench.report.numbers import brief, interval, listed, number, share, unit_text
 
 
-def told(text):
+def plain(text):
     return text.replace("\N{NO-BREAK SPACE}", " ")
 
 
@@ -26,7 +26,7 @@ def told(text):
 )
 def test_a_value_has_as_many_digits_as_its_interval(value, half, unit, text):
     parameter = Parameter(value, unit, half / 1.96, (value - half, value + half))
-    assert told(interval(parameter)) == text
+    assert plain(interval(parameter)) == text
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def test_a_value_has_as_many_digits_as_its_interval(value, half, unit, text):
     ],
 )
 def test_a_value_in_brief_has_three_digits(value, half, unit, text):
-    assert told(brief(Parameter(value, unit, half / 1.96, (value - half, value + half)))) == text
+    assert plain(brief(Parameter(value, unit, half / 1.96, (value - half, value + half)))) == text
 
 
 def test_names_in_a_row():
@@ -53,14 +53,14 @@ def test_names_in_a_row():
     [(0.0278, "0.0278 rad/s"), (-1.5, "−1.5 rad/s"), (1.9e-33, "1.9·10⁻³³ rad/s"), (float("nan"), "not known")],
 )
 def test_a_number_and_its_unit(value, text):
-    assert told(number(value, "rad/s", 3)) == text
+    assert plain(number(value, "rad/s", 3)) == text
 
 
 @pytest.mark.parametrize(
     ("value", "text"), [(0.87, "87 %"), (0.0123, "1.2 %"), (1e-6, "< 0.1 %"), (0.0, "0 %"), (-0.2, "-20 %")]
 )
 def test_a_share(value, text):
-    assert told(share(value)) == text
+    assert plain(share(value)) == text
 
 
 @pytest.mark.parametrize(

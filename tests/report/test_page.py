@@ -1,4 +1,4 @@
-"""A page as data: it comes back from its file as it was, whatever its text holds is text, and damage is told."""
+"""A page as data: it comes back from its file as it was, whatever its text holds is text, and damage is reported."""
 
 import html as entities
 import json

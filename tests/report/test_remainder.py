@@ -1,4 +1,4 @@
-"""What is left unexplained is told by its shape."""
+"""What is left unexplained is described by its shape."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ NOISE = np.random.default_rng(0).normal(size=48)
 
 
 @pytest.mark.parametrize(
-    ("account", "told"),
+    ("account", "expected"),
     [
         (left("position", "m", AXIS, np.sin(2.0 * np.pi * AXIS / 2.5e-3) + 0.2 * NOISE), "a wave of 0.0025 m"),
         (left("position", "rad", ANGLE, BUMP, (1.9, 2.1)), "at one position, between 1.9 and 2.1 rad"),
@@ -36,5 +36,5 @@ NOISE = np.random.default_rng(0).normal(size=48)
         ),
     ],
 )
-def test_what_is_left_has_a_shape(account, told):
-    assert shape(account).replace("\N{NO-BREAK SPACE}", " ") == told
+def test_what_is_left_has_a_shape(account, expected):
+    assert shape(account).replace("\N{NO-BREAK SPACE}", " ") == expected

@@ -53,9 +53,9 @@ def blocks(page, kind):
 def test_the_tone_is_that_of_the_coverage(count, of, tone):
     page = page_of([covered("inertia", count, of)])
     assert page.tone == tone
-    told = f"{100 * count / of:.0f}"
+    percent = f"{100 * count / of:.0f}"
     assert page.verdict.replace("\N{NO-BREAK SPACE}", " ") == (
-        f"Intervals of 95 % hold the truth of inertia in {told} %, of {of} runs with nothing hidden."
+        f"Intervals of 95 % hold the truth of inertia in {percent} %, of {of} runs with nothing hidden."
     )
 
 

@@ -118,7 +118,7 @@ def test_a_slide_stands_over_its_place_on_the_ruler(player):
     assert x == pytest.approx(np.interp(3.0, sorted(places), sorted(places.values())), abs=0.2)
 
 
-def test_in_a_hole_nothing_is_drawn_or_told(player):
+def test_in_a_hole_nothing_is_drawn_or_stated(player):
     page = player(hole=(0.5, 0.8))
     page.get_by_label("time", exact=True).fill("650")
     assert page.locator(".stage .unknown").count() == 2
@@ -157,8 +157,8 @@ def test_the_graphs_tell_the_instant_that_is_shown(player):
     page = player()
     for instant in ("500", "1400"):
         page.get_by_label("time", exact=True).fill(instant)
-        told = page.locator(".time .readout").all_inner_texts()
-        assert len(told) == 4
-        for one in told:
+        readouts = page.locator(".time .readout").all_inner_texts()
+        assert len(readouts) == 4
+        for one in readouts:
             (at,) = re.findall(r"at ([\d.]+) s", one)
             assert float(at) == pytest.approx(float(instant) * 1e-3, abs=2e-3)

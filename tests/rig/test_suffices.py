@@ -12,7 +12,7 @@ from bench.trace.inspect import inspect
 BARE = {"name": "axis", "kind": "rotary"}
 
 
-def test_a_bare_rig_is_told_all_that_is_missing_at_once():
+def test_all_that_a_bare_rig_lacks_is_named_at_once():
     with pytest.raises(InputError) as refused:
         require(Rig.of(BARE), "simulate")
     for word in ("drive", "simulation", "torque_constant", "peak_current", "bench simulate needs all"):
@@ -37,8 +37,8 @@ def test_rigs_are_listed_and_copied(tmp_path, capsys, monkeypatch):
 
 
 def test_an_effective_current_and_its_constant_are_converted():
-    told = {"torque_constant": "1.2 N*m/A", "peak_current": "5 A"}
-    peak, effective = (Rig.of({**BARE, "motor": {**told, "current": current}}) for current in ("peak", "effective"))
+    values = {"torque_constant": "1.2 N*m/A", "peak_current": "5 A"}
+    peak, effective = (Rig.of({**BARE, "motor": {**values, "current": current}}) for current in ("peak", "effective"))
     assert peak.motor.torque_constant == pytest.approx(2**0.5 * (effective.motor.torque_constant or 0.0))
     assert (effective.motor.peak_current or 0.0) == pytest.approx(2**0.5 * 5.0)
     stall = {"continuous_stall_torque": "2 N*m", "continuous_stall_current": "2 A", "peak_torque": "6 N*m"}

@@ -1,4 +1,4 @@
-"""Tolerances of a rig's values: read with the value, counted by intervals; constants of two motors are told."""
+"""Tolerances of a rig's values: read with the value, counted by intervals; constants of two motors are reported."""
 
 import copy
 import pickle
@@ -83,7 +83,7 @@ def test_datasheet_values_and_the_rotor_s_inertia_count_too():
 
 
 @pytest.mark.parametrize(
-    ("constant", "back_emf", "told"),
+    ("constant", "back_emf", "reported"),
     [
         ("0.8 N*m/A", "0.8 V*s/rad", False),
         ("0.8 N*m/A", "0.74 V*s/rad", False),
@@ -94,11 +94,11 @@ def test_datasheet_values_and_the_rotor_s_inertia_count_too():
         ("0.8 +/- 0.02 N*m/A", "0.74 +/- 0.07 V*s/rad", False),
     ],
 )
-def test_constants_of_two_motors_are_reported(constant, back_emf, told):
+def test_constants_of_two_motors_are_reported(constant, back_emf, reported):
     found = identify(recording(np.random.default_rng(2)), rig(torque_constant=constant, back_emf_constant=back_emf))
     check = next(check for check in found.checks if check.name == "motor_constants_agree")
-    assert check.status == ("warn" if told else "pass")
-    assert any("back-EMF constant" in warning for warning in warnings_of(found.checks)) == told
+    assert check.status == ("warn" if reported else "pass")
+    assert any("back-EMF constant" in warning for warning in warnings_of(found.checks)) == reported
 
 
 def test_intervals_reach_as_far_as_constants_disagree():

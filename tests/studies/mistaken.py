@@ -61,7 +61,7 @@ def tasks_of(folder, mistakes, random, place):
 
 
 def measured(count, pairs, seed, say=print):
-    """Rows of the study: names of the mistakes, wrong numbers, and whether each cause is told."""
+    """Rows of the study: names of the mistakes, wrong numbers, and whether each cause is named."""
     rows = []
     whole = course_report.task_section
     with tempfile.TemporaryDirectory() as place, pytest.MonkeyPatch.context() as patch:
@@ -82,9 +82,9 @@ def measured(count, pairs, seed, say=print):
             tasks = tasks_of(students[which][0], mistakes, random, Path(place) / str(number))
             wrong = set(wrong_numbers(tasks, students[which][1])) - sound[which]
             reasons = " ".join(task["reason"] for task in tasks if task["status"] == "not_done")
-            told = [MISTAKES[mistake] in reasons for mistake in mistakes]
-            rows.append(([mistake.__name__ for mistake in mistakes], sorted(wrong), told))
-            if wrong or not all(told):
+            named = [MISTAKES[mistake] in reasons for mistake in mistakes]
+            rows.append(([mistake.__name__ for mistake in mistakes], sorted(wrong), named))
+            if wrong or not all(named):
                 say(number, *rows[-1], reasons[:600])
     return rows
 
@@ -92,14 +92,14 @@ def measured(count, pairs, seed, say=print):
 def table(rows):
     """Markdown: of each mistake alone how many, how many with a wrong number, how many named; of pairs in all."""
     found = defaultdict(list)
-    for names, wrong, told in rows:
-        found[names[0] if len(names) == 1 else "two at random"].append((bool(wrong), all(told), any(told)))
+    for names, wrong, named in rows:
+        found[names[0] if len(names) == 1 else "two at random"].append((bool(wrong), all(named), any(named)))
     lines = ["| mistake | recordings | wrong number done | named | one of them named |", "|---|---|---|---|---|"]
     for name, results in sorted(found.items(), key=lambda item: (item[0] == "two at random", item[0])):
         wrong, every, one = (sum(column) for column in zip(*results, strict=True))
         last = one if name == "two at random" else ""
         lines.append(f"| {name.replace('_', ' ')} | {len(results)} | {wrong} | {every} | {last} |")
-    single = [(bool(wrong), all(told)) for names, wrong, told in rows if len(names) == 1]
+    single = [(bool(wrong), all(named)) for names, wrong, named in rows if len(names) == 1]
     lines.append(f"| **all single** | {len(single)} | {sum(w for w, _ in single)} | {sum(t for _, t in single)} | |")
     return "\n".join(lines) + "\n"
 

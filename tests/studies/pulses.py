@@ -30,46 +30,46 @@ FLOOR, FLOORS = 1.9e-2, 5.0
 BAND, LENGTH, TORQUE = (0.1, 2.0), (0.05, 0.1), (0.5, 0.75)
 #: Around a push the elbow moves one way for so long - s -, faster than a share of its speed's spread.
 CLEAR, MOVES = 0.05, 0.1
-#: How far off a push may be told: its edges - s -, its impulse as a share.
+#: How far off a push may be reported: its edges - s -, its impulse as a share.
 NEAR, ALIKE = 5e-3, 0.1
 
 
 @dataclass(frozen=True)
-class Told:
-    """What was said of a log: true torque and edges of its push - N*m, s -, the told ones; nan where there is none."""
+class ReportedPush:
+    """What was said of a log: true torque and edges of its push - N*m, s -, the reported ones; nan where none is."""
 
     true: tuple[float, float, float]
-    told: tuple[float, float, float]
+    reported: tuple[float, float, float]
     verdict: str
     floors: float
 
     @property
     def found(self) -> bool:
         """Whether a push was named."""
-        return bool(np.isfinite(self.told[0]))
+        return bool(np.isfinite(self.reported[0]))
 
     @property
     def short(self) -> bool:
         """Whether one was named that is no longer than twice the longest that is put in."""
-        return self.found and self.told[2] - self.told[1] < 2.0 * LENGTH[1]
+        return self.found and self.reported[2] - self.reported[1] < 2.0 * LENGTH[1]
 
     @property
     def size(self) -> float:
-        """Told torque over the true one, less 1."""
-        return self.told[0] / self.true[0] - 1.0
+        """Reported torque over the true one, less 1."""
+        return self.reported[0] / self.true[0] - 1.0
 
     @property
     def late(self) -> float:
-        """How far off the edge is that is told worse - s."""
-        return max(abs(self.told[k] - self.true[k]) for k in (1, 2))
+        """How far off the edge is that is reported worse - s."""
+        return max(abs(self.reported[k] - self.true[k]) for k in (1, 2))
 
     @property
     def right(self) -> bool:
-        """Whether size and time are told well enough."""
+        """Whether size and time are reported well enough."""
         return self.found and abs(self.size) <= ALIKE and self.late <= NEAR
 
 
-def told_of(number: int, pushed: bool, folder: Path, floors: float = FLOORS) -> Told:
+def reported_push(number: int, pushed: bool, folder: Path, floors: float = FLOORS) -> ReportedPush:
     """What `diagnose` says of a log."""
     rng = np.random.default_rng([number, 61])
     phase = float(rng.uniform(0.0, 2.0 * np.pi))
@@ -92,13 +92,13 @@ def told_of(number: int, pushed: bool, folder: Path, floors: float = FLOORS) -> 
     rig = joint_rig(None, robot)
     found = bench.diagnose(read_log(write_log(folder / "log.csv", columns), rig, robot, {}), rig)
     said = next((effect.values for effect in found.effects if effect.name == "load_torque_event"), None)
-    told = (np.nan, np.nan, np.nan) if said is None else (said["torque"], said["start"], said["end"])
+    reported = (np.nan, np.nan, np.nan) if said is None else (said["torque"], said["start"], said["end"])
     gap = found.torque.identify
     assert gap is not None
-    return Told(true, told, found.verdict, gap[1] / found.torque.noise_floor)
+    return ReportedPush(true, reported, found.verdict, gap[1] / found.torque.noise_floor)
 
 
-def table(pushed: list[Told], twins: list[Told], command: str) -> str:
+def table(pushed: list[ReportedPush], twins: list[ReportedPush], command: str) -> str:
     """The page."""
     found, right = (sum(getattr(one, what) for one in pushed) for what in ("found", "right"))
     sizes, late = ([getattr(one, what) for one in pushed if one.found] for what in ("size", "late"))
@@ -126,11 +126,11 @@ def main(
     out: Annotated[Path | None, typer.Option(help="Folder for pushes.md.")] = None,
 ) -> None:
     """Diagnose them all; print and write the table."""
-    pushed, twins = list[Told](), list[Told]()
+    pushed, twins = list[ReportedPush](), list[ReportedPush]()
     with tempfile.TemporaryDirectory() as folder:
         for number in range(logs):
-            pushed.append(told_of(number, True, Path(folder), floors))
-            twins.append(told_of(number, False, Path(folder), floors))
+            pushed.append(reported_push(number, True, Path(folder), floors))
+            twins.append(reported_push(number, False, Path(folder), floors))
             typer.echo(f"{number}: {pushed[-1]}\n    twin: {twins[-1]}")
     text = table(pushed, twins, f"python -m tests.studies.pulses --logs {logs} --floors {floors:g}")
     typer.echo(text)

@@ -88,10 +88,14 @@ def of_joint(found: dict, own: ur5e.Hidden) -> dict:
         "viscous_friction_coefficient": own.viscous,
         "coulomb_friction_torque": own.coulomb,
     }
-    told = found["parameters"]
-    off = {name: told[name]["value"] / value - 1.0 if name in told else np.nan for name, value in true.items()}
+    parameters = found["parameters"]
+    off = {
+        name: parameters[name]["value"] / value - 1.0 if name in parameters else np.nan for name, value in true.items()
+    }
     held = {
-        name: told[name]["ci95"][0] <= value <= told[name]["ci95"][1] for name, value in true.items() if name in told
+        name: parameters[name]["ci95"][0] <= value <= parameters[name]["ci95"][1]
+        for name, value in true.items()
+        if name in parameters
     }
     of = {"named": names, "hidden": [own.effect] if own.effect else [], "verdict": found["verdict"]}
     return of | {"off": off, "inside": held}

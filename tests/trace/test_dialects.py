@@ -242,17 +242,17 @@ def test_two_columns_of_one_name_are_asked_about(tmp_path):
 def test_two_names_of_one_signal_are_asked_about_where_they_differ(tmp_path, beside):
     """Whichever comes first in the file."""
     factor = np.pi / 30.0 if "rad" in beside else 1.0
-    for scale, told in ((1.0, None), (1.5, "velocity: found several columns")):
+    for scale, expected in ((1.0, None), (1.5, "velocity: found several columns")):
         second = [repr(float(row.split(",")[1]) * factor * scale) for row in lines()]
         for names, rows in (
             ((*NAMES, beside), [f"{row},{more}" for row, more in zip(lines(), second, strict=True)]),
             ((beside, *NAMES), [f"{more},{row}" for row, more in zip(lines(), second, strict=True)]),
         ):
             path = written(tmp_path / "run.csv", [",".join(names)], rows)
-            if told is None:
+            if expected is None:
                 assert np.std(read(path)["velocity"]) > 0.0
             else:
-                with pytest.raises(InputError, match=told):
+                with pytest.raises(InputError, match=expected):
                     read(path)
 
 

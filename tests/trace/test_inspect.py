@@ -35,10 +35,10 @@ def test_numbers(inspection):
 
 
 def test_json(inspection):
-    told = json.loads(to_json(inspection))
-    assert told["schema"] == "bench.inspect/1"
-    assert told["signals"][0]["resolution"] == 0.25
-    assert told["holes"] == [pytest.approx([0.099, 0.041])]
+    content = json.loads(to_json(inspection))
+    assert content["schema"] == "bench.inspect/1"
+    assert content["signals"][0]["resolution"] == 0.25
+    assert content["holes"] == [pytest.approx([0.099, 0.041])]
 
 
 def test_table(inspection, capsys):

@@ -50,7 +50,7 @@ def test_windows_that_stand_still_hide_their_noise():
 
 
 @pytest.mark.parametrize(("levels", "step"), [(25, 0.5), (26, 0.0)])
-def test_a_step_is_told_where_each_value_occurs_four_times_on_average(levels, step):
+def test_a_step_is_found_where_each_value_occurs_four_times_on_average(levels, step):
     values = 0.5 * (np.arange(100) % levels)
     assert resolution(values) == step
 

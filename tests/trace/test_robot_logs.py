@@ -137,10 +137,10 @@ def lerobot(folder, episodes=2, scale=1.0):
     """Episodes in a file each, with times from zero; all that the arm reports is one list of state, as floats."""
     words = {"position": "pos", "velocity": "vel", "torque": "torque"}
     names = [f"main_{joint}.{words[signal]}" for joint in JOINTS for signal in SIGNALS]
-    told = {"observation.state": names, "action": {"motors": names[::3]}}
+    columns = {"observation.state": names, "action": {"motors": names[::3]}}
     features = {
         name: {"dtype": "float32", "shape": [6 if isinstance(names, list) else 2], "names": names}
-        for name, names in told.items()
+        for name, names in columns.items()
     }
     features["observation.images.top"] = {"dtype": "video", "shape": [480, 640, 3], "names": ["height", "width", "rgb"]}
     (folder / "meta").mkdir(parents=True)

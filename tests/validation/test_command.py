@@ -30,8 +30,8 @@ def folder(tmp_path_factory):
 
 
 def test_a_command_of_each_kind_is_shown():
-    told = ["validate", "rigs", "validate", "validate", "simulate", "validate", "validate"]
-    assert [command[0] for command in COMMANDS] == told
+    expected = ["validate", "rigs", "validate", "validate", "simulate", "validate", "validate"]
+    assert [command[0] for command in COMMANDS] == expected
 
 
 def test_the_json_is_the_contracts(folder):
@@ -51,9 +51,9 @@ def test_files_of_a_run_agree_with_each_other(folder):
     runs = pq.read_table(home / "runs.parquet")
     assert runs.column("hidden").to_pylist() == ["unbalance", "cogging_torque", ""]
     assert csv.read_csv(home / "runs.csv").num_rows == runs.num_rows == 3
-    told = pq.read_table(home / "quantities.parquet").to_pylist()
+    quantities = pq.read_table(home / "quantities.parquet").to_pylist()
     asked = [each for each in found["coverage"] if each["group"] == "nulls" and each["by"] == "identify"]
-    mine = [row for row in told if row["by"] == "identify" and row["index"] % 3 == 2]
+    mine = [row for row in quantities if row["by"] == "identify" and row["index"] % 3 == 2]
     assert sum(each["told"] for each in asked) == len(mine) == 3
     assert set(found["naming"]["named"]) == {"unbalance", "cogging_torque"}
     written = {path.name for path in home.iterdir()}
@@ -61,7 +61,7 @@ def test_files_of_a_run_agree_with_each_other(folder):
     assert "This motion on this drive" in (home / "report.html").read_text(encoding="utf-8")
 
 
-def test_the_least_that_ones_own_recording_shows_is_told(folder):
+def test_the_least_that_ones_own_recording_shows_is_reported(folder):
     found = json.loads((folder / "least.json").read_text(encoding="utf-8"))
     assert found["schema"] == "bench.validate.into/1"
     assert found["recording"]["verdict"] == "nothing_missing"
@@ -75,20 +75,20 @@ def test_the_least_that_ones_own_recording_shows_is_told(folder):
         assert least["value"] == min(named)
 
 
-def test_what_was_put_in_is_told_with_the_truth(folder):
+def test_what_was_put_in_is_reported_with_the_truth(folder):
     found = json.loads((folder / "two.json").read_text(encoding="utf-8"))
     assert "least_named" not in found
     assert [one["strength"] for one in found["fates"]] == [2.0, 5.0]
     for case in found["cases"]:
-        told = case["quantities"]["torque"]
+        torque = case["quantities"]["torque"]
         assert (case["fate"], case["names"]) == ("right", ["torque_offset"])
-        assert told["found"]["ci95"][0] < told["true"] < told["found"]["ci95"][1]
-        assert abs(told["true"]) == pytest.approx(case["strength"] * found["recording"]["left"]["value"], rel=0.1)
+        assert torque["found"]["ci95"][0] < torque["true"] < torque["found"]["ci95"][1]
+        assert abs(torque["true"]) == pytest.approx(case["strength"] * found["recording"]["left"]["value"], rel=0.1)
     assert {"report.html", "injections.json"} <= {path.name for path in (folder / "into").iterdir()}
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "expected"),
     [
         (["--into", "run.csv"], "--into: found without --rig"),
         (["--effect", "backlash"], "found without --into"),
@@ -99,7 +99,7 @@ def test_what_was_put_in_is_told_with_the_truth(folder):
         (["--rig", "my.toml", "--profile", "monday.csv"], "allowed: the file of a recording"),
     ],
 )
-def test_bad_input_is_one_line(folder, monkeypatch, options, told):
+def test_bad_input_is_one_line(folder, monkeypatch, options, expected):
     monkeypatch.chdir(folder)
-    with pytest.raises(Exception, match=told):
+    with pytest.raises(Exception, match=expected):
         app(["validate", *options], standalone_mode=False)

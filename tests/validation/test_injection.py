@@ -236,7 +236,7 @@ def test_none_is_drawn_that_the_axis_cannot_have():
 
 
 @pytest.mark.parametrize(
-    ("effect", "told"),
+    ("effect", "expected"),
     [
         (VoltageLimit(12.0), "voltage_limit: acts by driven_current"),
         (LoadDependentFriction(1.2), "so strong"),
@@ -244,7 +244,7 @@ def test_none_is_drawn_that_the_axis_cannot_have():
         (DirectionalLoadFriction(0.2, 2.0), "load torque: found none"),
     ],
 )
-def test_what_cannot_be_put_into_a_recording_is_refused_in_one_line(effect, told):
+def test_what_cannot_be_put_into_a_recording_is_refused_in_one_line(effect, expected):
     host = host_of(20.0 * TIME, np.full(TIME.size, 0.4))
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=expected):
         injected(host, effect)

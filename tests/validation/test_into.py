@@ -54,8 +54,8 @@ def test_what_becomes_of_an_effect(verdict, names, fate, new):
 
 
 def test_a_name_that_no_such_recording_tells_from_it_is_right():
-    told = found("explained", "torque_ripple", ambiguous=("cogging_torque",))
-    assert judged(CASE, OWN, CoggingTorque(0.05, 8.0), told).fate == "right"
+    diagnosis = found("explained", "torque_ripple", ambiguous=("cogging_torque",))
+    assert judged(CASE, OWN, CoggingTorque(0.05, 8.0), diagnosis).fate == "right"
 
 
 def test_how_likely_the_effect_is_and_others_that_are_new():
@@ -117,7 +117,7 @@ def test_a_recording_tells_its_axis_and_what_it_leaves(recording):
     assert 0.0 < itself.left < 4e-3  # what its filter leaves of the noise
 
 
-def test_effects_are_put_in_named_and_told_beside_the_truth(recording):
+def test_effects_are_put_in_named_and_reported_beside_the_truth(recording):
     done = []
     result = inject(recording, RIG, ["cogging_torque", "velocity_filter_lag"], [20.0], 1, 1, done.append)
     (case,) = result.cases

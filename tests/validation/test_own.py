@@ -35,8 +35,8 @@ def test_the_motion_is_the_reference_where_there_is_one():
     made = recording(np.random.default_rng(2), duration=2.0)
     reference = np.sin(made.time)
     units = {"velocity": "rad/s", "current": "A", "velocity_reference": "rad/s"}
-    told = Trace(made.time, {**made.signals, "velocity_reference": reference}, units, "told")
-    assert motion_of(told).top == pytest.approx(np.abs(reference).max())
+    with_reference = Trace(made.time, {**made.signals, "velocity_reference": reference}, units, "with_reference")
+    assert motion_of(with_reference).top == pytest.approx(np.abs(reference).max())
     assert motion_of(made).top == pytest.approx(np.abs(made["velocity"]).max(), rel=0.05)
 
 
@@ -51,16 +51,16 @@ def test_what_the_rig_does_not_say_the_recording_does():
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "expected"),
     [
         ({"drive": None}, "drive"),
         ({"motor": {"torque_constant": "0.8 N*m/A"}}, "peak_current"),
         ({"load": {"eccentric_mass": "0.1 kg", "eccentric_radius": "10 mm"}}, "eccentric_mass"),
     ],
 )
-def test_what_a_rig_lacks_is_reported(change, told):
+def test_what_a_rig_lacks_is_reported(change, expected):
     table = {key: value for key, value in (TABLE | change).items() if value is not None}
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=expected):
         own_axis(Rig.of(table), "monday.csv", recording(np.random.default_rng(1), duration=10.0))
 
 

@@ -90,8 +90,8 @@ BENCHMARKS: dict[str, tuple[str, Callable[[], list[Table]]]] = {
 def section(tables: Iterable[Table]) -> str:
     """What stands under a heading: when and with what, and the tables."""
     packages = ", ".join(f"{name} {version(name)}" for name in ("mujoco", "numpy", "scipy", "pyarrow"))
-    told = f"{date.today()}, Python {platform.python_version()}, {packages}, {os.cpu_count()} cores."
-    return "\n\n".join([told, *(table.markdown for table in tables)])
+    origin = f"{date.today()}, Python {platform.python_version()}, {packages}, {os.cpu_count()} cores."
+    return "\n\n".join([origin, *(table.markdown for table in tables)])
 
 
 def sections(page: str) -> dict[str, str]:

@@ -98,7 +98,7 @@ def by_sysid(recorded: Recorded, step: float) -> Answer:
     )
     residual = sysid.build_residual_fn(models_sequences=[sequences], build_model=built)
     began = time.perf_counter()
-    # it prints each of its iterations, to where it is told
+    # it prints each of its iterations, to where it is directed
     found, result = sysid.optimize(parameters(start), residual, verbose=False, x_scale="jac", output=io.StringIO())
     seconds = time.perf_counter() - began
     values, true = found.as_vector(), truth(axis)

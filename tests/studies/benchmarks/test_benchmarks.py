@@ -112,9 +112,9 @@ def test_the_page_holds_what_was_measured_and_keeps_what_was_not(one_row, tmp_pa
 
 
 def test_an_unknown_name_is_reported(one_row):
-    told = run("third")
-    assert told.exit_code == 2
-    assert "allowed: first, second" in " ".join(told.output.split())
+    done = run("third")
+    assert done.exit_code == 2
+    assert "allowed: first, second" in " ".join(done.output.split())
 
 
 def test_the_committed_page_is_of_these_benchmarks():

@@ -129,9 +129,9 @@ def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, N
     for each in thresholds():
         others = {factor: tally(key(each, factor)) for factor in each.factors}
         idle = " (changes nothing here)" if all(other == as_is for other in others.values()) else ""
-        told = " | ".join(str(others.get(factor, "")) for factor in FACTORS)
+        cells = " | ".join(str(others.get(factor, "")) for factor in FACTORS)
         owner = each.owner.rpartition(".")[2].partition(":")[0]
-        rows.append(f"| {owner}.{each.name} | {each.value:g} | {each.decides}{idle} | {as_is} | {told} |")
+        rows.append(f"| {owner}.{each.name} | {each.value:g} | {each.decides}{idle} | {as_is} | {cells} |")
     off = [f"| {rule} | {as_is} | {tally(rule)} |" for rule in switched_off()]
     lines = [
         "# Thresholds",
@@ -174,11 +174,11 @@ def main(
             progress.advance(bar)
     truths = [truth_of(folder, case.name) for case in drawn]
     command = f"python -m tests.studies.blind.thresholds --one-in {one_in} --seed {seed} --duration {duration:g}"
-    told = markdown(truths, [tasks[case.name].result() for case in drawn], command)
-    typer.echo(told)
+    text = markdown(truths, [tasks[case.name].result() for case in drawn], command)
+    typer.echo(text)
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
-        (out / "thresholds.md").write_text(told, encoding="utf-8")
+        (out / "thresholds.md").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ from tests.studies.blind.score import same
 from tests.studies.certainty.features import Hypothesis, Known, folders, kept, known
 
 WEIGHTS = ("left", "over", "number", "outside", "none")
-#: Of the squares of weights in the loss: they stay finite where cases are told apart without an error.
+#: Of the squares of weights in the loss: they stay finite where cases are separated without an error.
 PENALTY = 2e-4
 #: A right answer is never taken for less likely.
 FLOOR = 1e-5
@@ -53,8 +53,8 @@ class Table:
         def column(values: Iterable[Sequence[float]]) -> Array:
             return np.array([np.pad(np.asarray(row, dtype=float), (0, most - len(row))) for row in values])
 
-        told = [field.name for field in fields(Hypothesis) if field.name != "names"]
-        self.of = {name: column([[getattr(h, name) for h in c.hypotheses] for c in cases]) for name in told}
+        names = [field.name for field in fields(Hypothesis) if field.name != "names"]
+        self.of = {name: column([[getattr(h, name) for h in c.hypotheses] for c in cases]) for name in names}
         self.there = column([[1.0] * len(case.hypotheses) for case in cases]) > 0.0
         self.right = column([[case.right(h) for h in case.hypotheses] for case in cases])
         self.lacking = np.array([case.truth is None for case in cases])
@@ -162,8 +162,8 @@ def markdown(cases: Sequence[Known], found: Mapping[str, float], command: str) -
     for name in WEIGHTS:
         without = table.loss(fitted(table, dict(found) | {name: 0.0}, frozenset({name})))
         others = (table.loss(decided | {name: factor * decided[name]}) for factor in (0.5, 2.0))
-        told = " | ".join(f"{value:.4f}" for value in (without, *others))
-        lines.append(f"| {name} | {decided[name]:g} | {found[name]:.2f} | {told} |")
+        figures = " | ".join(f"{value:.4f}" for value in (without, *others))
+        lines.append(f"| {name} | {decided[name]:g} | {found[name]:.2f} | {figures} |")
     lines += ["", f"Mean log loss {table.loss(decided):.4f} by the policy, {table.loss(found):.4f} as fitted.", ""]
     lines += ["| group | cases | reach it | exactly right | a wrong name | none > .5 | mean P of the right answer |"]
     lines += ["|---|---|---|---|---|---|---|", *by_group(cases, shares, every.of_right(shares))]
@@ -197,16 +197,16 @@ def main(
     start = {name: getattr(POLICY, name) for name in WEIGHTS}
     weights = fitted(Table([case for case in cases if case.reachable]), start)
     command = f"python -m tests.studies.certainty {' '.join(home.name for home in sets)} --features {features.name}"
-    told = markdown(cases, weights, command)
-    typer.echo(told)
+    text = markdown(cases, weights, command)
+    typer.echo(text)
     if out is not None:
-        write_text(out / "certainty.md", told)
+        write_text(out / "certainty.md", text)
 
 
 def has_truth(case: Path) -> bool:
     """Whether something of the catalogue is hidden in a case, and nothing else beside it that is not known."""
-    told = json.loads((case / "truth.json").read_text(encoding="utf-8"))
-    return bool(told["effects"]) and told["group"] not in ("outside", "injected")
+    truth = json.loads((case / "truth.json").read_text(encoding="utf-8"))
+    return bool(truth["effects"]) and truth["group"] not in ("outside", "injected")
 
 
 if __name__ == "__main__":

@@ -73,8 +73,8 @@ def known(folder: Path, withheld: bool) -> Known | None:
         folder: with run1, rig.toml and truth.json.
         withheld: whether what is hidden is taken out of the catalogue.
     """
-    told = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
-    excluded = frozenset().union(*(twins(name) for name in told["effects"])) if withheld else frozenset()
+    of_case = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
+    excluded = frozenset().union(*(twins(name) for name in of_case["effects"])) if withheld else frozenset()
     rig = load_rig(folder / "rig.toml")
     try:
         recordings = Recordings.of(read(folder / "run1.csv.gz", rig.trace), rig, None)
@@ -87,24 +87,24 @@ def known(folder: Path, withheld: bool) -> Known | None:
         for one in scored([*neighbourhood(searched, excluded, POLICY)], None, POLICY)
     ]
     detected = {effect.name for effect in recordings.detected}
-    truth = tuple(name for name in told["effects"] if name not in detected and name != "voltage_limit")
-    lacking = withheld or told["group"] == "outside"
-    group = f"{told['group']}, truth withheld" if withheld else told["group"]
+    truth = tuple(name for name in of_case["effects"] if name not in detected and name != "voltage_limit")
+    lacking = withheld or of_case["group"] == "outside"
+    group = f"{of_case['group']}, truth withheld" if withheld else of_case["group"]
     # what is detected is not looked for in the balance, and is right where it is hidden
-    own = (*told.get("own", ()), *detected.intersection(told["effects"]))
+    own = (*of_case.get("own", ()), *detected.intersection(of_case["effects"]))
     return Known(folder.name, group, None if lacking else truth, own, (*sorted(detected),), tuple(hypotheses))
 
 
 def kept(path: Path) -> list[Known]:
     """Cases of a file."""
 
-    def case(told: dict[str, Any]) -> Known:
-        every = tuple(Hypothesis(**each | {"names": tuple(each["names"])}) for each in told.pop("hypotheses"))
-        truth, own, detected = told.pop("truth"), tuple(told.pop("own")), tuple(told.pop("detected"))
+    def case(content: dict[str, Any]) -> Known:
+        every = tuple(Hypothesis(**each | {"names": tuple(each["names"])}) for each in content.pop("hypotheses"))
+        truth, own, detected = content.pop("truth"), tuple(content.pop("own")), tuple(content.pop("detected"))
         truth = None if truth is None else tuple(truth)
-        return Known(**told, truth=truth, own=own, detected=detected, hypotheses=every)
+        return Known(**content, truth=truth, own=own, detected=detected, hypotheses=every)
 
-    return [case(told) for told in json.loads(path.read_text(encoding="utf-8"))]
+    return [case(content) for content in json.loads(path.read_text(encoding="utf-8"))]
 
 
 def folders(sets: Sequence[Path]) -> list[Path]:

@@ -71,9 +71,9 @@ def _faulty(name: str, above: Path) -> list[str]:
     for fault, tried in FAULTS.items():
         folder = above / fault.replace(" ", "-")
         folder.mkdir()
-        told = tried(COMMANDS[name], folder)
-        print(f"{name}: {fault}: {told.runs} runs, {len(told.faults)} faults {told.about}", flush=True)
-        found += [f"{fault}: {one}" for one in told.faults]
+        outcome = tried(COMMANDS[name], folder)
+        print(f"{name}: {fault}: {outcome.runs} runs, {len(outcome.faults)} faults {outcome.about}", flush=True)
+        found += [f"{fault}: {one}" for one in outcome.faults]
     return found
 
 

@@ -96,11 +96,11 @@ class Trial:
             process.wait()
         process.send_signal(self.number)
         status = process.wait()
-        told = self.number != signal.SIGKILL and status == 128 + self.number
-        hit = told or (status < 0 and moment == "step") or status == -self.number
+        reported = self.number != signal.SIGKILL and status == 128 + self.number
+        hit = reported or (status < 0 and moment == "step") or status == -self.number
         if status and not hit:
             self.tally.faults.append(f"{moment} {share:.3f}: ended with {status}")
-        if told and (strays := left(self.out)):
+        if reported and (strays := left(self.out)):
             self.tally.faults.append(f"{moment} {share:.3f}: left {sorted(strays)}")
         for one in lingering(process.pid):
             self.tally.faults.append(f"{moment} {share:.3f}: process {one.name()} lives on")

@@ -37,16 +37,16 @@ def test_a_kill_just_before_the_output_takes_its_name_leaves_it_under_way_and_th
     assert trial.tally.faults == []
 
 
-def test_a_full_disk_is_told_in_one_line_and_leaves_what_was_there(folder):
-    told = full_disk(COMMANDS["export"], folder, shares=(0.0, 0.6))
-    assert told.faults == []
-    assert told.runs >= 2  # and a third on a small file system, where root may mount one
+def test_a_full_disk_is_reported_in_one_line_and_leaves_what_was_there(folder):
+    outcome = full_disk(COMMANDS["export"], folder, shares=(0.0, 0.6))
+    assert outcome.faults == []
+    assert outcome.runs >= 2  # and a third on a small file system, where root may mount one
 
 
 @pytest.mark.skipif(bound_by_permissions() is None, reason="root, and no setpriv")
-def test_a_folder_closed_by_permissions_is_told_in_one_line(folder):
-    told = read_only(COMMANDS["export"], folder)
-    assert (told.runs, told.faults) == (1, [])
+def test_a_folder_closed_by_permissions_is_reported_in_one_line(folder):
+    outcome = read_only(COMMANDS["export"], folder)
+    assert (outcome.runs, outcome.faults) == (1, [])
 
 
 def test_the_page_has_commands_that_there_are():
@@ -79,7 +79,7 @@ def test_of_two_runs_with_one_folder_one_wins_whole(folder, name):
         ("x.csv", b"1,2\n"),
     ],
 )
-def test_half_a_file_is_told_from_a_whole_one(tmp_path, name, good):
+def test_half_a_file_is_distinguished_from_a_whole_one(tmp_path, name, good):
     path = tmp_path / name
     for content, is_whole in ((good, True), (good[:-1], False), (b"", False)):
         path.write_bytes(content)

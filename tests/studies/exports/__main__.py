@@ -17,7 +17,7 @@ def main(folder: Annotated[Path, typer.Argument(help="Folder with truth.json.")]
     for name, truth in truths(folder).items():
         outcome = score(folder / name, truth)
         count[outcome.verdict] += 1
-        typer.echo(f"{outcome.verdict:8} {name:24} {outcome.told}")
+        typer.echo(f"{outcome.verdict:8} {name:24} {outcome.detail}")
     typer.echo(f"{sum(count.values())} recordings: " + ", ".join(f"{n} {verdict}" for verdict, n in count.items()))
 
 

@@ -29,11 +29,11 @@ class Outcome:
     Attributes:
         verdict: `right` as its truth expects; `refused` where an answer is expected; `wrong` otherwise: a number beyond
             its limits, a number where a refusal is expected, or a refusal that does not say what it asks.
-        told: the numbers or the message.
+        detail: the numbers or the message.
     """
 
     verdict: str
-    told: str
+    detail: str
 
 
 def truths(folder: Path = EXPORTS) -> dict[str, dict[str, Any]]:
@@ -54,10 +54,10 @@ def score(folder: Path, truth: dict[str, Any]) -> Outcome:
     seen, complaint = _run("inspect", str(file))
     if status == 0:
         errors = {letter: _error(found["parameters"], letter, truth[letter]) for letter in LIMITS}
-        told = ", ".join(f"{letter} {error:+.2%}" for letter, error in errors.items())
+        detail = ", ".join(f"{letter} {error:+.2%}" for letter, error in errors.items())
         if any(not abs(error) <= LIMITS[letter][2] for letter, error in errors.items()):
-            return Outcome("wrong", told)
-        return Outcome("right", told) if seen == 0 else Outcome("refused", f"inspect: {complaint}")
+            return Outcome("wrong", detail)
+        return Outcome("right", detail) if seen == 0 else Outcome("refused", f"inspect: {complaint}")
     return Outcome("refused" if status in (1, 2) else "wrong", f"{status}: {message}")
 
 

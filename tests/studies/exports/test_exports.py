@@ -10,4 +10,4 @@ from tests.studies.exports.score import EXPORTS, score, truths
 @pytest.mark.parametrize("name", truths())
 def test_an_export_is_answered_or_refused_as_expected(name):
     outcome = score(EXPORTS / name, truths()[name])
-    assert outcome.verdict == "right", outcome.told
+    assert outcome.verdict == "right", outcome.detail

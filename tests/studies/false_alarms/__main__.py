@@ -99,7 +99,7 @@ def main(
     counts = f"--axes {axes} --several {several} --changed {changed} --named {named} --seed {seed}"
     parts: dict[str, Answers] = {}
 
-    def told() -> str:
+    def table() -> str:
         text = markdown(parts, f"python -m tests.studies.false_alarms {counts}")
         if out is not None:
             out.mkdir(parents=True, exist_ok=True)
@@ -109,14 +109,14 @@ def main(
     for names, number, how in ((False, changed, "without names"), (True, named, "with names")):
         found = changes(drawn(number, 100 * seed + 50 + names), seed, names)
         parts |= {f"{name}, {how}": answers for name, answers in found.items()}
-        told()
+        table()
     for place, (name, spread) in enumerate(SPREADS.items()):
         for count, number in ((1, axes), (SEVERAL, several)):
             drawn_axes = drawn(-(-number // len(SPREADS)), 100 * seed + 10 * place + count)
             what = f"unchanged, spread {name}, baseline of {count} recording{'s' * (count > 1)}"
             parts[what] = unchanged(drawn_axes, seed, spread, count)
-            told()
-    typer.echo(told())
+            table()
+    typer.echo(table())
 
 
 if __name__ == "__main__":

@@ -91,7 +91,7 @@ def main(
     )
     lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     command = f"python -m tests.studies.false_alarms.motion --axes {axes} --seed {seed}"
-    told: Counter[str] = Counter()
+    called: Counter[str] = Counter()
     for appears, what in SETS:
         for by in DIFFER:
             found: Counter[str] = Counter()
@@ -103,9 +103,9 @@ def main(
             cells = [what, f"{by:.0%}", answered + counts[0], *counts, share(found["changed"], answered), *rises]
             lines.append(f"| {' | '.join(map(str, cells))} |")
             typer.echo(lines[-1])
-            told.update({name: count for name, count in found.items() if name.startswith("in ")})
+            called.update({name: count for name, count in found.items() if name.startswith("in ")})
             text = ["# Faults and motions that differ", "", f"`{command}`", "", NOTE, "", *lines, ""]
-            text += [f"Unchanged axes are called changed {name}: {count}." for name, count in told.most_common()]
+            text += [f"Unchanged axes are called changed {name}: {count}." for name, count in called.most_common()]
             if out is not None:
                 write_text(out / "motion.md", "\n".join(text).rstrip() + "\n")
 

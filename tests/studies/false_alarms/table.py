@@ -21,8 +21,8 @@ def markdown(parts: Mapping[str, Answers], command: str) -> str:
         *(_row(name, answers) for name, answers in parts.items()),
     ]
     alarms = [f"- {name}: {_alarms(found)}" for name, found in parts.items() if _no_change(name) and found.alarms]
-    told = ["", "What unchanged axes were called changed in:", "", *alarms] if alarms else []
-    return "\n".join(["# What `bench check` answers", "", f"`{command}`", "", NOTE, "", *rows, *told, ""])
+    section = ["", "What unchanged axes were called changed in:", "", *alarms] if alarms else []
+    return "\n".join(["# What `bench check` answers", "", f"`{command}`", "", NOTE, "", *rows, *section, ""])
 
 
 def _no_change(name: str) -> bool:
@@ -37,8 +37,8 @@ def _row(name: str, answers: Answers) -> str:
     results, (low, high) = answers.results, answers.bounds("changed")
     found, allowed, least, most = answers.detected()
     share = results["changed"] / max(answers.answered, 1)
-    told = f"{found / allowed:.1%} ({least:.1%} to {most:.1%})" if allowed else "-"
+    detected = f"{found / allowed:.1%} ({least:.1%} to {most:.1%})" if allowed else "-"
     counts = [results[key] for key in ("refused", "same", "undecided", "changed")]
     cells = [name, sum(results.values()), *counts, f"{share:.1%} ({low:.1%} to {high:.1%})"]
-    cells += [allowed or "-", found if allowed else "-", told]
+    cells += [allowed or "-", found if allowed else "-", detected]
     return f"| {' | '.join(map(str, cells))} |"

@@ -89,10 +89,10 @@ def _endured(folder: Path, recordings: int, deadline: float, hostile: float) -> 
     called = _called_changed(folder / "whole")
     named = sum(axis in CHANGED for axis in called)
     risen = sum(axis < recordings // EACH for axis in CHANGED)
-    told = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()))
+    counts = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()))
     distinct = len({row["result"] for row in rows} - {None})  # empty files are one, what cannot be begun is none
     return [
-        _row(f"{recordings} recordings, {len(wrong)} of them damaged, hanging or deadly", told),
+        _row(f"{recordings} recordings, {len(wrong)} of them damaged, hanging or deadly", counts),
         _row("sound ones done", f"{sum(row['status'] == 'done' for row in sound)} of {len(sound)}"),
         _row(
             "rows without a result that give no reason",
@@ -155,8 +155,8 @@ def _killed_half_way(folder: Path, manifest: Path, deadline: float, recordings: 
 
 def _reasons(rows: list[dict]) -> list[str]:
     """Each reason with how often it was given."""
-    told = Counter(row["reason"] for row in rows if row["reason"])
-    return [f"{count}x {reason[:70].replace('|', '/')}" for reason, count in told.most_common()]
+    reasons = Counter(row["reason"] for row in rows if row["reason"])
+    return [f"{count}x {reason[:70].replace('|', '/')}" for reason, count in reasons.most_common()]
 
 
 def _called_changed(out: Path) -> list[int]:

@@ -17,7 +17,7 @@ try:
     import atheris
 
     instrumented = atheris.instrument_imports(include=["bench", "pint", "tomllib"])
-except ModuleNotFoundError:  # the options are told without it
+except ModuleNotFoundError:  # the options are listed without it
     atheris, instrumented = None, nullcontext()
 
 with instrumented:

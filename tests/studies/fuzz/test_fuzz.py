@@ -45,21 +45,21 @@ def test_a_tree_is_changed_and_the_good_one_stays(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("fault", "told"),
+    ("fault", "expected"),
     [
         ("if b'1' not in data: {}['x']", "KeyError: 'x'"),
         ("while b'1' not in data: pass", "Timeout (0:00:02)!"),
         ("if b'1' not in data: bytes(1 << 32)", "MemoryError"),
     ],
 )
-def test_faults_are_found_and_their_input_lies_there(tmp_path, fault, told):
+def test_faults_are_found_and_their_input_lies_there(tmp_path, fault, expected):
     (tmp_path / "faulty.py").write_text(
         "from tests.studies.fuzz.plain import fuzz\n"
         f"def target(data):\n    {fault}\nfuzz(target, [b'1 2'], 99, deadline=2)\n"
     )
     done = ran(tmp_path, "faulty.py")
     assert done.returncode != 0
-    assert told in done.stderr and "in target" in done.stderr
+    assert expected in done.stderr and "in target" in done.stderr
     assert b"1" not in (tmp_path / "input").read_bytes()
 
 

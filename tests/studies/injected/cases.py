@@ -105,9 +105,9 @@ class Row:
         """Of what the bench says."""
         if found is None:
             return cls(case, UNABLE)
-        told = {one.quantity: (one.true, one.parameter.value, *one.parameter.ci95) for one in found.scored}
+        quantities = {one.quantity: (one.true, one.parameter.value, *one.parameter.ci95) for one in found.scored}
         beliefs = dict(found.probabilities)
-        answer = found.names, found.verdict, found.reason, beliefs, found.seconds, told
+        answer = found.names, found.verdict, found.reason, beliefs, found.seconds, quantities
         return cls(case, found.fate, *answer, (*own.names, *own.hidden))
 
     @property
@@ -118,11 +118,11 @@ class Row:
     @property
     def line(self) -> str:
         """Of a table."""
-        told = "; ".join(
+        values = "; ".join(
             f"{key} {v:.4g} ({a:.4g} to {b:.4g}), true {t:.4g}" for key, (t, v, a, b) in self.quantities.items()
         )
         case, said = self.case, ", ".join(self.names)
-        what = told or self.reason.partition(";")[0]
+        what = values or self.reason.partition(";")[0]
         cells = (case.source, case.effect, f"{case.strength:g}", self.fate, said, self.verdict, what)
         return f"| {' | '.join(cells)} |"
 
@@ -153,12 +153,14 @@ def kept(path: Path) -> Iterator[Row]:
     """The rows of a file; a last one that was cut off is not there, nor what failed, which is tried again."""
     for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
         try:
-            told = json.loads(line)
+            content = json.loads(line)
         except json.JSONDecodeError:
             continue
-        quantities = {key: tuple(values) for key, values in told.pop("quantities").items()}
-        names, hidden = tuple(told.pop("names")), tuple(told.pop("hidden"))
-        row = Row(**told | {"case": Case(**told["case"]), "names": names, "quantities": quantities, "hidden": hidden})
+        quantities = {key: tuple(values) for key, values in content.pop("quantities").items()}
+        names, hidden = tuple(content.pop("names")), tuple(content.pop("hidden"))
+        row = Row(
+            **content | {"case": Case(**content["case"]), "names": names, "quantities": quantities, "hidden": hidden}
+        )
         if row.fate != FAILED:
             yield row
 

@@ -13,7 +13,7 @@ from tests.studies.blind.score import same, twins
 from tests.studies.injected.cases import FAILED, UNABLE, Row
 from tests.studies.injected.sources import Source
 
-#: Edges of the probabilities that are told apart.
+#: Edges of the probabilities that are distinguished.
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
 
 
@@ -85,14 +85,14 @@ def pairs(rows: Iterable[Row]) -> list[tuple[float, bool]]:
     return [(p, twins(name) in true) for row, true in there for name, p in row.probabilities.items() if name != NONE]
 
 
-def calibration_error(told: Sequence[tuple[float, bool]]) -> float:
+def calibration_error(stated: Sequence[tuple[float, bool]]) -> float:
     """Mean distance between probability and share that is true, over bins by how many are in them."""
-    return sum(len(those) * abs(_mean(those, 0) - _mean(those, 1)) for those in _binned(told)) / max(len(told), 1)
+    return sum(len(those) * abs(_mean(those, 0) - _mean(those, 1)) for those in _binned(stated)) / max(len(stated), 1)
 
 
-def _binned(told: Sequence[tuple[float, bool]]) -> list[list[tuple[float, bool]]]:
-    place = np.searchsorted(BINS, [p for p, _ in told], side="right").clip(max=len(BINS) - 1)
-    return [[one for one, at in zip(told, place, strict=True) if at == each] for each in range(1, len(BINS))]
+def _binned(stated: Sequence[tuple[float, bool]]) -> list[list[tuple[float, bool]]]:
+    place = np.searchsorted(BINS, [p for p, _ in stated], side="right").clip(max=len(BINS) - 1)
+    return [[one for one, at in zip(stated, place, strict=True) if at == each] for each in range(1, len(BINS))]
 
 
 def _mean(those: Sequence[tuple[float, bool]], column: int) -> float:

@@ -53,7 +53,7 @@ class Case:
         return self.kind.strengths[self.level]
 
     @property
-    def told_strength(self) -> str:
+    def strength_label(self) -> str:
         """The same for a table."""
         return label(self.kind, self.strength)
 

@@ -49,7 +49,7 @@ class Nuisance:
     inertia_error: ClassVar[float] = INERTIA_ERROR
 
     def motion(self, axis: Axis, strength, rng: np.random.Generator) -> Motion:
-        """What the axis is told to do."""
+        """What the axis is commanded to do."""
         return random_motion(axis, rng, DURATION)
 
     def exact(self, fine: Signals, strength, axis: Axis, rng: np.random.Generator) -> Signals:
@@ -72,7 +72,7 @@ class Nuisance:
         """The rig file's text."""
         return text
 
-    def told(self, answer: Answer) -> bool:
+    def reported(self, answer: Answer) -> bool:
         """Whether an answer says that J is off for what the rig got wrong, without refusing."""
         return False
 

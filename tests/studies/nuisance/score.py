@@ -82,7 +82,7 @@ def _believed(nuisance: Nuisance, hidden: Sequence[str], answer: Answer) -> list
 
 def inertia_off(nuisance: Nuisance, true: float, answer: Answer) -> str:
     """What is wrong with J, empty if nothing or if a check failed."""
-    if answer.refused or answer.inertia is None or nuisance.told(answer):
+    if answer.refused or answer.inertia is None or nuisance.reported(answer):
         return ""
     value, low, high = answer.inertia
     error, half_width = abs(value - true), 0.5 * (high - low)

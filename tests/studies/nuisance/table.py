@@ -68,7 +68,7 @@ def by_nuisance(scores: Sequence[Score]) -> str:
     """Judgements by nuisance and strength, in the order drawn."""
     groups: dict[tuple[str, str], list[Score]] = {}
     for score in scores:
-        groups.setdefault((score.case.nuisance, score.case.told_strength), []).append(score)
+        groups.setdefault((score.case.nuisance, score.case.strength_label), []).append(score)
     rows = ["| nuisance | strength | right | neither | wrong |", "|---|---|---|---|---|"]
     for (nuisance, strength), those in groups.items():
         count = Counter(score.judgement for score in those)
@@ -83,7 +83,7 @@ def not_right(scores: Sequence[Score]) -> str:
     for score in bad:
         case, said = score.case, score.diagnosed
         why = "; ".join(score.reasons)
-        cells = (case.name, case.told_strength, case.hidden, score.judgement, why, said.verdict, ", ".join(said.named))
+        cells = (case.name, case.strength_label, case.hidden, score.judgement, why, said.verdict, ", ".join(said.named))
         rows.append("| " + " | ".join(cells) + " |")
     return "## Not right\n\n" + ("\n".join(rows) if bad else "None.")
 
@@ -97,7 +97,7 @@ def cases_csv(scores: Sequence[Score]) -> str:
         case, identified, diagnosed = score.case, score.identified, score.diagnosed
         writer.writerow(
             (
-                *(case.name, case.nuisance, case.told_strength, case.hidden, int(case.references)),
+                *(case.name, case.nuisance, case.strength_label, case.hidden, int(case.references)),
                 *(score.judgement, "; ".join(score.reasons), identified.status, _error(score, identified)),
                 *(diagnosed.status, diagnosed.verdict, "+".join(diagnosed.named), _error(score, diagnosed)),
                 *(_half_widths(score), f"{identified.seconds + diagnosed.seconds:.1f}"),

@@ -161,12 +161,12 @@ def test_a_fault_of_the_measurement_may_be_named_as_one():
     assert judged(single, answer(single), answer(single, named=["current_filter_lag"])).judgement == NEITHER
 
 
-def test_a_wrong_torque_constant_may_be_told_instead():
+def test_a_wrong_torque_constant_may_be_reported_instead():
     null = case("torque-constant-wrong")
     off = answer(null, error=-0.2)
     assert judged(null, off, off).judgement == WRONG
-    told = answer(null, error=-0.2, complaints=("torque_constant 0.8 against back_emf_constant 1",))
-    assert judged(null, told, told).judgement == RIGHT
+    complaining = answer(null, error=-0.2, complaints=("torque_constant 0.8 against back_emf_constant 1",))
+    assert judged(null, complaining, complaining).judgement == RIGHT
 
 
 def test_results_are_reported():

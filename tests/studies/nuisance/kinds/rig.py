@@ -21,7 +21,7 @@ class TorqueConstantWrong(Nuisance):
     def known(self, axis, strength):
         return replace(axis, torque_constant=strength * axis.torque_constant)
 
-    def told(self, answer):
+    def reported(self, answer):
         return any(re.search("torque.constant|back.emf", said, re.IGNORECASE) for said in answer.complaints)
 
 
