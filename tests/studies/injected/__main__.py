@@ -90,7 +90,9 @@ def answers_of(sources: Sequence[Source], seed: int, jobs: int) -> dict[str, dic
         if isinstance(outcome, Failure):
             return f"{item[0].name}: {outcome.reason}"
         said[item[0].name] = outcome
-        return f"{item[0].name}: " + "; ".join(f"{variant}: {answer}" for variant, answer in outcome.items())
+        return f"{item[0].name}: " + "; ".join(
+            f"{variant}: {answer or stability.REFUSED}" for variant, answer in outcome.items()
+        )
 
     done("names", stability.answers, [(source, seed) for source in sources], jobs, tell)
     return {source.name: said[source.name] for source in sources if source.name in said}
