@@ -69,6 +69,11 @@ class Parameter:
         low, high = (self.value + share * (bound - self.value) for bound in self.ci95)
         return low, high
 
+    def at(self, value: float, positive: bool) -> Parameter:
+        """The same of another value: its interval keeps its width, or its factors where it is known up to those."""
+        low, high = (bound / self.value * value if positive else bound - self.value + value for bound in self.ci95)
+        return replace(self, value=value, ci95=(low, high))
+
     def widened(self, *by: float) -> Parameter:
         """The same with independent errors of these half widths at 95 % added - unit."""
         reach = math.hypot(*by)

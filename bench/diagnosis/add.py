@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.arrays import NORMAL95, Array, rms
+from bench.arrays import Array, rms
 from bench.diagnosis.held_out import HeldOut
 from bench.diagnosis.model import (
     BANDWIDTH,
@@ -375,6 +375,7 @@ class Numbers:
         effects, parameters: as named, with intervals; of the parameters the first three.
         places: (effect's index, quantity) of each free one, (-1, name) of J, K_w and K_0.
         values, errors: (p,) and their standard errors.
+        bounds: of their intervals of 95 % (p, 2).
     """
 
     effects: tuple[NamedEffect, ...]
@@ -382,6 +383,7 @@ class Numbers:
     places: tuple[tuple[int, str], ...]
     values: Array
     errors: Array
+    bounds: Array
 
     @classmethod
     def of(cls, effects: Sequence[NamedEffect], parameters: Mapping[str, Parameter]) -> Numbers:
@@ -393,7 +395,8 @@ class Numbers:
             free += [((index, key), p) for key, p in effect.parameters.items() if key in known and key not in fixed]
         free = [(place, p) for place, p in free if np.isfinite(p.std_error) and p.std_error > 0.0]
         values, errors = np.array([p.value for _, p in free]), np.array([p.std_error for _, p in free])
-        return cls(tuple(effects), parameters, tuple(place for place, _ in free), values, errors)
+        bounds = np.array([p.ci95 for _, p in free])
+        return cls(tuple(effects), parameters, tuple(place for place, _ in free), values, errors, bounds)
 
     def model(self, stored: StoredModel, values: Array) -> StoredModel:
         """The model with other values; InputError if they are not allowed."""
@@ -406,14 +409,12 @@ class Numbers:
         return replace(stored, model=replace(stored.model, parameters=parameters, effects=present))
 
     def named(self, values: Array) -> tuple[list[NamedEffect], dict[str, Parameter]]:
-        """Effects and parameters with other values; intervals keep their width, as the noise is the same."""
+        """Effects and parameters with other values; their intervals stay as wide, as the noise is the same."""
         parameters = dict(self.parameters)
         effects = [dict(effect.parameters) for effect in self.effects]
         for (index, key), value in zip(self.places, values.tolist(), strict=True):
             table = parameters if index < 0 else effects[index]
-            before = table[key]
-            low, high = (bound - before.value + value for bound in before.ci95)
-            table[key] = replace(before, value=value, ci95=(low, high))
+            table[key] = table[key].at(value, index >= 0 and key in self.effects[index].effect.positive)
         found = [replace(e, parameters=table) for e, table in zip(self.effects, effects, strict=True)]
         return found, parameters
 
@@ -432,5 +433,6 @@ def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: Vel
     jacobian = np.stack([other - differences[0] for other in differences[1:]], axis=1) / STEP
     from scipy.optimize import lsq_linear  # 0.2 s, which only a named effect has to pay
 
-    found = lsq_linear(jacobian, -differences[0], bounds=(-NORMAL95, NORMAL95))
+    within = (numbers.bounds - numbers.values[:, None]) / numbers.errors[:, None]
+    found = lsq_linear(jacobian, -differences[0], bounds=(within[:, 0], within[:, 1]))
     return numbers.values + numbers.errors * found.x

@@ -268,7 +268,8 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
         if Counter(term.effect for term in others) == Counter(term.effect for term in beside):
             break
         beside = others
-        shape = next((term.shape for term in replaced.last.terms if term.effect is effect), None)
+        left = [] if policy.remains(replaced.last) else replaced.last.terms  # bent to what was hidden still
+        shape = next((term.shape for term in left if term.effect is effect), None)
     return replaced if replaced is not None and policy.replaces_by(last, replaced.last, policy.replaces) else None
 
 

@@ -96,6 +96,8 @@ class Fitted(Protocol):
     @property
     def time(self) -> Array: ...  # noqa: D102
     @property
+    def determined(self) -> NDArray[np.bool_]: ...  # noqa: D102
+    @property
     def span(self) -> Array: ...  # noqa: D102
     def places(self, kind: type[Effect]) -> NDArray[np.intp]: ...  # noqa: D102
     @property
@@ -127,6 +129,11 @@ class Effect(ABC):
     def __reduce__(self) -> str:
         """Pickled by its name in its module: there is one object of each effect."""
         return "EFFECT"
+
+    @property
+    def positive(self) -> frozenset[str]:
+        """Names of quantities that are known up to a factor."""
+        return frozenset(each.name for each in (*self.quantities, *self.derived) if each.positive)
 
     def null(self, axis: Axis) -> Values:
         """Values of some quantities at which the effect is exactly absent - SI."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import ResistingTorque
-from bench.effects.effect import Contact, Fitted, Occasional, OuterTorque, Proposal, Standout
+from bench.effects.effect import Fitted, Occasional, OuterTorque, Proposal, Standout
 from bench.effects.shape import Shape, Shapes
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
@@ -60,15 +60,13 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         return [[(np.clip(start, 0.0, 1.0) - np.clip(end, 0.0, 1.0), 0)]]
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
-        """The best window of time, all of them compared through cumulative sums; none beside what leaves bursts.
+        """The best window of time, all of them compared through cumulative sums.
 
         Where the axis stands or creeps, friction takes what it is given, up to its static level: nothing below that
-        speaks for an event there.
+        speaks for an event there, nor do the impacts of what meets and parts.
         """
-        if fitted.places(Contact).size:
-            return []
         moves = _moves(fitted)
-        weight = (moves | _beyond_friction(fitted, moves)).astype(np.float64)
+        weight = ((moves | _beyond_friction(fitted, moves)) & fitted.determined).astype(np.float64)
         time = fitted.time
         edges = np.unique(np.linspace(0, time.size, EDGES + 1).astype(int))
         first, last = np.triu_indices(edges.size, 1)

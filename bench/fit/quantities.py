@@ -29,6 +29,8 @@ STEP = 1e-4
 #: Residual in noise floors beyond which a row counts less and less, where some rows are not determined, as in the
 #: search for a dead zone.
 SCALE = 3.0
+#: Logarithm of the largest factor within which something is known.
+FURTHEST = 10.0
 
 
 @dataclass(frozen=True)
@@ -49,10 +51,14 @@ class Uncertain:
     reach: float
     slots: tuple[tuple[int, int], ...]
 
-    def parameter(self, value: float, deviation: float, unit: str) -> Parameter:
-        """A value with its interval."""
-        reach = self.reach * deviation
-        return Parameter(float(value), unit, deviation, (float(value - reach), float(value + reach)))
+    def parameter(self, value: float, deviation: float, unit: str, positive: bool = False) -> Parameter:
+        """A value with its interval, which is one of its logarithm if there is none of it that is 0."""
+        reach, value = self.reach * deviation, float(value)
+        between = (value - reach, value + reach)
+        if positive and value > 0.0:
+            factor = float(np.exp(min(reach / value, FURTHEST)))
+            between = (value / factor, value * factor)
+        return Parameter(value, unit, deviation, between)
 
     def base(self, units: Mapping[str, str]) -> dict[str, Parameter]:
         """J, K_w and K_0 with their intervals; `units` by their names, in this order."""
@@ -81,8 +87,9 @@ class Uncertain:
             return term.effect.report(point[:size][owners == index].tolist(), tuple(shape), base)
 
         deviations = self._deviations(values)
+        positive = term.effect.positive
         return {
-            name: self.parameter(value, deviations[name], unit_of(term.effect, name))
+            name: self.parameter(value, deviations[name], unit_of(term.effect, name), name in positive)
             for name, value in values(self.values).items()
         }
 

@@ -35,7 +35,8 @@ class Quantity:
         null: value at which what it belongs to is exactly absent, if one says so.
         preset: value that it has where none is given, if it need not be.
         instant: whether it is a time of the recording, whose zero means nothing.
-        minor: whether what it belongs to is known without it, as with how an effect divides between dry and viscous.
+        minor: whether what it belongs to is known without it, as with how an effect divides between dry and viscous, or
+            how hard the contact is at the ends of a gap.
     """
 
     name: str
@@ -49,6 +50,11 @@ class Quantity:
     preset: float | None = None
     instant: bool = False
     minor: bool = False
+
+    @property
+    def positive(self) -> bool:
+        """Whether there is none of it that is 0, so that it is known up to a factor: a stiffness, a time constant."""
+        return self.lower == 0.0 and self.null is None and self.preset is None and not self.instant
 
 
 def parse(text: object, unit: str, where: object) -> float:

@@ -1,18 +1,26 @@
-"""The gap of a dead zone is found however wide it is beside the way that the motor goes in a filter's width."""
+"""The gap of a dead zone is found however wide it is beside the way that the motor goes in a filter's width, and
+whatever the axis has besides."""
 
 import numpy as np
 import pytest
 
+from bench.diagnosis.policy import POLICY
 from bench.diagnosis.recordings import fit_bare
+from bench.diagnosis.search import search
 from bench.effects.backlash import likeliest_shape
+from bench.effects.catalogue import catalogue
 from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
-from bench.validation.independent.effects.mechanics import Backlash
+from bench.validation.independent.effects.electronics import CoggingTorque
+from bench.validation.independent.effects.mechanics import Backlash, LoadTorqueEvent, PositionDependentInertia
 from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis, write_rig
 from bench.validation.independent.sensors import Noise, Sensors
 from bench.validation.independent.simulate import simulate
+from tests.cases import record
 from tests.kept import kept
+from tests.studies.blind import draw
+from tests.studies.blind import record as recording
 
 AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
 SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
@@ -20,28 +28,60 @@ SEED, STEP = 5, 62.5e-6
 #: A contact of 80 Hz against the load, of a fifth of critical damping.
 STIFFNESS, DAMPING = 6.5e-4 * (2.0 * np.pi * 80.0) ** 2, 0.2 * 2.0 * 6.5e-4 * 2.0 * np.pi * 80.0
 GAPS = (0.012, 0.08, 0.25)
+#: By the gap beside which they are: in a narrow one, or with a clean recording, impacts reach most of the rows.
+BESIDE = {
+    0.012: CoggingTorque(0.03, 8.0, 1.0),
+    0.04: PositionDependentInertia(0.1, 1.0, 0.5),
+    0.02: LoadTorqueEvent(2.0, 3.0, 0.15),
+    0.06: LoadTorqueEvent(2.0, 3.0, 0.15),
+    0.08: PositionDependentInertia(0.3, 2.0, 0.5),
+}
 
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """The rig, and a recording by the gap in it."""
+    """The rig, a recording by the gap in it, and one by the gap that is beside something else."""
     path = tmp_path_factory.mktemp("rig") / "rig.toml"
     write_rig(AXIS, path)
     motion = random_motion(AXIS, np.random.default_rng(SEED), 5.0)
     effects = [(Backlash(wide, STIFFNESS, DAMPING),) for wide in GAPS]
-    count = len(GAPS)
+    effects += [(Backlash(wide, STIFFNESS, DAMPING), other) for wide, other in BESIDE.items()]
+    count = len(effects)
     together = [AXIS] * count, [motion] * count, effects, [SENSORS] * count
     runs = kept(
         lambda: [run.trace for run in simulate(*together, SEED, numbers=[0] * count, longest_step=STEP)], __file__
     )
-    return load_rig(path), dict(zip(GAPS, runs, strict=True))
+    alone, beside = runs[: len(GAPS)], runs[len(GAPS) :]
+    return load_rig(path), dict(zip(GAPS, alone, strict=True)), dict(zip(BESIDE, beside, strict=True))
 
 
 @pytest.mark.parametrize("wide", GAPS)
 def test_a_gap_is_found(recorded, wide):
-    rig, traces = recorded
+    rig, traces, _ = recorded
     bare = fit_bare(Rows.of(traces[wide], rig))
     way = bare.scope.rms_speed * bare.scope.width
     found = likeliest_shape(bare, lambda gain: True)
     print(f"gap of {wide / way:.2g} ways: {found[0] / wide - 1.0:+.1%}, contact {found[1] / 2 / np.pi:.0f} Hz")
     assert found[0] == pytest.approx(wide, rel=0.03)
+
+
+@pytest.mark.parametrize("wide", BESIDE)
+def test_a_gap_is_found_beside_something_else(recorded, wide):
+    rig, _, traces = recorded
+    found = search(fit_bare(Rows.of(traces[wide], rig)), list(catalogue().values()), POLICY).last
+    shapes = {term.effect.name: term.shape for term in found.terms}
+    assert shapes.keys() == {"backlash", BESIDE[wide].name}
+    assert shapes["backlash"][0] == pytest.approx(wide, rel=0.04)
+    assert found.base.inertia == pytest.approx(AXIS.inertia, rel=0.005)
+
+
+def test_a_gap_that_was_bent_to_what_was_hidden_is_searched_anew(tmp_path):
+    """A contact of 8 N*m/rad was found across 11 % of the gap, and beside the inertia over position it stayed there."""
+    case = draw.one(1, "pair", 33, 8.0)
+    files = [path for module in (draw, recording) if (path := module.__file__)]
+    step = recording.LONGEST_STEP
+    run = kept(lambda: record([case.hidden], 1, numbers=[case.number], longest_step=step)[0][0].trace, __file__, *files)
+    write_rig(case.hidden.axis, tmp_path / "rig.toml")
+    found = search(fit_bare(Rows.of(run, load_rig(tmp_path / "rig.toml"))), list(catalogue().values()), POLICY).last
+    (shape,) = (term.shape for term in found.terms if term.effect.name == "backlash")
+    assert shape[0] == pytest.approx(case.hidden.effects[0].quantities(case.hidden.axis)["gap"], rel=0.03)
