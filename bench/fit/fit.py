@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import chain
@@ -16,7 +16,7 @@ from bench.effects.acting import Friction
 from bench.effects.effect import Columns, ColumnsOf, Contact, CopiesTorque, Coupling, Effect, Proposal
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.hypothesis import Hypothesis, Term, terms_interact, with_found_strengths, with_friction, with_load
-from bench.fit.layout import DIGIT, Layout, by_model, delays, lay_out, rounding, seen_by
+from bench.fit.layout import DIGIT, Layout, by_model, delays, lay_out, not_reaching, rounding, seen_by
 from bench.fit.noise import Floor, noise_power
 from bench.fit.normal_equations import bounded, solved
 from bench.fit.rows import Rows
@@ -59,6 +59,11 @@ class Fit:
     def left(self) -> Array:
         """Measured less modelled torque at all rows (m,) - N*m (N)."""
         return self.effort - self.columns @ self.theta
+
+    @cached_property
+    def missing(self) -> dict[int, Array]:
+        """What of the reported torque its terms that copy it are not made of."""
+        return not_reaching(self.hypothesis, self.layout, self.theta)
 
     @cached_property
     def squares(self) -> float:
@@ -249,17 +254,17 @@ class Fit:
 def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
     """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
     layout = lay_out(rows, hypothesis)
-    left = _without_copies(layout, hypothesis)
-    layout = layout if left is None else lay_out(rows, hypothesis, left)
+    missing = _without_copies(layout, hypothesis)
+    layout = lay_out(rows, hypothesis, missing) if missing else layout
     theta, held = _balanced(layout, None)
     for _ in range(ROUNDS):
         found = with_found_strengths(hypothesis, theta, layout.owners)
-        after = None if left is None else layout.effort - layout.columns @ theta
-        settled = (not terms_interact(found) or _alike(found, hypothesis)) and _settled(left, after)
-        hypothesis, left = found, after
+        after = not_reaching(hypothesis, layout, theta)
+        settled = (not terms_interact(found) or _alike(found, hypothesis)) and _settled(missing, after)
+        hypothesis, missing = found, after
         if settled:
             break
-        layout = lay_out(rows, hypothesis, left)
+        layout = lay_out(rows, hypothesis, missing)
         theta, held = _balanced(layout, None)
     every = np.ones(layout.effort.size, dtype=bool)
     fitted = Fit(rows, hypothesis, layout, theta, held, every)
@@ -283,19 +288,21 @@ def _determined(fitted: Fit) -> NDArray[np.bool_] | None:
     return determined
 
 
-def _without_copies(layout: Layout, hypothesis: Hypothesis) -> Array | None:
-    """What is left of the torque without the effects that copy it (m,) - N*m (N); None where there is none."""
+def _without_copies(layout: Layout, hypothesis: Hypothesis) -> dict[int, Array]:
+    """What is left of the torque without the effects that copy it, by the place of each (m,) - N*m (N)."""
     copies = [index for index, term in enumerate(hypothesis.terms) if isinstance(term.effect, CopiesTorque)]
     if not copies:
-        return None
+        return {}
     kept = ~np.isin(layout.owners, copies)
     noise = layout.noise[np.ix_(kept, kept)]
-    return layout.effort - layout.columns[:, kept] @ least_squares(layout.columns[:, kept], layout.effort, noise)
+    left = layout.effort - layout.columns[:, kept] @ least_squares(layout.columns[:, kept], layout.effort, noise)
+    return dict.fromkeys(copies, left)
 
 
-def _settled(left: Array | None, after: Array | None) -> bool:
-    """Whether what is left stays as it was."""
-    return left is None or after is None or rms(after - left) <= IN_LINE * rms(after)
+def _settled(missing: Mapping[int, Array], after: Mapping[int, Array]) -> bool:
+    """Whether what is missing of the torque stays as it was, beside what is left."""
+    least = IN_LINE * min(map(rms, after.values()), default=0.0)
+    return all(rms(now - missing[index]) <= least for index, now in after.items())
 
 
 def _alike(found: Hypothesis, before: Hypothesis) -> bool:

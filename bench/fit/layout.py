@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.effects.acting import FollowsLoad
-from bench.effects.effect import Columns, CopiesTorque, Coupling, Distortion, EffortLag, MotionLag
+from bench.effects.acting import FollowsLoad, FrictionLevel, MisreadEffort, ScalesTorque, TorqueLoss
+from bench.effects.effect import Columns, CopiesTorque, Coupling, Distortion, Effect, EffortLag, MotionLag
 from bench.effects.signals import Signals
 from bench.fit.hypothesis import Hypothesis, loads_of, with_friction, with_load
 from bench.fit.normal_equations import Name
@@ -41,6 +41,8 @@ HUM, DIGIT, AROUND = "hum", "last digit", "around"
 FREQUENCIES, REACH = 400, 4.0
 #: Share of the filtered white noise below which half a step is not seen.
 UNSEEN = 0.1
+#: What the torque passes from its reading to the motion, by kinds of effects that copy it.
+STAGES = (MisreadEffort, TorqueLoss, ScalesTorque, FrictionLevel)
 
 
 @dataclass(frozen=True)
@@ -112,8 +114,30 @@ def by_model(rows: Rows, left: Array) -> Rows:
     return rows.with_signals(lambda s: replace(s, torque=s.torque - np.interp(s.time + s.began, time, left)))
 
 
-def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> Layout:
-    """Columns of a hypothesis; `left`: what it leaves of the torque (m,), of which no column is made - N*m (N)."""
+def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[int, Array]:
+    """By the place of each term that copies torque: what of the reported one it is not made of (m,) - N*m (N).
+
+    That is what no term explains, and what those take that the torque passes before: gains of reading, constant and
+    position multiply, and dry friction is caused by the torque that comes of it.
+    """
+    effects = [term.effect for term in hypothesis.terms]
+    copies = [index for index, effect in enumerate(effects) if isinstance(effect, CopiesTorque)]
+    if not copies:
+        return {}
+    lost, found = layout.effort - layout.columns @ theta, {}
+    for index in sorted(copies, key=lambda index: _stage(effects[index])):
+        own = layout.owners == index
+        found[index], lost = lost, lost + layout.columns[:, own] @ theta[own]
+    return found
+
+
+def _stage(effect: Effect) -> int:
+    """Where the torque passes an effect."""
+    return next((stage for stage, kind in enumerate(STAGES) if isinstance(effect, kind)), STAGES.index(ScalesTorque))
+
+
+def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | None = None) -> Layout:
+    """Columns of a hypothesis; `missing`: what each that copies torque is not made of, see `not_reaching`."""
     seen, late = seen_by(rows, hypothesis), effort_lag(hypothesis)
     moving, resting = delays(rows, hypothesis)
     lags = moving, moving, resting, resting + late
@@ -130,7 +154,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> La
         owners += [HUM] * parts[-1].shape[1]
     for index, term in enumerate(hypothesis.terms):
         lag = moving if isinstance(term.effect, Coupling) else resting
-        parts.append(_of_term(seen, hypothesis, index, lag, left))
+        parts.append(_of_term(seen, hypothesis, index, lag, (missing or {}).get(index)))
         if isinstance(term.effect, Columns):
             bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
         owners += [index] * parts[-1].shape[1]
@@ -147,7 +171,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, left: Array | None = None) -> La
     return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds)
 
 
-def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, left: Array | None) -> Array:
+def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, missing: Array | None) -> Array:
     """Columns (m, k) of one term; none of one that only changes how the recording is seen.
 
     What follows the motion behind a coupling is integrated at length, and only once where nothing but a lag differs.
@@ -158,8 +182,8 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, left: A
     seen = with_friction(seen, hypothesis, index)
     if isinstance(effect, FollowsLoad):
         seen = with_load(seen, ((other, other.pull) for other in hypothesis.terms))
-    if left is not None and isinstance(effect, CopiesTorque):
-        return _copied(seen, effect, term.shape, lag, left)
+    if missing is not None:
+        return _copied(seen, effect, term.shape, lag, missing)
     if not isinstance(effect, Coupling):
         return seen.kept((effect.columns, term.shape), lambda s: effect.columns(s, term.shape), lag)
     loads = loads_of(hypothesis)
@@ -175,21 +199,21 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, left: A
     return seen.memory.get((made_of, lag, seen.made_by), table)
 
 
-def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, left: Array) -> Array:
-    """Columns (m, k) of the modelled torque: of samples less what is left at the rows between them (m,) - N*m (N).
+def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, missing: Array) -> Array:
+    """Columns (m, k) of the modelled torque: of samples less what is missing at the rows between them (m,) - N*m (N).
 
     That has passed the filter, which takes the fastest of it once more: the slope of the columns makes it good.
     """
     time, step = seen.time, 1e-3 * rms(seen.effort)
 
     def columns(s: Signals) -> list[Column]:
-        between = np.interp(s.time + s.began, time, left)
+        between = np.interp(s.time + s.began, time, missing)
         low, high = (replace(s, torque=s.torque - between + more) for more in (0.0, step))
         return [*effect.columns(low, shape), *effect.columns(high, shape), [(between, 0)]]
 
     table = seen.table(columns, lag)
     low, high, twice = np.split(table, [table.shape[1] // 2, table.shape[1] - 1], axis=1)
-    return low - (high - low) / step * (left[:, None] - twice)
+    return low - (high - low) / step * (missing[:, None] - twice)
 
 
 def _axis(seen: Rows, lags: tuple[float, ...]) -> Array:

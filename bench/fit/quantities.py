@@ -189,7 +189,7 @@ def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Ar
         term = fitted.terms[index]
         step = term.effect.shapes[k].step * max(abs(term.shape[k]), 1e-3)
         moved = tuple(value + step * (j == k) for j, value in enumerate(term.shape))
-        other = lay_out(rows, fitted.hypothesis.reshaped(index, moved), fitted.left)
+        other = lay_out(rows, fitted.hypothesis.reshaped(index, moved), fitted.missing)
         modelled = (other.columns - fitted.columns) @ fitted.theta - (other.effort - fitted.effort)
         columns.append(modelled[:, None] / step)
     return np.concatenate(columns, axis=1)
@@ -206,7 +206,7 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
     scope = fitted.scope
 
     def refitted(change: Callable[[Signals], Signals]) -> Array:
-        layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis, fitted.left)
+        layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis, fitted.missing)
         columns = np.where(layout.of_effects, layout.columns, fitted.columns)
         return least_squares(columns, fitted.effort, layout.noise) - plain
 
@@ -240,7 +240,7 @@ def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
         return replace(s, position=s.position + noise, velocity=s.velocity + np.gradient(noise, s.sample_period))
 
     loud = fitted.rows.with_signals(louder)
-    layout = lay_out(loud, fitted.hypothesis, fitted.left)
+    layout = lay_out(loud, fitted.hypothesis, fitted.missing)
     jacobian = _jacobian(loud, replace(fitted, rows=loud, layout=layout), slots)
     left = layout.effort - layout.columns @ fitted.theta
     yield least_squares(jacobian, left, np.zeros((jacobian.shape[1],) * 2))

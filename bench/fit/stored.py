@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.effects.effect import CopiesTorque, Occasional
+from bench.effects.effect import Occasional
 from bench.effects.present import named
 from bench.fit.fit import ROUNDS, Fit
 from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import AROUND, HUM, lay_out
+from bench.fit.layout import AROUND, HUM, lay_out, not_reaching
 from bench.fit.rows import Rows
 
 #: Stands for a recording where an event comes at the same time of every one.
@@ -58,11 +58,11 @@ class Balance:
             terms = enumerate(self.hypothesis.terms)
             occasional = [index for index, term in terms if isinstance(term.effect, Occasional)]
             theta[np.isin(layout.owners, occasional)] = 0.0
-        left = layout.effort - layout.columns @ theta
-        if any(isinstance(term.effect, CopiesTorque) for term in self.hypothesis.terms):
-            for _ in range(ROUNDS):
-                left = layout.effort - lay_out(rows, self.hypothesis, left).columns @ theta
-        return left
+        for _ in range(ROUNDS):
+            if not (missing := not_reaching(self.hypothesis, layout, theta)):
+                break
+            layout = lay_out(rows, self.hypothesis, missing)
+        return layout.effort - layout.columns @ theta
 
     def gap(self, rows: Rows) -> float:
         """RMS of measured less modelled torque along a recording - N*m (N)."""
