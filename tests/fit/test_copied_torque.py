@@ -95,7 +95,7 @@ def test_the_balance_leaves_of_another_recording_what_is_not_known(name):
 
 @pytest.mark.parametrize("names", [*combinations(COPIES, 2)])
 def test_two_multiply_in_the_order_in_which_the_torque_passes_them(names):
-    """As sums a ripple came out up to 30 % off beside friction by load, and what was left looked like a third effect."""
+    """As sums a ripple came out up to 30 % off beside friction by load, and what was left looked like a third one."""
     trace = recorded(0, 0.0, lambda *motion: np.prod([COPIES[name][2](*motion) for name in names], axis=0))
     terms = tuple(Term(catalogue()[name], COPIES[name][0]) for name in names)
     for order in (terms, terms[::-1]):
