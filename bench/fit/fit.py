@@ -224,7 +224,7 @@ class Fit:
         known = effect.columns_of, tuple(shapes)
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
             columns = rows.memory.get((*known, moving, rows.motion), lambda: self.beside.table(made, moving))
-            worth = self.gains(columns, columns.shape[1] // len(shapes))
+            worth = self.gains(columns, 1) * (self.residual @ columns > 0.0)  # none without a load behind it
         elif isinstance(effect, Friction) or not self.determined.all():
             columns = self.seen(made, False)
             worth = self.gains(columns, columns.shape[1] // len(shapes))
