@@ -235,9 +235,10 @@ def instead_of_each(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> l
     instead = []
     for index, term in enumerate(fitted.terms[:-1]):
         less = fit(fitted.rows, fitted.hypothesis.without(index))
-        least = policy.as_good * worth(less, fitted)
-        tried = candidates(less, [effect for effect in effects if effect is not term.effect])
-        as_good = [candidate for candidate in tried if candidate.gain > least]
+        tried = candidates(less, effects)
+        own = [candidate.gain for candidate in tried if candidate.term.effect is term.effect]
+        least = policy.as_good * min([worth(less, fitted), *own])  # like with like: its own at a grid's shape, too
+        as_good = [each for each in tried if each.gain > least and each.term.effect is not term.effect]
         instead += [refined(less, candidate.term) for candidate in as_good[: policy.exchanges]]
     return instead
 
