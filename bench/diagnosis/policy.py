@@ -56,7 +56,7 @@ class Policy:
         patience: factor on the last two shares of a search for many small effects at once.
         nearly_all: of what is above noise: what those may leave together.
         needed: of what is above noise without it: what a name takes beside those that came after it.
-        as_good: of what a name takes: what a candidate takes in its place, even at a grid's shape.
+        as_good: of what a name takes: what a candidate takes in its place, both at a grid's shape.
         odds: of a likelihood to that of what is nearly as good, beyond which that is no more weighed. At 24,000 to one
             an eccentric encoder took half the probability of a true inertia over position (blind set, single 94).
         exchanges: candidates at most whose shapes are searched in the place of a name.

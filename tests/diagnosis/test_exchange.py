@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.diagnosis.policy import Policy
+from bench.diagnosis import search as searching
+from bench.diagnosis.policy import Policy, worth
 from bench.diagnosis.score import neighbourhood
-from bench.diagnosis.search import Step, exchanged, instead_of_each, search
+from bench.diagnosis.search import Candidate, Step, exchanged, instead_of_each, search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
@@ -36,6 +37,18 @@ def test_names_that_leave_noise_alone_stay():
     without = bare(recorded(moved(), drag, wave(0.02, 7.0)))
     right = fit(without.rows, Hypothesis((Term(catalogue()["quadratic_drag"]), COGGING)))
     assert exchanged(right, instead_of_each(right, EFFECTS, Policy()), Policy()) is None
+
+
+@pytest.mark.parametrize(("share", "tried"), [(0.46, True), (0.44, False)])
+def test_like_is_held_against_like(monkeypatch, share, tried):
+    """A name that takes half as much at a grid's shape as it does once that is searched, and another at a grid's."""
+    drags, offset = Term(catalogue()["quadratic_drag"]), Term(catalogue()["torque_offset"])
+    named = fit(bare(recorded(moved(), drag, wave(0.02, 7.0))).rows, Hypothesis((drags, COGGING)))
+    saved = worth(fit(named.rows, named.hypothesis.without(0)), named)
+    found = [Candidate(drags, 0.5 * saved), Candidate(offset, share * saved)]
+    monkeypatch.setattr(searching, "candidates", lambda *_: found)
+    instead = [each.hypothesis.names for each in instead_of_each(named, EFFECTS, Policy())]
+    assert instead == [("cogging_torque", "torque_offset")] * tried
 
 
 def test_what_was_instead_of_each_as_the_only_name_is_weighed_too():
