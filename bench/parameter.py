@@ -13,6 +13,8 @@ from bench.arrays import NORMAL95
 LEVEL = 0.95
 #: Share by which a half width may exceed that of a normal distribution and still count as one.
 NORMAL = 1e-6
+#: How much further up than down an interval goes from which on both ends are told.
+LOPSIDED = 2.0
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,8 @@ class Parameter:
         return float(self.value)
 
     def __str__(self) -> str:
+        if self.lopsided:
+            return f"{self.value:.3g} ({self.ci95[0]:.2g} to {self.ci95[1]:.2g}) {self.unit}"
         known = math.isfinite(self.half_width) and self.half_width > 0.0
         between = f" ± {self.half_width:.2g}" if known else ""
         return f"{self.value:.6g}{between} {self.unit.replace('dimensionless', '')}".rstrip()
@@ -46,6 +50,12 @@ class Parameter:
     def half_width(self) -> float:
         """Half width of the 95 % interval - unit."""
         return 0.5 * (self.ci95[1] - self.ci95[0])
+
+    @property
+    def lopsided(self) -> bool:
+        """Whether the interval is one of a factor, so wide that half of it says little."""
+        low, high = self.ci95
+        return 0.0 < low < self.value and LOPSIDED * (self.value - low) < high - self.value < math.inf
 
     @property
     def degrees(self) -> float:

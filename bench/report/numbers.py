@@ -39,8 +39,11 @@ def number(value: float, unit: str = "", digits: int = 4, zeros: bool = False) -
 
 
 def interval(found: Parameter, unit: bool = True) -> str:
-    """A parameter with half of its interval of 95 %, both to the second digit of that half."""
+    """A parameter with half of its interval of 95 %, to the second digit of that, or the ends of one of a factor."""
     shown = unit_text(found.unit) if unit else ""
+    if found.lopsided:
+        low, high = (number(float(f"{bound:.2g}")) for bound in found.ci95)
+        return f"{number(found.value, digits=3)}{SPACE}({low}{SPACE}to{SPACE}{high}){SPACE}{shown}".strip()
     half = found.half_width
     if not math.isfinite(half) or half <= 0.0:
         return f"{number(found.value, digits=5)}{SPACE}{shown}".strip()
@@ -57,7 +60,7 @@ def interval(found: Parameter, unit: bool = True) -> str:
 def brief(found: Parameter) -> str:
     """A parameter to three digits, with half of its interval of 95 % in per cent where that says more."""
     size, half = abs(found.value), found.half_width
-    if not 0.0 < half < size < math.inf:
+    if found.lopsided or not 0.0 < half < size < math.inf:
         return interval(found)
     relative = number(100.0 * half / size, digits=2)
     return f"{number(found.value, found.unit, 3, zeros=True)}{SPACE}±{SPACE}{relative}{SPACE}%"

@@ -44,6 +44,15 @@ def test_a_value_in_brief_has_three_digits(value, half, unit, text):
     assert plain(brief(Parameter(value, unit, half / 1.96, (value - half, value + half)))) == text
 
 
+@pytest.mark.parametrize("shown", [interval, brief])
+def test_of_what_is_known_up_to_a_factor_both_ends_are_given(shown):
+    found = Parameter(740.57, "N*m/rad", 583.5, (119.7, 4581.8))
+    assert plain(shown(found)) == "741 (120 to 4600) N·m/rad"
+    assert str(found) == "741 (1.2e+02 to 4.6e+03) N*m/rad"
+    little = Parameter(740.57, "N*m/rad", 58.0, (661.0, 829.7))  # a factor of 1.12
+    assert "±" in shown(little) and "±" in str(little)
+
+
 def test_names_in_a_row():
     assert [listed("abc"[:n]) for n in (1, 2, 3)] == ["a", "a and b", "a, b and c"]
 
