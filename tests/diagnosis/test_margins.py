@@ -14,6 +14,7 @@ from tests.diagnosis.hand_made import level, made, term
 
 POLICY = Policy()
 SPRING, OFFSET, EVENT = term("torsion_spring"), term("torque_offset"), term("load_torque_event", 1.0, 1.5)
+OTHER = term("unbalance")
 
 
 def threshold(fitted, numbers=1):
@@ -41,7 +42,7 @@ def remains(fitted):
 
 
 def tried(*gains):
-    return [Candidate(SPRING, gain) for gain in gains]
+    return [Candidate(OTHER, gain) for gain in gains]
 
 
 @pytest.mark.parametrize(("numbers", "floor", "squares"), [(1, 1.0, 80.0), (3, 1.0, 240.0), (1, 0.5, 20.0)])
