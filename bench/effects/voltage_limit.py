@@ -62,7 +62,7 @@ class VoltageLimit(DriveLimit):
         behind = lack > BEHIND * float(np.abs(trace["velocity_reference"]).max())
         if np.count_nonzero(behind) < SAMPLES:
             return None
-        many = np.count_nonzero(behind)
+        many = int(np.count_nonzero(behind))
         top = _top(voltage[behind], many)
         standing = behind & (np.abs(voltage / top - 1.0) < TOP)
         count = int(np.count_nonzero(standing))
