@@ -19,7 +19,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.diagnosis.policy import Policy, freedom
-from bench.diagnosis.search import Candidate, Searched, backward_elimination, candidates, refined
+from bench.diagnosis.search import Candidate, Searched, backward_elimination, candidates, refined, settled
 from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Coupling, Effect, Occasional
 from bench.effects.rivals import RIVALS, WAVES, Outside
@@ -69,7 +69,7 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     """
     last = searched.last
     yield from (step.fitted for step in searched.steps)
-    less = [fit(last.rows, last.hypothesis.without(index)) for index in range(len(last.terms))]
+    less = [settled(fit(last.rows, last.hypothesis.without(index)), policy) for index in range(len(last.terms))]
     if len(less) > 1:
         yield from less
     for instead in searched.instead:

@@ -145,7 +145,11 @@ def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy
         finalists = [physical_form(after, effects, policy) for after in finalists]
         better = [after for after in finalists if policy.accepts(current, after)]
         if not better:
-            return Searched(steps, ended=Step(current, tuple(tried)))
+            fewer = backward_elimination(current, policy, settling=True)
+            if fewer is current:
+                return Searched(steps, ended=Step(current, tuple(tried)))
+            steps = (*steps, Step(fewer, tuple(tried)))
+            continue
         best = min(better, key=lambda after: after.squares)
         names = Counter(best.hypothesis.names)
         if len(names) > policy.most or max(names.values()) > policy.members:
@@ -209,14 +213,25 @@ def on_its_side(fitted: Fit, policy: Policy) -> Fit:
     return min(fitted, moved, key=lambda found: found.squares)
 
 
-def backward_elimination(fitted: Fit, policy: Policy) -> Fit:
-    """Without the terms that no longer explain anything beside the later ones."""
+def backward_elimination(fitted: Fit, policy: Policy, settling: bool = False) -> Fit:
+    """Without the terms that no longer explain anything beside the later ones.
+
+    The shapes of the others settle where they are without a term that is let go; `settling`: before that is decided.
+    """
     for index in range(len(fitted.terms) - 1, -1, -1):
         if len(fitted.terms) < 2:
             break
         less = fit(fitted.rows, fitted.hypothesis.without(index))
-        fitted = fitted if policy.needs(fitted, less, index) else less
+        less = settled(less, policy) if settling else less
+        if not policy.needs(fitted, less, index):
+            fitted = less if settling else settled(less, policy)
     return fitted
+
+
+def settled(less: Fit, policy: Policy) -> Fit:
+    """Without a term, the shapes of the others where they are without it."""
+    tried = together(less)
+    return tried if policy.physical(tried) else less
 
 
 def _repeats_a_step(fitted: Fit, steps: Sequence[Step], policy: Policy) -> bool:

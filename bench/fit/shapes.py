@@ -75,7 +75,7 @@ def together(fitted: Fit) -> Fit:
     scope, terms = fitted.scope, fitted.terms
     free = [[k for k in free_shapes(term, scope) if term.effect.shapes[k].step] for term in terms]
     ends = np.cumsum([len(places) for places in free])
-    if sum(map(bool, free)) < 2:
+    if not any(free):
         return fitted
 
     def at(offset: Array) -> Fit:
