@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.effects.effect import Effect
+from bench.effects.effect import Effect, Replacing
 from bench.fit.fit import Fit, explained
 from bench.fit.shapes import free_shapes
 from bench.fit.solution import NOISE_ALONE
@@ -120,6 +120,10 @@ class Policy:
         """Whether what is left stands clearly above noise."""
         return fitted.chi > self.remainder
 
+    def stands_in(self, fitted: Fit, effect: Replacing) -> bool:
+        """Whether a name may be there in the place of an effect whose bursts pass for the colour of noise beside it."""
+        return over_noise(fitted) > self.large and not effect.replaces.isdisjoint(fitted.hypothesis.names)
+
     def only_damps(self, before: Fit, after: Fit) -> bool:
         """Whether the squares that `after` saves may be noise of the motion that it damps, as a coupling does."""
         return over_noise(before) < self.large and over_noise(before) <= over_noise(after)
@@ -127,6 +131,10 @@ class Policy:
     def promises(self, current: Fit, gain: float) -> bool:
         """Whether a candidate that takes so much at a grid's shape is worth the search of its shape."""
         return gain > max(self.promising * current.excess, self.by_chance(current, 1))
+
+    def least_coloured(self, before: Fit, after: Fit) -> float:
+        """Noise floor of `before` by the less coloured of two - N*m (N)."""
+        return min(before.floor, after.floor * before.noise.white / after.noise.white)
 
     def accepts(self, before: Fit, after: Fit) -> bool:
         """Whether the last term of `after` explains its share of what is above noise, significantly and physically.
@@ -138,7 +146,7 @@ class Policy:
         """
         if self.only_damps(before, after):
             return False
-        noise = min(before.floor, after.floor * before.noise.white / after.noise.white) ** 2
+        noise = self.least_coloured(before, after) ** 2
         excess = before.excess or max(before.squares - before.count * noise, 0.0)
         term = after.terms[-1]
         added = after.theta.size - before.theta.size + len(term.shape)
@@ -187,8 +195,9 @@ class Policy:
         if not self.physical(after):
             return False
         left, open_left = (float(np.sum(before.residual[rows] ** 2)) for rows in (after.determined, ~after.determined))
-        excess = max(left - after.count * before.floor**2, 0.0)
-        clearly = left - after.squares > share * excess
+        noise = self.least_coloured(before, after) ** 2
+        excess = max(left - after.count * noise, 0.0)
+        clearly = left - after.squares > max(share * excess, self.by_chance(before, 1, noise))
         enough = float(after.determined.mean()) > self.determined
         allowed = ERRS_TWICE if enough else 1.0 - share
         no_more = float(np.sum(after.left[~after.determined] ** 2)) <= allowed * open_left

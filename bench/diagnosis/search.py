@@ -13,6 +13,7 @@ from functools import partial
 
 from bench.diagnosis.policy import Policy, worth
 from bench.effects.effect import Effect, Replacing
+from bench.effects.rivals import Outside
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Term, on_other_side, outer_loads
@@ -83,8 +84,8 @@ class Searched:
 def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
     """Effects in the order in which they are taken up beside the fit without one."""
     found = from_rivals(selected(Searched((Step(bare),)), effects, policy), effects, policy)
-    if policy.remains(found.last):
-        for effect in (each for each in effects if isinstance(each, Replacing)):
+    for effect in (each for each in effects if isinstance(each, Replacing)):
+        if policy.remains(found.last) or policy.stands_in(found.last, effect):
             found = replacement(found, effect, effects, policy) or found
     if policy.remains(found.last) and found.stopped is None:
         found = many_small(found, effects, policy)
@@ -229,7 +230,12 @@ def backward_elimination(fitted: Fit, policy: Policy, settling: bool = False) ->
 
 
 def settled(less: Fit, policy: Policy) -> Fit:
-    """Without a term, the shapes of the others where they are without it."""
+    """Without a term, the shapes of the others where they are without it.
+
+    What no catalogue holds stays as it was searched: further off its shape makes up for anything.
+    """
+    if any(isinstance(term.effect, Outside) for term in less.terms):
+        return less
     tried = together(less)
     return tried if policy.physical(tried) else less
 

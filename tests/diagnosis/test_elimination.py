@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.search import backward_elimination
+from bench.diagnosis.search import backward_elimination, settled
 from bench.effects.catalogue import catalogue
+from bench.effects.rivals import RIVALS
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from tests.diagnosis.constructed import bare, moved, recorded
@@ -51,3 +52,10 @@ def test_what_stays_settles(eccentric):
     found = backward_elimination(bent(eccentric, 0.9, Term(catalogue()["torque_offset"])), Policy())
     assert found.hypothesis.names == ("encoder_eccentricity",)
     assert found.terms[0].shape == pytest.approx(TRUE, rel=0.02)
+
+
+def test_what_no_catalogue_holds_stays_as_it_was_searched(eccentric):
+    """A memory of milliseconds, none of those that are tried, leaves nothing and takes J along."""
+    memory = Term(next(each for each in RIVALS if each.name == "outside_slow_memory"), (0.05,))
+    found = fit(eccentric.rows, Hypothesis((memory,)))
+    assert settled(found, Policy()) is found

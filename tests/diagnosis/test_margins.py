@@ -10,6 +10,7 @@ import pytest
 from bench.diagnosis import search
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.search import Candidate
+from bench.effects.backlash import Backlash
 from tests.diagnosis.hand_made import level, made, term
 
 POLICY = Policy()
@@ -154,6 +155,28 @@ def test_what_replaces_is_sure_of_most_rows_and_leaves_at_most_twice_on_the_othe
     left = [math.sqrt(5.9)] * sure + [math.sqrt(beyond)] * (100 - sure)
     after = made(left, SPRING, determined=[k < sure for k in range(100)])
     assert replaces(made(level(1100.0), OFFSET), after) is taken
+
+
+@pytest.mark.parametrize(
+    ("squares", "floor", "saved", "taken"),
+    [(1100.0, 4.0, 499.0, False), (1100.0, 4.0, 501.0, True), (120.0, 1.0, 79.0, False), (120.0, 1.0, 81.0, True)],
+    ids=["floor", "floor", "chance", "chance"],
+)
+def test_what_replaces_takes_half_above_the_less_coloured_floor_and_more_than_chance(squares, floor, saved, taken):
+    """Beside a coupling the bursts of a backlash pass for noise of four times the white one."""
+    after = made(level(squares - saved), SPRING)
+    assert replaces(made(level(squares), OFFSET, floor=floor, white=1.0), after) is taken
+
+
+@pytest.mark.parametrize(
+    ("squares", "name", "doubtful"),
+    [(930.0, "elastic_coupling", True), (870.0, "elastic_coupling", False), (930.0, "torque_offset", False)],
+)
+def test_what_leaves_thrice_its_white_noise_may_be_there_in_the_place_of_a_backlash(squares, name, doubtful):
+    fitted = made(
+        level(squares), term(name, 300.0, 0.2) if name == "elastic_coupling" else OFFSET, floor=4.0, white=1.0
+    )
+    assert POLICY.stands_in(fitted, Backlash()) is doubtful
 
 
 def test_twelve_hundredths_above_the_floor_are_a_remainder():
