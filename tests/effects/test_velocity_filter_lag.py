@@ -91,3 +91,14 @@ def test_a_wave_of_position_beside_it_is_where_the_axis_is():
     found = search(bare(reported), sought, POLICY).last
     assert sorted(found.hypothesis.names) == ["cogging_torque", "velocity_filter_lag"]
     assert found.chi < 1.1
+
+
+def test_a_mean_over_the_sample_is_how_a_recorder_averages():
+    """Of four ticks of 250 us the middle is 375 us late; a filter of 390 us is none of that."""
+    ticking = RIG.model_copy(update={"drive": load_rig("sh30701p").drive})
+
+    def mean(omega):
+        return sum(np.exp(-1j * omega * 250e-6 * tick) for tick in range(4)) / 4.0
+
+    assert EFFECT.detect(two_sines(mean), ticking, 1.5e-3) is None
+    assert EFFECT.detect(two_sines(first_order_of(0.39e-3)), ticking, 1.5e-3) is not None
