@@ -3,8 +3,10 @@
 import pytest
 
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.effects import effect
-from tests.studies.blind.thresholds import AS_IS, Named, Tally, key, markdown, sample
+from tests.diagnosis.constructed import RIG, moved, recorded, wave
+from tests.studies.blind.thresholds import AS_IS, Named, Tally, key, markdown, named, sample, tried
 from tests.studies.blind.variants import switched_off, thresholds
 
 TRUTHS = [{"group": "single", "effects": ["unbalance"]}, {"group": "null", "effects": []}]
@@ -38,6 +40,12 @@ def test_right_and_wrong_names_are_counted():
     outside = [{"group": "outside", "effects": ["vibration"]}]
     assert str(Tally.of(outside, [Named((), True)])) == "0 0 0 1, 0"
     assert str(Tally.of(outside, [Named((), False)])) == "0 0 0 0, 0"
+
+
+def test_a_recording_is_named_under_a_policy():
+    recordings = Recordings.of([recorded(moved(), wave(0.02, 7.0))], RIG, None)
+    found = tried(recordings, fit_bare(recordings.rows), Policy())
+    assert named(recordings, found, Policy()) == Named(("cogging_torque",))
 
 
 def test_a_threshold_that_changes_nothing_is_marked():
