@@ -111,6 +111,10 @@ class Backlash(Replacing, Coupling, Contact, Native):
         """Of the gap."""
         return 2.0 * np.pi / shape[0]
 
+    def ringing(self, shape: Sequence[float]) -> float:
+        """Of the contact's frequency."""
+        return 2.0 * np.pi / shape[1]
+
     def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:
         """Rows soon after an impact: its instant hangs on how the load left the other side of the gap."""
         shapes = np.tile(shape, (2 * len(INDISTINCT) + 1, 1))

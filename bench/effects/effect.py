@@ -286,6 +286,10 @@ class Contact(Columns):
         """A turn over the width in which they are apart: its product with an error of position is one of phase."""
 
     @abstractmethod
+    def ringing(self, shape: Sequence[float]) -> float:
+        """Period of the oscillation of parts in contact - s."""
+
+    @abstractmethod
     def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:
         """By how much its torque is undetermined in each row - N*m (N) per unit of its strength - (m,)."""
 

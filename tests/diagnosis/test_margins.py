@@ -182,3 +182,11 @@ def test_what_leaves_thrice_its_white_noise_may_be_there_in_the_place_of_a_backl
 def test_twelve_hundredths_above_the_floor_are_a_remainder():
     assert not remains(made(level(100.0 * 1.11**2)))
     assert remains(made(level(100.0 * 1.13**2)))
+
+
+@pytest.mark.parametrize(("lasting", "physical"), [(0.029, False), (0.031, True)])
+def test_an_event_outlasts_three_periods_of_a_contact_that_it_stands_beside(lasting, physical):
+    """At 200*pi rad/s a period is 10 ms; alone, an event lasts as long as the filter shows."""
+    event, contact = term("load_torque_event", 1.0, 1.0 + lasting), term("backlash", 0.04, 200.0 * math.pi, 0.3, 0.0)
+    assert POLICY.physical(made(level(100.0), event, contact, strengths=(1.0, 0.5))) is physical
+    assert POLICY.physical(made(level(100.0), event))
