@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -169,15 +169,28 @@ def _on_holdout(physical: Sequence[Fit], holdout: Rows, floor: Array) -> Array:
 
 
 def _blocks(fitted: Fit, holdout: Rows) -> Array:
-    """Mean squares left of a holdout in BLOCKS stretches, each event there or not as it leaves less (b,)."""
+    """Mean squares left of a holdout in BLOCKS stretches, each event there or not as it leaves less (b,).
+
+    What the recording does not tell of an event, as when it began while the axis stood, is as leaves less, too.
+    """
     balance = Balance.of(fitted).repeating(True)
+    events = [index for index, term in enumerate(fitted.terms) if isinstance(term.effect, Occasional)]
+    for index in events:
+        balance = min(_alike(balance, index, fitted), key=lambda tried: tried.gap(holdout))
     left, layout = balance.left(holdout), lay_out(holdout, balance.hypothesis)
-    for index, term in enumerate(fitted.terms):
-        if isinstance(term.effect, Occasional):
-            own = layout.owners == index
-            without = left + layout.columns[:, own] @ balance.theta[own]
-            left = min(left, without, key=lambda residual: float(residual @ residual))
+    for index in events:
+        own = layout.owners == index
+        without = left + layout.columns[:, own] @ balance.theta[own]
+        left = min(left, without, key=lambda residual: float(residual @ residual))
     return np.array([float(np.mean(part**2)) for part in np.array_split(left, BLOCKS) if part.size])
+
+
+def _alike(balance: Balance, index: int, fitted: Fit) -> list[Balance]:
+    """With each shape of an event that the recording does not tell from its own."""
+    effect, shape = fitted.terms[index].effect, fitted.terms[index].shape
+    assert isinstance(effect, Occasional)
+    shapes = effect.alike(shape, fitted.time, fitted.scope)
+    return [replace(balance, hypothesis=balance.hypothesis.reshaped(index, tried)) for tried in shapes]
 
 
 def _credible(fitted: Fit) -> bool:

@@ -246,6 +246,10 @@ class Occasional(Repeatable):
     def apart(self, fitted: Fitted) -> list[Standout]:
         """Those that what is left shows by themselves, whatever else it holds."""
 
+    @abstractmethod
+    def alike(self, shape: Sequence[float], time: Array, scope: Scope) -> list[tuple[float, ...]]:
+        """Shapes that rows at some times - s - do not tell from one, that among them."""
+
 
 #: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.
 Load = tuple[Columns, tuple[float, ...], tuple[float, ...]]

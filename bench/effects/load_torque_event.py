@@ -10,6 +10,7 @@ beside it. Where one takes many times what any other stretch of time does, it is
 """
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,8 @@ SHORT, LONG, LONGER = 10.0, 0.15, 1.1
 STANDS_OUT = 9.0
 #: Short events at most: more are no occasions.
 FEW = 4
+#: Instants that are tried while the axis stands.
+PLACES = 5
 
 
 class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
@@ -107,6 +110,15 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         """Of its edges by the distance of the rows around them, which an instant lies within at 95 %."""
         after = np.clip(np.searchsorted(time, shape), 1, time.size - 1)
         return ((time[after] - time[after - 1]) / NORMAL95).tolist()
+
+    def alike(self, shape: Sequence[float], time: Array, scope: Scope) -> list[tuple[float, ...]]:
+        """An edge where the axis stands may be anywhere between the rows before and after."""
+        before = time[np.maximum(np.searchsorted(time, shape) - 1, 0)].tolist()
+        after = time[np.minimum(np.searchsorted(time, shape, side="right"), time.size - 1)].tolist()
+        stands = [last - first > RESOLVED * scope.width for first, last in zip(before, after, strict=True)]
+        edges = zip(shape, before, after, stands, strict=True)
+        places = [[at, *np.linspace(first, last, PLACES)] if still else [at] for at, first, last, still in edges]
+        return [(start, end) for start, end in product(*places) if start < end]
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
         """While it acts."""

@@ -25,12 +25,12 @@ from tests.diagnosis.constructed import (
 CREEP = 0.4  # rad/s, a hundredth of the other speeds
 
 
-def held(start: float, stop: float) -> Motion:
-    """A swing that creeps forward from one instant to another - s."""
+def held(start: float, stop: float, creep: float = CREEP) -> Motion:
+    """A swing that creeps forward from one instant to another - s, rad/s."""
     whole = moved(6.0)
     pace = np.where((whole.time >= start) & (whole.time < stop), 0.0, whole.velocity)
     smooth = np.hanning(201) / np.hanning(201).sum()
-    velocity = np.convolve(np.pad(pace, 100, mode="edge"), smooth, mode="valid") + CREEP
+    velocity = np.convolve(np.pad(pace, 100, mode="edge"), smooth, mode="valid") + creep
     acceleration = np.gradient(velocity, whole.time)
     return Motion(whole.time, np.cumsum(velocity) * 1e-3, velocity, acceleration, np.sign(velocity))
 
@@ -41,6 +41,15 @@ def test_an_event_begins_where_it_begins_however_long_the_axis_crept_before():
     found = search(bare(trace), [catalogue()["load_torque_event"]], Policy()).last
     assert found.terms[0].shape == pytest.approx((3.1, 3.9), abs=5e-3)
     assert found.strengths(0)[0] == pytest.approx(0.06, rel=0.03)
+
+
+def test_a_holdout_tells_when_an_event_began_while_the_axis_stood():
+    """From 2.0 s on, and it stood from 1.5 to 3.2: a holdout that moves then does not speak against one from 3.2."""
+    trace = recorded(held(1.5, 3.2, creep=0.0), only_during(0.06, 2.0, 3.9))
+    holdout = recorded(moved(6.0), only_during(0.06, 2.0, 3.9), seed=1)
+    assert names(Policy(), trace, ["load_torque_event"], holdout) == ("load_torque_event",)
+    apart = recorded(moved(6.0), only_during(0.06, 0.5, 3.9), seed=1)
+    assert names(Policy(), trace, ["load_torque_event"], apart) == ()
 
 
 @pytest.mark.parametrize(("level", "named"), [(1.5, False), (4.0, True)])
