@@ -71,6 +71,7 @@ def test_the_joints_of_a_robot_come_back_by_their_names(tmp_path):
         ("bench.effects/1", "bench.model/1", "schema: found 'bench.model/1'; allowed: 'bench.effects/1'"),
         ("[joints.elbow.parameters]", "[joints.elbow.parameter]", "joints.elbow: parameters: missing"),
         ("[joints.elbow]", "[joint.elbow]", "joints.elbow"),
+        ("[joints.elbow]", "[joints]\nknee = 3\n[joints.elbow]", "joints: found"),
     ],
 )
 def test_a_bad_file_of_joints_is_refused_in_one_line(tmp_path, old, new, says):

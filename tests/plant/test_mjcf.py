@@ -40,6 +40,7 @@ def test_disk_is_drawn_to_size():
     load = Load.model_construct(outer_diameter=0.2, thickness=0.02, gear_ratio=1.0)
     model = build_spec(AxisParameters(inertia=1e-3), 250e-6, load).compile()
     assert model.geom("disk").size[:2] == pytest.approx([0.1, 0.01])
+    assert model.geom("angle mark").pos[0] == pytest.approx(0.01)  # on its face
     assert model.geom("angle mark").pos[2] + model.geom("angle mark").size[2] < 0.1
 
 

@@ -414,3 +414,9 @@ def test_a_column_of_two_states_in_turn_is_no_joint(tmp_path):
     path = tmp_path / "run.csv"
     path.write_text("time,velocity,phase\n" + "".join(f"{k},{k},{'ab'[k // 7 % 2]}\n" for k in range(100)))
     assert [channel.values.size for channel in read_recording(path).channels[:2]] == [100, 100]
+
+
+def test_between_two_episodes_lie_ten_sample_periods(tmp_path, elbow):
+    time = read(lerobot(tmp_path / "log"), elbow).time
+    first = np.array_split(np.arange(TIME.size), 2)[0].size
+    assert np.diff(time)[first - 1] == pytest.approx(10 * 2e-3, rel=1e-3)

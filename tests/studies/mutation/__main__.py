@@ -27,6 +27,8 @@ from tests.studies.mutation.reach import REACH
 
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
 PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--tb=no", "--no-header"]
+#: What pytest returns where it cannot begin: no test has failed.
+USAGE = 4
 #: Tests of a second at most are shown first, whatever folder they are of.
 QUICK = 1.0
 
@@ -69,13 +71,23 @@ def reached(folder: Path, anew: bool) -> Reach:
         subprocess.run(command, cwd=ROOT, env={**os.environ, **ENVIRONMENT, **reach}, check=True)
     seconds: dict[str, float] = {}
     running: dict[str, set[str]] = defaultdict(set)
+    there = collected()
     for path in folder.glob("*.json"):
         told = json.loads(path.read_text(encoding="utf-8"))
         for test, (spent, ran) in told["tests"].items():
+            if test not in there:  # of a state before: to pytest an error, which kills nothing
+                continue
             seconds[test] = spent
             for number in ran:
                 running[told["functions"][number]].add(test)
     return Reach(seconds, running)
+
+
+def collected() -> set[str]:
+    """Tests that there are."""
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "--collect-only", "--no-header"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=True, text=True)
+    return {line for line in done.stdout.splitlines() if "::" in line}
 
 
 def fate(mutant: Mutant, reach: Reach, copy: Path, most: float) -> Fate:
@@ -108,6 +120,7 @@ def fate(mutant: Mutant, reach: Reach, copy: Path, most: float) -> Fate:
                 timeout=60.0 + 20.0 * seconds,
             )
             shown, spent = shown + len(tests), spent + seconds
+            assert done.returncode != USAGE, done.stderr
             if done.returncode not in (0, 5):  # 5: nothing to run
                 failed = [line.split()[1] for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
                 killed_by = failed[0] if failed else "the tests do not start"
