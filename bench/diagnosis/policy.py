@@ -18,8 +18,8 @@ from bench.fit.solution import NOISE_ALONE
 #: Squares of impacts at wrong instants, or waves out of phase, over their own: they err where they are and are not.
 ERRS_TWICE = 2.0
 #: Periods of a contact that an event lasts at least beside one: what doubled samples and wrong gains made of an impact
-#: lasted 0.4 to 1.4 (nuisance set, seeds 31 and 32), of a train of them 4 and 6 (blind set, pair 33), events of the blind
-#: set beside a backlash 20 and more.
+#: lasted 0.4 to 1.4 (nuisance set, seeds 31 and 32), of a train of them 4 and 6 (blind set, pair 33), events of the
+#: blind set beside a backlash 20 and more.
 RINGS = 10.0
 
 
