@@ -42,7 +42,7 @@ def over_noise(fitted: Fit) -> float:
 class Policy:
     """All that decides on a name; "above noise" are squares beyond those of the noise floor.
 
-    `python -m tests.studies.blind.thresholds` halves and doubles each number over the blind set.
+    `python -m tests.studies.blind.thresholds` halves and doubles each number over the blind set (`docs/thresholds.md`).
 
     Attributes:
         chance: gain over noise power, per number fitted and independent row, that is more than chance in a search over
