@@ -17,10 +17,6 @@ from bench.fit.solution import NOISE_ALONE
 
 #: Squares of impacts at wrong instants, or waves out of phase, over their own: they err where they are and are not.
 ERRS_TWICE = 2.0
-#: Periods of a contact that an event lasts at least beside one: what doubled samples and wrong gains made of an impact
-#: lasted 0.4 to 1.4 (nuisance set, seeds 31 and 32), of a train of them 4 and 6 (blind set, pair 33), events of the
-#: blind set beside a backlash 20 and more.
-RINGS = 10.0
 
 
 def freedom(fitted: Fit) -> int:
@@ -75,6 +71,9 @@ class Policy:
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
             the blind set's cases that are explained 2.5 at most, nine in ten 1.6.
         beside_event: of the squares that an event takes which stands out of a remainder: what may be left around it.
+        periods: of a contact that an event lasts at least beside one. What doubled samples and wrong gains made of an
+            impact lasted 0.4 to 1.4 (nuisance set, seeds 31 and 32), of a train of them 4 and 6 (blind set, pair 33),
+            events of the blind set beside a backlash 20 and more.
         left, over, number, outside, none: weights of a probability (`bench.diagnosis.probability`): of what is left,
             over what the bare axis leaves and over noise, of a number fitted more, of an effect from outside the
             catalogue, and of what was not tried. Two more, of an effect more and of an event beside a remainder, made
@@ -102,6 +101,7 @@ class Policy:
     determined: float = 0.5
     holdout_gap: float = 3.0
     beside_event: float = 0.25
+    periods: float = 10.0
     left: float = 4.0
     over: float = 1.4
     number: float = 1.4
@@ -164,8 +164,14 @@ class Policy:
             fitted.base.inertia > 0.0
             and all(_physical(fitted, index) for index in range(len(fitted.terms)))
             and all(_plausible(fitted, effect) for effect in {term.effect for term in fitted.terms})
-            and not _is_an_impact(fitted)
+            and self.outlasts_impacts(fitted)
         )
+
+    def outlasts_impacts(self, fitted: Fit) -> bool:
+        """Whether no event is over while an impact of a contact beside it still oscillates."""
+        events = [term.effect.duration(term.shape) for term in fitted.terms if isinstance(term.effect, Occasional)]
+        contacts = [term.effect.period(term.shape) for term in fitted.terms if isinstance(term.effect, Contact)]
+        return min(events, default=np.inf) >= self.periods * max(contacts, default=0.0)
 
     def needs(self, fitted: Fit, less: Fit, index: int) -> bool:
         """Whether a term, without which `less` is, still saves something beside those that came after it.
@@ -220,13 +226,6 @@ def _plausible(fitted: Fit, effect: Effect) -> bool:
     own = [index for index, term in enumerate(fitted.terms) if term.effect is effect]
     strengths, shapes = [fitted.strengths(index) for index in own], [fitted.terms[index].shape for index in own]
     return effect.plausible(strengths, shapes, fitted.scope)
-
-
-def _is_an_impact(fitted: Fit) -> bool:
-    """Whether an event is over while one impact of a contact still rings."""
-    events = [term.shape for term in fitted.terms if isinstance(term.effect, Occasional)]
-    contacts = [term.effect.ringing(term.shape) for term in fitted.terms if isinstance(term.effect, Contact)]
-    return bool(events and contacts) and min(end - start for start, end in events) < RINGS * max(contacts)
 
 
 #: Default policy of naming.

@@ -176,7 +176,8 @@ def _blocks(fitted: Fit, holdout: Rows) -> Array:
     balance = Balance.of(fitted).repeating(True)
     events = [index for index, term in enumerate(fitted.terms) if isinstance(term.effect, Occasional)]
     for index in events:
-        balance = min(_alike(balance, index, fitted), key=lambda tried: tried.gap(holdout))
+        tried = _indistinct(balance, index, fitted)
+        balance = min(tried, key=lambda each: each.gap(holdout)) if len(tried) > 1 else balance
     left, layout = balance.left(holdout), lay_out(holdout, balance.hypothesis)
     for index in events:
         own = layout.owners == index
@@ -185,12 +186,12 @@ def _blocks(fitted: Fit, holdout: Rows) -> Array:
     return np.array([float(np.mean(part**2)) for part in np.array_split(left, BLOCKS) if part.size])
 
 
-def _alike(balance: Balance, index: int, fitted: Fit) -> list[Balance]:
+def _indistinct(balance: Balance, index: int, fitted: Fit) -> list[Balance]:
     """With each shape of an event that the recording does not tell from its own."""
     effect, shape = fitted.terms[index].effect, fitted.terms[index].shape
     assert isinstance(effect, Occasional)
-    shapes = effect.alike(shape, fitted.time, fitted.scope)
-    return [replace(balance, hypothesis=balance.hypothesis.reshaped(index, tried)) for tried in shapes]
+    shapes = effect.indistinct(shape, fitted.time, fitted.scope)
+    return [replace(balance, hypothesis=balance.hypothesis.reshaped(index, each)) for each in shapes]
 
 
 def _credible(fitted: Fit) -> bool:

@@ -111,7 +111,7 @@ class Backlash(Replacing, Coupling, Contact, Native):
         """Of the gap."""
         return 2.0 * np.pi / shape[0]
 
-    def ringing(self, shape: Sequence[float]) -> float:
+    def period(self, shape: Sequence[float]) -> float:
         """Of the contact's frequency."""
         return 2.0 * np.pi / shape[1]
 

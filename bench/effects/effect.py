@@ -247,8 +247,12 @@ class Occasional(Repeatable):
         """Those that what is left shows by themselves, whatever else it holds."""
 
     @abstractmethod
-    def alike(self, shape: Sequence[float], time: Array, scope: Scope) -> list[tuple[float, ...]]:
-        """Shapes that rows at some times - s - do not tell from one, that among them."""
+    def duration(self, shape: Sequence[float]) -> float:
+        """For which it acts - s."""
+
+    @abstractmethod
+    def indistinct(self, shape: Sequence[float], time: Array, scope: Scope) -> list[tuple[float, ...]]:
+        """Shapes that rows at some times (m,) - s - do not tell from one, that one first."""
 
 
 #: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.
@@ -290,8 +294,8 @@ class Contact(Columns):
         """A turn over the width in which they are apart: its product with an error of position is one of phase."""
 
     @abstractmethod
-    def ringing(self, shape: Sequence[float]) -> float:
-        """Period of the oscillation of parts in contact - s."""
+    def period(self, shape: Sequence[float]) -> float:
+        """Of the oscillation of parts in contact - s."""
 
     @abstractmethod
     def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:

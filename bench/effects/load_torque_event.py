@@ -97,27 +97,29 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
             least, taken = float(taken[best]), taken * ((windows[:, 3] < first) | (windows[:, 0] > last))
         return []
 
+    def duration(self, shape: Sequence[float]) -> float:
+        """From start to end."""
+        return shape[1] - shape[0]
+
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """It ends after it starts."""
-        return shape[1] > shape[0]
+        return self.duration(shape) > 0.0
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         """Each lasts longer than the filter blurs; all of them for most of the recording would be how the axis is."""
-        lasting = [stop - start for start, stop in shapes]
+        lasting = [self.duration(shape) for shape in shapes]
         return min(lasting) > RESOLVED * scope.width and sum(lasting) <= LONGEST * scope.duration
 
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
         """Of its edges by the distance of the rows around them, which an instant lies within at 95 %."""
-        after = np.clip(np.searchsorted(time, shape), 1, time.size - 1)
-        return ((time[after] - time[after - 1]) / NORMAL95).tolist()
+        return (np.diff(_rows_around(shape, time))[:, 0] / NORMAL95).tolist()
 
-    def alike(self, shape: Sequence[float], time: Array, scope: Scope) -> list[tuple[float, ...]]:
+    def indistinct(self, shape: Sequence[float], time: Array, scope: Scope) -> list[tuple[float, ...]]:
         """An edge where the axis stands may be anywhere between the rows before and after."""
-        before = time[np.maximum(np.searchsorted(time, shape) - 1, 0)].tolist()
-        after = time[np.minimum(np.searchsorted(time, shape, side="right"), time.size - 1)].tolist()
-        stands = [last - first > RESOLVED * scope.width for first, last in zip(before, after, strict=True)]
-        edges = zip(shape, before, after, stands, strict=True)
-        places = [[at, *np.linspace(first, last, PLACES)] if still else [at] for at, first, last, still in edges]
+        places = [[edge] for edge in shape]
+        for place, (before, after) in zip(places, _rows_around(shape, time), strict=True):
+            if after - before > RESOLVED * scope.width:
+                place += np.linspace(before, after, PLACES).tolist()
         return [(start, end) for start, end in product(*places) if start < end]
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
@@ -125,6 +127,12 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         time, torque = at.began + at.time, values["torque"]
         xp = namespace(torque)
         return xp.where((time >= values["start"]) & (time < values["end"]), torque, xp.zeros_like(torque))
+
+
+def _rows_around(shape: Sequence[float], time: Array) -> Array:
+    """Rows before and after each edge, of rows at some times (m,) - s - (2, 2)."""
+    after = np.clip(np.searchsorted(time, shape), 1, time.size - 1)
+    return np.column_stack([time[after - 1], time[after]])
 
 
 def _moves(fitted: Fitted) -> NDArray[np.bool_]:
