@@ -124,9 +124,12 @@ class Policy:
         """Whether what is left stands clearly above noise."""
         return fitted.chi > self.remainder
 
-    def stands_in(self, fitted: Fit, effect: Replacing) -> bool:
-        """Whether a name may be there in the place of an effect whose bursts pass for the colour of noise beside it."""
-        return over_noise(fitted) > self.large and not effect.replaces.isdisjoint(fitted.hypothesis.names)
+    def leaves_room(self, fitted: Fit, effect: Replacing) -> bool:
+        """Whether an effect that is tried in the place of others may be there still, as more than noise is left.
+
+        Impacts come in bursts that pass for the colour of noise: to parts that meet, all beyond white noise is left.
+        """
+        return (over_noise(fitted) if isinstance(effect, Contact) else fitted.chi) > self.remainder
 
     def only_damps(self, before: Fit, after: Fit) -> bool:
         """Whether the squares that `after` saves may be noise of the motion that it damps, as a coupling does."""

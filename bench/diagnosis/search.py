@@ -85,7 +85,7 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
     """Effects in the order in which they are taken up beside the fit without one."""
     found = from_rivals(selected(Searched((Step(bare),)), effects, policy), effects, policy)
     for effect in (each for each in effects if isinstance(each, Replacing)):
-        if policy.remains(found.last) or policy.stands_in(found.last, effect):
+        if policy.leaves_room(found.last, effect):
             found = replacement(found, effect, effects, policy) or found
     if policy.remains(found.last) and found.stopped is None:
         found = many_small(found, effects, policy)

@@ -50,7 +50,7 @@ WINDOWS, SHORTEST = 128, 60
 CLOSED = 1e-5
 #: Gaps in travel of the motor at the recording's RMS speed over one filter width, wide ones closer, as impacts shift by
 #: more widths of the filter the wider the gap is; contacts - rad/s; damping ratio.
-GAPS = (*np.geomspace(0.03, 0.8, 16).tolist(), *np.geomspace(0.88, 8.0, 24).tolist())
+GAPS = (*np.geomspace(0.005, 0.8, 24).tolist(), *np.geomspace(0.88, 8.0, 24).tolist())
 CONTACTS = tuple(2.0 * np.pi * f for f in (40.0, 80.0, 130.0, 210.0))
 DAMPING = 0.4
 #: Offsets around a shape in each round of refinement - gap, frequency, damping - and their size at first, as factor

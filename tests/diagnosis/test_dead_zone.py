@@ -27,7 +27,7 @@ SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
 SEED, STEP = 5, 62.5e-6
 #: A contact of 80 Hz against the load, of a fifth of critical damping.
 STIFFNESS, DAMPING = 6.5e-4 * (2.0 * np.pi * 80.0) ** 2, 0.2 * 2.0 * 6.5e-4 * 2.0 * np.pi * 80.0
-GAPS = (0.012, 0.08, 0.25)
+GAPS = (0.003, 0.012, 0.08, 0.25)
 #: By the gap beside which they are: in a narrow one, or with a clean recording, impacts reach most of the rows.
 BESIDE = {
     0.012: CoggingTorque(0.03, 8.0, 1.0),

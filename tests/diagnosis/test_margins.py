@@ -11,6 +11,7 @@ from bench.diagnosis import search
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.search import Candidate
 from bench.effects.backlash import Backlash
+from bench.effects.directional_load_friction import DirectionalLoadFriction
 from tests.diagnosis.hand_made import level, made, term
 
 POLICY = Policy()
@@ -169,14 +170,18 @@ def test_what_replaces_takes_half_above_the_less_coloured_floor_and_more_than_ch
 
 
 @pytest.mark.parametrize(
-    ("squares", "name", "doubtful"),
-    [(930.0, "elastic_coupling", True), (870.0, "elastic_coupling", False), (930.0, "torque_offset", False)],
+    ("squares", "effect", "room"),
+    [
+        (124.0, Backlash(), False),
+        (127.0, Backlash(), True),
+        (127.0, DirectionalLoadFriction(), False),
+        (2000.0, DirectionalLoadFriction(), False),
+        (2010.0, DirectionalLoadFriction(), True),
+    ],
 )
-def test_what_leaves_thrice_its_white_noise_may_be_there_in_the_place_of_a_backlash(squares, name, doubtful):
-    fitted = made(
-        level(squares), term(name, 300.0, 0.2) if name == "elastic_coupling" else OFFSET, floor=4.0, white=1.0
-    )
-    assert POLICY.stands_in(fitted, Backlash()) is doubtful
+def test_to_parts_that_meet_all_beyond_white_noise_is_left(squares, effect, room):
+    """Bursts pass for noise of four times the white one."""
+    assert POLICY.leaves_room(made(level(squares), OFFSET, floor=4.0, white=1.0), effect) is room
 
 
 def test_twelve_hundredths_above_the_floor_are_a_remainder():
