@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.validation.independent.effects import (
+from bench.validation.independent.effects.mechanics import (
     Backlash,
     DirectionDependentFriction,
     ElasticCoupling,

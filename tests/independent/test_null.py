@@ -2,16 +2,23 @@
 
 import numpy as np
 
-from bench.validation.independent.effects import (
-    KINDS,
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.effects.electronics import (
     CoggingTorque,
     CurrentFilterLag,
     CurrentGainAsymmetry,
     CurrentLoopLag,
     CurrentOffsetDrift,
+    EncoderEccentricity,
+    TorqueConstantDrift,
+    TorqueConstantSaturation,
+    TorqueRipple,
+    VelocityFilterLag,
+    VoltageLimit,
+)
+from bench.validation.independent.effects.mechanics import (
     DirectionalLoadFriction,
     DirectionDependentFriction,
-    EncoderEccentricity,
     FrictionWarmup,
     LoadDependentFriction,
     LoadTorqueEvent,
@@ -19,14 +26,9 @@ from bench.validation.independent.effects import (
     PositionDependentInertia,
     QuadraticDrag,
     StribeckFriction,
-    TorqueConstantDrift,
-    TorqueConstantSaturation,
     TorqueOffset,
-    TorqueRipple,
     TorsionSpring,
     Unbalance,
-    VelocityFilterLag,
-    VoltageLimit,
 )
 from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run

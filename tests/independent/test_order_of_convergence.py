@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.validation.independent.effects import (
-    CoggingTorque,
+from bench.validation.independent.effects.electronics import CoggingTorque
+from bench.validation.independent.effects.mechanics import (
     ElasticCoupling,
     LoadDependentFriction,
     PositionDependentInertia,

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from bench.validation.independent import Axis, Sensors, simulate
-from bench.validation.independent.effects import (
+from bench.validation.independent.effects.electronics import TorqueConstantSaturation, VelocityFilterLag, VoltageLimit
+from bench.validation.independent.effects.mechanics import (
     DirectionDependentFriction,
     ElasticCoupling,
     FrictionWarmup,
@@ -19,11 +20,8 @@ from bench.validation.independent.effects import (
     PreslidingFriction,
     QuadraticDrag,
     StribeckFriction,
-    TorqueConstantSaturation,
     TorqueOffset,
     TorsionSpring,
-    VelocityFilterLag,
-    VoltageLimit,
 )
 
 SHARED = Path(__file__).parents[3] / "shared" / "cases"

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.validation.independent.effects import (
-    CoggingTorque,
+from bench.validation.independent.effects.electronics import CoggingTorque, TorqueConstantSaturation, TorqueRipple
+from bench.validation.independent.effects.mechanics import (
     DirectionDependentFriction,
     FrictionWarmup,
     LoadDependentFriction,
@@ -13,9 +13,7 @@ from bench.validation.independent.effects import (
     PositionDependentInertia,
     QuadraticDrag,
     StribeckFriction,
-    TorqueConstantSaturation,
     TorqueOffset,
-    TorqueRipple,
     TorsionSpring,
     Unbalance,
 )

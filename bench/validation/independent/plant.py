@@ -130,8 +130,7 @@ class Plant:
         self._load_inertia = self.inertia - self._body
         self._rate = self.viscous / self._body
         self._weights: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        self.measured_position, self.measured_velocity = self._sensed(self.position, self.velocity)
-        self.sensed_velocity = self.measured_velocity
+        self._sense()
         for rows in self._acting["filtered"]:
             rows.memory = self.measured_velocity[rows.index].copy()
 
@@ -154,9 +153,12 @@ class Plant:
         for rows in self._acting["transmitted_torque"]:
             net[rows.index] -= self._move_load(rows, step)
         forward, backward = self._friction_levels()
-        for rows in self._acting["bristle_torque"]:
-            net[rows.index] -= self._bend_half(rows, speed, forward, backward, step)
         body, rate, weights = self._inertia(step)
+        for rows in self._acting["bristle_torque"]:
+            i = rows.index
+            rows.level = np.maximum(np.where(self.velocity[i] > 0.0, forward[i], backward[i]), 1e-12)
+            rows.memory = rows.effect.bend(speed[i], rows.level, rows.memory, step / 2.0)
+            net[i] -= rows.effect.bristle_torque(rows, rows.level, rows.memory)
         for rows in self._acting["bristle_torque"]:
             forward[rows.index] = backward[rows.index] = 0.0
         after, distance = move(speed, net, forward, backward, body, rate, weights, step)
@@ -164,32 +166,31 @@ class Plant:
             rows.memory = rows.effect.remember(rows, rows.memory, step)
         for rows in self._acting["bristle_torque"]:
             rows.memory = rows.effect.bend(after[rows.index], rows.level, rows.memory, step / 2.0)
-        self._sense(start + distance, after, step)
         self._before, self.velocity, self.position = speed, after, start + distance
+        sensed = self.sensed_velocity
+        self._sense()
+        for rows in self._acting["filtered"]:
+            i = rows.index
+            rows.memory = rows.effect.filtered(sensed[i], self.sensed_velocity[i], rows.memory, step)
+            self.measured_velocity[i] = rows.memory
         self.time += step
 
     def _drive_current(self, demand: np.ndarray, step: float) -> np.ndarray:
         """Current that makes torque, at the middle of the step; the measured one is advanced to its end."""
-        limited = self._acting["driven_current"]
-        lagging, misread = self._acting["acting_current"], self._acting["true_current"]
-        before, self.current = self.current, demand
-        middle = demand
-        if limited or lagging or misread:
-            self.current, middle = demand.copy(), demand.copy()
-        for rows in limited:
+        before, self.current, middle = self.current, demand.copy(), demand.copy()
+        for rows in self._acting["driven_current"]:
             i = rows.index
             self.current[i] = rows.effect.driven_current(rows, demand[i], before[i], step)
             middle[i] = 0.5 * (before[i] + self.current[i])
-        for rows in misread:
+        for rows in self._acting["true_current"]:
             middle[rows.index] = rows.effect.true_current(rows, middle[rows.index])
-        for rows in lagging:
+        for rows in self._acting["acting_current"]:
             measured, start = middle[rows.index].copy(), rows.memory
             middle[rows.index] = rows.effect.acting_current(measured, start, step / 2.0)
             rows.memory = rows.effect.acting_current(measured, start, step)
-        self.recorded_current = self.current
+        self.recorded_current = self.current.copy()
         for rows in self._acting["recorded_current"]:
             rows.memory = rows.effect.recorded_current(self.current[rows.index], rows.memory, step)
-            self.recorded_current = self.recorded_current.copy()
             self.recorded_current[rows.index] = rows.memory
         return middle
 
@@ -209,14 +210,6 @@ class Plant:
             backward[rows.index] *= factor
         return np.maximum(forward, 0.0), np.maximum(backward, 0.0)
 
-    def _bend_half(
-        self, rows: Rows, speed: np.ndarray, forward: np.ndarray, backward: np.ndarray, step: float
-    ) -> np.ndarray:
-        i = rows.index
-        rows.level = np.maximum(np.where(self.velocity[i] > 0.0, forward[i], backward[i]), 1e-12)
-        rows.memory = rows.effect.bend(speed[i], rows.level, rows.memory, step / 2.0)
-        return rows.effect.bristle_torque(rows, rows.level, rows.memory)
-
     def _move_load(self, rows: Rows, step: float) -> np.ndarray:
         """Torque from motor to load at the middle of the step, and the load moved by it."""
         i = rows.index
@@ -230,42 +223,29 @@ class Plant:
         return torque
 
     def _inertia(self, step: float) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
-        varying = self._acting["added_inertia"]
-        if not varying:
-            if step not in self._weights:
-                whole = np.full_like(self._rate, step)
-                self._weights[step] = speed_weight(self._rate, whole), distance_weight(self._rate, whole)
-            return self._body, self._rate, self._weights[step]
-        body = self._body.copy()
-        for rows in varying:
-            body[rows.index] += rows.effect.added_inertia(rows)
-        rate, whole = self.viscous / body, np.full_like(body, step)
-        return body, rate, (speed_weight(rate, whole), distance_weight(rate, whole))
+        body, rate, varying = self._body, self._rate, self._acting["added_inertia"]
+        if varying:
+            body = body.copy()
+            for rows in varying:
+                body[rows.index] += rows.effect.added_inertia(rows)
+            rate = self.viscous / body
+        if varying or step not in self._weights:
+            whole = np.full_like(body, step)
+            self._weights[step] = speed_weight(rate, whole), distance_weight(rate, whole)
+        return body, rate, self._weights[step]
 
-    def _sensed(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        members = self._acting["measured"]
-        if members:
-            position, speed = position.copy(), speed.copy()
-        for rows in members:
+    def _sense(self) -> None:
+        """What the sensor reads of position and speed, a filter of the speed aside."""
+        self.measured_position, self.sensed_velocity = self.position.copy(), self.velocity.copy()
+        for rows in self._acting["measured"]:
             i = rows.index
-            position[i], speed[i] = rows.effect.measured(position[i], speed[i])
-        return position, speed
-
-    def _sense(self, position: np.ndarray, after: np.ndarray, step: float) -> None:
-        before = self.sensed_velocity
-        self.measured_position, self.sensed_velocity = self._sensed(position, after)
-        self.measured_velocity = self.sensed_velocity
-        filters = self._acting["filtered"]
-        if filters:
-            self.measured_velocity = self.sensed_velocity.copy()
-        for rows in filters:
-            i = rows.index
-            rows.memory = rows.effect.filtered(before[i], self.sensed_velocity[i], rows.memory, step)
-            self.measured_velocity[i] = rows.memory
+            read = rows.effect.measured(self.position[i], self.velocity[i])
+            self.measured_position[i], self.sensed_velocity[i] = read
+        self.measured_velocity = self.sensed_velocity.copy()
 
 
 def _acting(plant: Plant, effects: Sequence[Sequence[Effect]]) -> defaultdict[str, list[Rows]]:
-    """For each hook the effects whose class, or one that it is derived from, defines it, each stacked over its axes."""
+    """For each hook the effects that have it, each stacked over its axes."""
     found: dict[tuple[type[Effect], int], list[tuple[int, Effect]]] = {}
     for row, those in enumerate(effects):
         for order, effect in enumerate(those):
@@ -276,6 +256,6 @@ def _acting(plant: Plant, effects: Sequence[Sequence[Effect]]) -> defaultdict[st
         index = np.array([row for row, _ in pairs])
         everywhere = len(index) == len(effects)
         rows = Rows(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
-        for hook in {hook for each in kind.mro() if each not in Effect.mro() for hook in vars(each)}:
+        for hook in dir(kind):
             acting[hook].append(rows)
     return acting

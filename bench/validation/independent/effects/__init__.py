@@ -2,70 +2,19 @@
 
 import numpy as np
 
+from bench.validation.independent.effects import electronics, mechanics
 from bench.validation.independent.effects.effect import Effect
-from bench.validation.independent.effects.electronics import (
-    CoggingTorque,
-    CurrentFilterLag,
-    CurrentGainAsymmetry,
-    CurrentLoopLag,
-    CurrentOffsetDrift,
-    EncoderEccentricity,
-    TorqueConstantDrift,
-    TorqueConstantSaturation,
-    TorqueRipple,
-    VelocityFilterLag,
-    VoltageLimit,
-)
-from bench.validation.independent.effects.mechanics import (
-    Backlash,
-    DirectionalLoadFriction,
-    DirectionDependentFriction,
-    ElasticCoupling,
-    FrictionWarmup,
-    LoadDependentFriction,
-    LoadTorqueEvent,
-    PositionDependentFriction,
-    PositionDependentInertia,
-    PreslidingFriction,
-    QuadraticDrag,
-    StribeckFriction,
-    TorqueOffset,
-    TorsionSpring,
-    Unbalance,
-)
 
-
-def _by_name(*kinds: type[Effect]) -> dict[str, type[Effect]]:
-    return {kind.name: kind for kind in kinds}
-
-
-CATALOGUE = _by_name(
-    StribeckFriction,
-    PreslidingFriction,
-    DirectionDependentFriction,
-    QuadraticDrag,
-    LoadDependentFriction,
-    PositionDependentFriction,
-    FrictionWarmup,
-    TorqueOffset,
-    Unbalance,
-    TorsionSpring,
-    PositionDependentInertia,
-    ElasticCoupling,
-    Backlash,
-    LoadTorqueEvent,
-    CoggingTorque,
-    TorqueRipple,
-    TorqueConstantSaturation,
-    VoltageLimit,
-    CurrentLoopLag,
-    VelocityFilterLag,
-    EncoderEccentricity,
+_LATER = (
+    electronics.CurrentFilterLag,
+    electronics.CurrentGainAsymmetry,
+    electronics.CurrentOffsetDrift,
+    electronics.TorqueConstantDrift,
+    mechanics.DirectionalLoadFriction,
 )
 #: Drawn as a group of their own, so that a case of another group stays what it is.
-LATER = _by_name(
-    CurrentFilterLag, CurrentGainAsymmetry, CurrentOffsetDrift, TorqueConstantDrift, DirectionalLoadFriction
-)
+LATER = {kind.name: kind for kind in _LATER}
+CATALOGUE = {kind.name: kind for kind in Effect.__subclasses__() if kind not in _LATER}
 KINDS = CATALOGUE | LATER
 
 

@@ -5,9 +5,10 @@ The same object serves one axis (fields are numbers) and many (fields are arrays
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, fields
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -47,10 +48,27 @@ class Rows:
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical effect. It defines the hooks through which it acts; the plant asks no other one.
+    """A physical effect. It acts through those of these hooks that its class defines; all else is the plant's.
 
-    `rows` shows the state of the axes that have the effect, midway through the step; `memory` is the effect's own state
-    (one number an axis), `step` the time to advance - s.
+    `rows` shows the axes that have it, midway through the step; `memory` is its own state (one number an axis), `step`
+    the time to advance - s. Currents - A, angles - rad, torques - N*m:
+
+        resisting_torque(rows)                          added to M_load on the motor's side
+        friction_excess(rows)                           added to the level of dry friction
+        friction_factor(rows)                           multiplies the level of dry friction
+        friction_difference(rows)                       level in positive minus level in negative direction
+        added_inertia(rows)                             added to the moment of inertia - kg*m**2
+        torque_factor(rows)                             multiplies motor torque
+        remember(rows, memory, step)                    its own state after the step
+        bristle_torque(rows, level, memory)             replaces dry friction; `level` is what it tends to
+        bend(speed, level, memory, step)                deflection of the bristles after the step
+        transmitted_torque(rows, twist, twist_rate)     from motor to load as separate bodies; twist = motor less load
+        driven_current(rows, demand, current, step)     after the step, as the drive measures it
+        acting_current(current, memory, step)           makes torque, `step` after `memory`; `current` is the measured
+        true_current(rows, reading)                     flows while the drive's sensor reads one
+        recorded_current(current, memory, step)         is recorded, `step` after `memory`; the drive reads `current`
+        measured(position, speed)                       angle and speed - rad/s - as the sensor sees them
+        filtered(before, after, memory, step)           reported speed - rad/s - as the sensed one changes in a step
     """
 
     name: ClassVar[str]
@@ -59,6 +77,13 @@ class Effect:
     transmitted: ClassVar[bool] = False
     #: Name of the effect that no axis has beside it, or that no recording tells from it; one of the two says so.
     never_beside: ClassVar[str] = ""
+
+    def __init_subclass__(cls) -> None:
+        cls.name = re.sub(r"\B([A-Z])", r"_\1", cls.__name__).lower()
+
+    if TYPE_CHECKING:  # the hooks
+
+        def __getattr__(self, hook: str) -> Callable[..., Any]: ...
 
     @classmethod
     def possible(cls, axis: Axis) -> bool:
@@ -77,70 +102,6 @@ class Effect:
     def quantities(self, axis: Axis) -> dict[str, float]:
         """Values of the quantities that the contract's effect of this name has."""
         return {key: float(value) for key, value in asdict(self).items()}
-
-    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
-        """Added to M_load on the motor's side - N*m."""
-        raise NotImplementedError
-
-    def friction_excess(self, rows: Rows) -> np.ndarray:
-        """Added to the level of dry friction - N*m."""
-        raise NotImplementedError
-
-    def friction_factor(self, rows: Rows) -> np.ndarray:
-        """Multiplies the level of dry friction."""
-        raise NotImplementedError
-
-    def friction_difference(self, rows: Rows) -> np.ndarray | float:
-        """Level in positive minus level in negative direction - N*m."""
-        raise NotImplementedError
-
-    def added_inertia(self, rows: Rows) -> np.ndarray:
-        """Added to the moment of inertia - kg*m**2."""
-        raise NotImplementedError
-
-    def torque_factor(self, rows: Rows) -> np.ndarray | float:
-        """Multiplies motor torque."""
-        raise NotImplementedError
-
-    def remember(self, rows: Rows, memory: np.ndarray, step: float) -> np.ndarray:
-        """The effect's own state after the step."""
-        raise NotImplementedError
-
-    def bristle_torque(self, rows: Rows, level: np.ndarray, memory: np.ndarray) -> np.ndarray:
-        """Friction torque that replaces dry friction - N*m; `level` is what it tends to."""
-        raise NotImplementedError
-
-    def bend(self, speed: np.ndarray, level: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
-        """Deflection of the bristles after the step."""
-        raise NotImplementedError
-
-    def transmitted_torque(self, rows: Rows, twist: np.ndarray, twist_rate: np.ndarray) -> np.ndarray:
-        """Torque from motor to load when they are separate bodies - N*m; twist = motor minus load angle - rad."""
-        raise NotImplementedError
-
-    def driven_current(self, rows: Rows, demand: np.ndarray, current: np.ndarray, step: float) -> np.ndarray:
-        """Current after the step, that the drive measures - A."""
-        raise NotImplementedError
-
-    def acting_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
-        """Current that makes torque, `step` after `memory` was it, while the measured one is `current` - A."""
-        raise NotImplementedError
-
-    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
-        """Current that flows while the sensor of the drive reads one - A."""
-        raise NotImplementedError
-
-    def recorded_current(self, current: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
-        """Current that is recorded, `step` after `memory` was it, while the drive reads `current` - A."""
-        raise NotImplementedError
-
-    def measured(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Angle and speed as the sensor sees them - rad, rad/s."""
-        raise NotImplementedError
-
-    def filtered(self, before: np.ndarray, after: np.ndarray, memory: np.ndarray, step: float) -> np.ndarray:
-        """Reported speed after the step, in which the sensed one went from `before` to `after` - rad/s."""
-        raise NotImplementedError
 
 
 def stack(effects: Sequence[Effect]) -> Effect:

@@ -19,7 +19,6 @@ from bench.validation.independent.rig import Axis
 class CoggingTorque(Effect):
     """Resisting torque A*sin(n*q + phi); A amplitude - N*m, n harmonic."""
 
-    name: ClassVar[str] = "cogging_torque"
     on_linear_axis: ClassVar[bool] = False
     amplitude: float
     harmonic: float
@@ -38,7 +37,6 @@ class CoggingTorque(Effect):
 class TorqueRipple(Effect):
     """Motor torque kT*i*(1 + a*sin(n*q + phi)); a relative_amplitude, n harmonic."""
 
-    name: ClassVar[str] = "torque_ripple"
     on_linear_axis: ClassVar[bool] = False
     relative_amplitude: float
     harmonic: float
@@ -57,7 +55,6 @@ class TorqueRipple(Effect):
 class TorqueConstantSaturation(Effect):
     """kT(i) = kT*(1 - d*(i/i_peak)**2); d drop_at_peak."""
 
-    name: ClassVar[str] = "torque_constant_saturation"
     drop_at_peak: float
 
     @classmethod
@@ -73,7 +70,6 @@ class TorqueConstantSaturation(Effect):
 class VoltageLimit(Effect):
     """L*di/dt = v - R*i - K_e*w with |v| <= voltage - V; the drive meets its demand as fast as that allows."""
 
-    name: ClassVar[str] = "voltage_limit"
     voltage: float
 
     @classmethod
@@ -97,7 +93,6 @@ class VoltageLimit(Effect):
 class CurrentLoopLag(Effect):
     """Acting current follows the reported one: T*di/dt = reported - i; T time_constant - s."""
 
-    name: ClassVar[str] = "current_loop_lag"
     never_beside: ClassVar[str] = "velocity_filter_lag"
     time_constant: float
 
@@ -113,7 +108,6 @@ class CurrentLoopLag(Effect):
 class CurrentFilterLag(Effect):
     """Recorded current y follows the one that the drive reads: T*dy/dt = i - y; T time_constant - s."""
 
-    name: ClassVar[str] = "current_filter_lag"
     time_constant: float
 
     @classmethod
@@ -128,7 +122,6 @@ class CurrentFilterLag(Effect):
 class CurrentGainAsymmetry(Effect):
     """One ampere read is 1 + d/2 amperes of positive and 1 - d/2 of negative current; d gain_difference."""
 
-    name: ClassVar[str] = "current_gain_asymmetry"
     gain_difference: float
 
     @classmethod
@@ -143,7 +136,6 @@ class CurrentGainAsymmetry(Effect):
 class CurrentOffsetDrift(Effect):
     """The sensor reads rate*t too much, as torque; rate - N*m/s."""
 
-    name: ClassVar[str] = "current_offset_drift"
     rate: float
 
     @classmethod
@@ -158,7 +150,6 @@ class CurrentOffsetDrift(Effect):
 class TorqueConstantDrift(Effect):
     """kT*(1 + rate*t); rate - 1/s."""
 
-    name: ClassVar[str] = "torque_constant_drift"
     rate: float
 
     @classmethod
@@ -173,7 +164,6 @@ class TorqueConstantDrift(Effect):
 class VelocityFilterLag(Effect):
     """Reported speed v follows the sensed one: T*dv/dt = w - v; T time_constant - s."""
 
-    name: ClassVar[str] = "velocity_filter_lag"
     time_constant: float
 
     @classmethod
@@ -191,7 +181,6 @@ class VelocityFilterLag(Effect):
 class EncoderEccentricity(Effect):
     """Measured angle q + e*sin(q + phi), measured speed its derivative; e amplitude - rad."""
 
-    name: ClassVar[str] = "encoder_eccentricity"
     on_linear_axis: ClassVar[bool] = False
     amplitude: float
     phase: float = 0.0

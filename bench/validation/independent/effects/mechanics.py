@@ -18,7 +18,6 @@ from bench.validation.independent.rig import Axis
 class StribeckFriction(Effect):
     """Level K_0 + (K_s - K_0)*exp(-(w/w_s)**2); K_s static friction - N*m, w_s Stribeck speed - rad/s."""
 
-    name: ClassVar[str] = "stribeck_friction"
     static_friction: float
     stribeck_velocity: float
 
@@ -39,7 +38,6 @@ class PreslidingFriction(Effect):
     Canudas de Wit et al., IEEE Trans. Automatic Control 40 (1995) 419, eqs. 1-3.
     """
 
-    name: ClassVar[str] = "presliding_friction"
     bristle_stiffness: float
     bristle_damping: float = 0.0
 
@@ -66,7 +64,6 @@ class DirectionDependentFriction(Effect):
     A share of the relative difference d/(2*K_0) may go into viscous friction too.
     """
 
-    name: ClassVar[str] = "direction_dependent_friction"
     coulomb_difference: float
     viscous_share: float = 0.0
 
@@ -91,7 +88,6 @@ class DirectionDependentFriction(Effect):
 class QuadraticDrag(Effect):
     """Resisting torque c*w*|w|; c quadratic_drag - N*m*s**2/rad**2."""
 
-    name: ClassVar[str] = "quadratic_drag"
     quadratic_drag: float
 
     @classmethod
@@ -106,7 +102,6 @@ class QuadraticDrag(Effect):
 class LoadDependentFriction(Effect):
     """Level K_0 + mu*|M|, M motor torque; mu load_friction_coefficient."""
 
-    name: ClassVar[str] = "load_dependent_friction"
     load_friction_coefficient: float
 
     @classmethod
@@ -124,7 +119,6 @@ class DirectionalLoadFriction(Effect):
     K_m motor_coefficient, load_ratio K_e/K_m. Duclusaud et al., arXiv 2410.08650 (2024).
     """
 
-    name: ClassVar[str] = "directional_load_friction"
     never_beside: ClassVar[str] = "load_dependent_friction"
     motor_coefficient: float
     load_ratio: float
@@ -143,7 +137,6 @@ class DirectionalLoadFriction(Effect):
 class PositionDependentFriction(Effect):
     """Level K_0*(1 + a*sin(q + phi)); a relative_amplitude."""
 
-    name: ClassVar[str] = "position_dependent_friction"
     on_linear_axis: ClassVar[bool] = False
     relative_amplitude: float
     phase: float = 0.0
@@ -160,7 +153,6 @@ class PositionDependentFriction(Effect):
 class FrictionWarmup(Effect):
     """Level K_0*(1 + A*exp(-t/T)); A relative_amplitude, T time_constant - s; a share of it on K_w too."""
 
-    name: ClassVar[str] = "friction_warmup"
     relative_amplitude: float
     time_constant: float
     viscous_share: float = 0.0
@@ -184,7 +176,6 @@ class FrictionWarmup(Effect):
 class TorqueOffset(Effect):
     """Constant resisting torque - N*m."""
 
-    name: ClassVar[str] = "torque_offset"
     never_beside: ClassVar[str] = "direction_dependent_friction"
     transmitted: ClassVar[bool] = True
     torque: float
@@ -201,7 +192,6 @@ class TorqueOffset(Effect):
 class Unbalance(Effect):
     """Eccentric mass under gravity, resisting torque A*sin(q + phi); A = m*g*r amplitude - N*m."""
 
-    name: ClassVar[str] = "unbalance"
     transmitted: ClassVar[bool] = True
     on_linear_axis: ClassVar[bool] = False
     amplitude: float
@@ -219,7 +209,6 @@ class Unbalance(Effect):
 class TorsionSpring(Effect):
     """Resisting torque k*q; k stiffness - N*m/rad."""
 
-    name: ClassVar[str] = "torsion_spring"
     transmitted: ClassVar[bool] = True
     stiffness: float
 
@@ -236,7 +225,6 @@ class TorsionSpring(Effect):
 class PositionDependentInertia(Effect):
     """J(q) = J*(1 + a*sin(n*q + phi)), resisting torque dJ/dq*w**2/2 (Lagrange); a relative_amplitude, n harmonic."""
 
-    name: ClassVar[str] = "position_dependent_inertia"
     on_linear_axis: ClassVar[bool] = False
     relative_amplitude: float
     harmonic: float
@@ -258,25 +246,6 @@ class PositionDependentInertia(Effect):
         return 0.5 * slope * rows.velocity**2
 
 
-@dataclass(frozen=True)
-class LoadTorqueEvent(Effect):
-    """Constant resisting torque - N*m - from start to end - s."""
-
-    name: ClassVar[str] = "load_torque_event"
-    start: float
-    end: float
-    torque: float
-
-    @classmethod
-    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
-        length = rng.uniform(0.04, 0.12) * duration
-        start = rng.uniform(0.1, 0.8) * duration
-        return cls(start, start + length, rng.choice([-1.0, 1.0]) * 1.6 * about(severity, rng) * axis.torque_scale)
-
-    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
-        return self.torque * ((rows.time >= self.start) & (rows.time < self.end))
-
-
 def _reduced(axis: Axis) -> float:
     """Inertia in which motor and load swing against each other, J_m*J_l/(J_m + J_l) - kg*m**2."""
     return axis.rotor_inertia * (axis.inertia - axis.rotor_inertia) / axis.inertia
@@ -289,7 +258,6 @@ class ElasticCoupling(Effect):
     Resonance sqrt(k*(1/J_m + 1/J_l))/(2*pi) - Hz.
     """
 
-    name: ClassVar[str] = "elastic_coupling"
     never_beside: ClassVar[str] = "backlash"
     stiffness: float
     damping: float
@@ -317,7 +285,6 @@ class Backlash(Effect):
     gap - rad, contact_stiffness k - N*m/rad, contact_damping d - N*m*s/rad.
     """
 
-    name: ClassVar[str] = "backlash"
     gap: float
     contact_stiffness: float
     contact_damping: float
@@ -334,3 +301,21 @@ class Backlash(Effect):
         penetration = np.abs(twist) - self.gap / 2.0
         push = self.contact_stiffness * penetration + self.contact_damping * side * twist_rate
         return np.where(penetration > 0.0, side * np.maximum(push, 0.0), 0.0)
+
+
+@dataclass(frozen=True)
+class LoadTorqueEvent(Effect):
+    """Constant resisting torque - N*m - from start to end - s."""
+
+    start: float
+    end: float
+    torque: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        length = rng.uniform(0.04, 0.12) * duration
+        start = rng.uniform(0.1, 0.8) * duration
+        return cls(start, start + length, rng.choice([-1.0, 1.0]) * 1.6 * about(severity, rng) * axis.torque_scale)
+
+    def resisting_torque(self, rows: Rows) -> np.ndarray | float:
+        return self.torque * ((rows.time >= self.start) & (rows.time < self.end))
