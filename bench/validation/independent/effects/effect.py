@@ -6,7 +6,7 @@ The same object serves one axis (fields are numbers) and many (fields are arrays
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -83,7 +83,7 @@ class Effect:
 
     if TYPE_CHECKING:  # the hooks
 
-        def __getattr__(self, hook: str) -> Callable[..., Any]: ...
+        def __getattr__(self, hook: str) -> Any: ...  # noqa: ANN401
 
     @classmethod
     def possible(cls, axis: Axis) -> bool:
