@@ -24,8 +24,7 @@ from bench.trace.trace import Trace
 from bench.validation.coverage import UNEXPLAINED, Named, Scored, of_effects
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.rig import Axis
-from bench.validation.injection import INJECTABLE, Host, injected, stand_in
-from bench.validation.severity import disturbance, drawn
+from bench.validation.injection import INJECTABLE, Host, disturbance, drawn, injected, stand_in
 
 #: What becomes of an effect. Right: named, and nothing else is that was not before; part: something else, too; flagged:
 #: not named, and a remainder is left or a refusal says why; missed: neither; wrong: not named, and something else is.

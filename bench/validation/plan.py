@@ -183,25 +183,18 @@ class OwnAxis:
     """The same axis in every run; noise and the age of the current are drawn.
 
     Attributes:
-        rig: of the axis.
-        axis: its true values.
-        motion, motion_name: that its drive is commanded to make.
-        sensors: that record it.
+        case: of it, but for what is drawn.
         plants: that can move it.
     """
 
-    rig: Rig
-    axis: Axis
-    motion: Motion
-    motion_name: str
-    sensors: Sensors
+    case: Case
     plants: tuple[Plant, ...]
 
     def __call__(self, index: int, rng: np.random.Generator) -> Case:
         """A case of it, as of any population."""
         plant = self.plants[int(rng.integers(len(self.plants)))]
-        sensors = replace(self.sensors, current_age=int(rng.integers(2)))
-        return Case(index, plant, self.axis, self.rig, self.motion, self.motion_name, sensors)
+        sensors = replace(self.case.sensors, current_age=int(rng.integers(2)))
+        return replace(self.case, index=index, plant=plant, sensors=sensors)
 
 
 def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
@@ -237,7 +230,8 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
     # the independent plant has a motor that does not saturate, and no load torque
     plain = simulation.friction == "mechanics" and not simulation.load_torque and not constant.curvature
     axis = _axis(rig, parameters, cascade, motion.top)
-    return OwnAxis(rig, axis, Motion((motion,)), profile, sensors, PLANTS if plain else ("mujoco",))
+    plants = PLANTS if plain else ("mujoco",)
+    return OwnAxis(Case(0, plants[0], axis, rig, Motion((motion,)), profile, sensors), plants)
 
 
 def as_recorded(rig: Rig, recording: Trace) -> Simulation:
@@ -263,7 +257,10 @@ def _step(recording: Trace | None, name: str) -> float:
 def _axis(rig: Rig, parameters: AxisParameters, cascade: Cascade, top_speed: float) -> Axis:
     constant, drive, winding = rig.motor.torque_per_ampere, rig.drive, winding_of(rig)
     assert constant is not None and drive is not None  # `require` has seen to it
-    axis = Axis(
+    emf = {"back_emf_constant": 0.0}
+    if winding is not None:
+        emf = {name: getattr(winding, name) for name in ("resistance", "inductance", "back_emf_constant")}
+    return Axis(
         name=rig.name,
         inertia=parameters.inertia,
         viscous=parameters.viscous_friction_coefficient,
@@ -278,8 +275,5 @@ def _axis(rig: Rig, parameters: AxisParameters, cascade: Cascade, top_speed: flo
         control_period=cascade.control_period,
         top_speed=top_speed,
         linear=not rig.axis_kind.turns,
+        **emf,
     )
-    if winding is None:
-        return replace(axis, back_emf_constant=0.0)
-    known = {name: getattr(winding, name) for name in ("resistance", "inductance", "back_emf_constant")}
-    return replace(axis, **known)

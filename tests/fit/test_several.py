@@ -14,7 +14,7 @@ from bench.trace.trace import Trace
 from bench.trace.write import write
 from bench.validation.independent import Motion, Noise, Sensors, write_rig
 from bench.validation.independent import simulate as integrate
-from bench.validation.independent.effects.mechanics import TorqueOffset
+from bench.validation.independent.effects import TorqueOffset
 from bench.validation.independent.references import Ramps
 from tests.diagnosis.command import started
 from tests.fit.motions import NAMES, RIG, UNITS, Truth, recording

@@ -5,12 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.validation.independent.effects.electronics import (
-    CurrentLoopLag,
-    EncoderEccentricity,
-    VelocityFilterLag,
-    VoltageLimit,
-)
+from bench.validation.independent.effects import CurrentLoopLag, EncoderEccentricity, VelocityFilterLag, VoltageLimit
 from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.validation.independent.effects.mechanics import (
+from bench.validation.independent.effects import (
     Backlash,
     DirectionDependentFriction,
     ElasticCoupling,

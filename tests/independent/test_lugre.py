@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.validation.independent.effects.mechanics import PreslidingFriction, StribeckFriction
+from bench.validation.independent.effects import PreslidingFriction, StribeckFriction
 from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run
 

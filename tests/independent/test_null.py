@@ -2,23 +2,16 @@
 
 import numpy as np
 
-from bench.validation.independent.effects import KINDS
-from bench.validation.independent.effects.electronics import (
+from bench.validation.independent.effects import (
+    KINDS,
     CoggingTorque,
     CurrentFilterLag,
     CurrentGainAsymmetry,
     CurrentLoopLag,
     CurrentOffsetDrift,
-    EncoderEccentricity,
-    TorqueConstantDrift,
-    TorqueConstantSaturation,
-    TorqueRipple,
-    VelocityFilterLag,
-    VoltageLimit,
-)
-from bench.validation.independent.effects.mechanics import (
     DirectionalLoadFriction,
     DirectionDependentFriction,
+    EncoderEccentricity,
     FrictionWarmup,
     LoadDependentFriction,
     LoadTorqueEvent,
@@ -26,9 +19,14 @@ from bench.validation.independent.effects.mechanics import (
     PositionDependentInertia,
     QuadraticDrag,
     StribeckFriction,
+    TorqueConstantDrift,
+    TorqueConstantSaturation,
     TorqueOffset,
+    TorqueRipple,
     TorsionSpring,
     Unbalance,
+    VelocityFilterLag,
+    VoltageLimit,
 )
 from bench.validation.independent.plant import Plant
 from tests.independent.axes import FREE, PLAIN, run

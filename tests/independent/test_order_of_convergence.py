@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.validation.independent.effects.electronics import CoggingTorque
-from bench.validation.independent.effects.mechanics import (
+from bench.validation.independent.effects import (
+    CoggingTorque,
     ElasticCoupling,
     LoadDependentFriction,
     PositionDependentInertia,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.validation.independent import Motion, Noise, Sensors, simulate
-from bench.validation.independent.effects.electronics import CoggingTorque, CurrentLoopLag
+from bench.validation.independent.effects import CoggingTorque, CurrentLoopLag
 from bench.validation.independent.references import multisine, slow_reversals
 from bench.validation.independent.sensors import NoiseStream, rounded
 from tests.independent.axes import PLAIN

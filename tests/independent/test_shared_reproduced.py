@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from bench.validation.independent import Axis, Sensors, simulate
-from bench.validation.independent.effects.electronics import TorqueConstantSaturation, VelocityFilterLag, VoltageLimit
-from bench.validation.independent.effects.mechanics import (
+from bench.validation.independent.effects import (
     DirectionDependentFriction,
     ElasticCoupling,
     FrictionWarmup,
@@ -20,8 +19,11 @@ from bench.validation.independent.effects.mechanics import (
     PreslidingFriction,
     QuadraticDrag,
     StribeckFriction,
+    TorqueConstantSaturation,
     TorqueOffset,
     TorsionSpring,
+    VelocityFilterLag,
+    VoltageLimit,
 )
 
 SHARED = Path(__file__).parents[3] / "shared" / "cases"

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.validation.independent.effects.electronics import CoggingTorque, TorqueConstantSaturation, TorqueRipple
-from bench.validation.independent.effects.mechanics import (
+from bench.validation.independent.effects import (
+    CoggingTorque,
     DirectionDependentFriction,
     FrictionWarmup,
     LoadDependentFriction,
@@ -13,7 +13,9 @@ from bench.validation.independent.effects.mechanics import (
     PositionDependentInertia,
     QuadraticDrag,
     StribeckFriction,
+    TorqueConstantSaturation,
     TorqueOffset,
+    TorqueRipple,
     TorsionSpring,
     Unbalance,
 )

@@ -10,24 +10,21 @@ from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from bench.validation.independent import KINDS, Axis, Motion, Sensors, simulate
-from bench.validation.independent.effects.electronics import (
+from bench.validation.independent.effects import (
+    Backlash,
     CoggingTorque,
     CurrentGainAsymmetry,
-    VelocityFilterLag,
-    VoltageLimit,
-)
-from bench.validation.independent.effects.mechanics import (
-    Backlash,
     DirectionalLoadFriction,
     ElasticCoupling,
     LoadDependentFriction,
     PreslidingFriction,
     TorqueOffset,
     Unbalance,
+    VelocityFilterLag,
+    VoltageLimit,
 )
 from bench.validation.independent.references import Multisine
-from bench.validation.injection import INJECTABLE, Host, behind, injected
-from bench.validation.severity import disturbance, drawn, modelled
+from bench.validation.injection import INJECTABLE, Host, behind, disturbance, drawn, injected, modelled
 from tests.kept import kept
 
 PERIOD = 250e-6

@@ -11,7 +11,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.parameter import Parameter
 from bench.validation import into
 from bench.validation.coverage import of_effects
-from bench.validation.independent.effects.electronics import CoggingTorque
+from bench.validation.independent.effects import CoggingTorque
 from bench.validation.into import Injection, Injections, Own, axis_of, fate, inject, own, tried
 from tests.validation.test_injection import AXIS, RIG, SWING, host_of
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.validation.independent.effects.effect import Effect, Rows, stack
+from bench.validation.independent.effects import Effect, Rows, stack
 from bench.validation.independent.rig import Axis
 
 Array = NDArray[np.float64]

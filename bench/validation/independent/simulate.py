@@ -9,7 +9,7 @@ from math import ceil
 import numpy as np
 
 from bench.trace.trace import Trace
-from bench.validation.independent.effects.effect import Effect
+from bench.validation.independent.effects import Effect
 from bench.validation.independent.plant import Plant
 from bench.validation.independent.references import Motion
 from bench.validation.independent.rig import Axis

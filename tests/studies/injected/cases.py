@@ -20,9 +20,9 @@ from bench.errors import BenchError
 from bench.trace.write import write
 from bench.validation.coverage import of_effects
 from bench.validation.independent.effects import KINDS, Effect
-from bench.validation.injection import INJECTABLE, injected
+from bench.validation.injection import INJECTABLE, disturbance, drawn, injected
 from bench.validation.into import FLAGGED, Own, fate, own
-from bench.validation.severity import disturbance, drawn
+from tests.cases import parameters
 from tests.studies.blind.score import same, twins
 from tests.studies.injected.sources import Source
 
@@ -223,7 +223,7 @@ def write_case(folder: Path, case: Case, source: Source, own: Known) -> bool:
         "left": own.left,
         "rms": whole,
         "rms_beyond_base": beyond,
-        "parameters": {case.effect: effect.truth(host.axis)},
+        "parameters": {case.effect: parameters(effect, host.axis)},
         "quantities": {case.effect: effect.quantities(host.axis)},
         "inertia": host.axis.inertia,
         "viscous_friction": host.axis.viscous,

@@ -9,7 +9,7 @@ import pytest
 import bench
 from bench.diagnosis.probability import NameSet, Probabilities
 from bench.trace.trace import Trace
-from bench.validation.independent.effects.mechanics import LoadDependentFriction, TorqueOffset
+from bench.validation.independent.effects import LoadDependentFriction, TorqueOffset
 from bench.validation.injection import INJECTABLE
 from tests.shared import needs_shared
 from tests.studies.injected.cases import (
