@@ -49,7 +49,6 @@ PAYLOAD = "payload"
 ACTUATOR = ("gaintype", "biastype", "dyntype", "gainprm", "biasprm", "dynprm")
 ACTUATOR += ("actdim", "actearly", "actlimited", "actrange")
 ACTUATOR += ("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay")
-TRANSMISSION = mujoco.mjtTrn.mjTRN_JOINT
 #: Whether a joint of a type turns.
 TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}
 #: What makes an effect that is not native.
@@ -188,7 +187,7 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature
     joint.frictionloss = alone.frictionloss * ratio
     joint.solimp_friction, joint.solref_friction = STICKING_IMPEDANCE, [2.0 * spec.option.timestep, 1.0]
     moving = [actuator.name or "an actuator without a name" for actuator in spec.actuators if actuator.target == name]
-    geared: dict[str, Any] = {"target": name, "trntype": TRANSMISSION, "gear": [ratio, 0, 0, 0, 0, 0]}
+    geared: dict[str, Any] = {"target": name, "trntype": mujoco.mjtTrn.mjTRN_JOINT, "gear": [ratio, 0, 0, 0, 0, 0]}
     for actuator in axis.actuators:
         if actuator.name != DRIVE and (actuator.name != LOAD_TORQUE or actuator.biasprm[0] != 0.0):
             added = spec.add_actuator(name=f"{name} {actuator.name}", **geared)

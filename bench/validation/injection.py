@@ -73,7 +73,7 @@ class StandIn:
     """All samples of a recording, in the place of the rows of a plant that the hooks of effects ask - (m,) each.
 
     Attributes:
-        host, parts: the recording, and its stretches without a hole.
+        host: the recording.
         time: from the recording's start - s.
         position, velocity, acceleration: of the axis - rad, rad/s, rad/s**2.
         direction: sign of the speed, 0 where the axis may rest: friction at rest takes what it is given.
@@ -81,7 +81,6 @@ class StandIn:
     """
 
     host: Host
-    parts: tuple[slice, ...]
     time: Array
     position: Array
     velocity: Array
@@ -115,7 +114,7 @@ def stand_in(host: Host, trace: Trace | None = None) -> StandIn:
     position, velocity, acceleration, direction = np.concatenate([_motion(trace, p) for p in trace.segments], axis=1)
     effort, time = host.rig.effort(trace)[0], trace.time - trace.time[0]
     peak = np.full(len(trace), host.axis.peak_current)
-    seen = StandIn(host, trace.segments, time, position, velocity, acceleration, direction, effort, effort, peak)
+    seen = StandIn(host, time, position, velocity, acceleration, direction, effort, effort, peak)
     return seen.driven_by(effort)
 
 
@@ -162,7 +161,7 @@ def injected(host: Host, effect: Effect) -> Trace:
     current = _reported(effect, seen.driven_by(_needed(effect, seen)))
     more = current * seen.torque_constant - seen.motor_torque
     if host.lag and not acts(effect, *REPORTED):
-        more = np.concatenate([_ahead(more[part], host.trace.sample_period, host.lag) for part in seen.parts])
+        more = np.concatenate([_ahead(more[part], host.trace.sample_period, host.lag) for part in host.trace.segments])
     return driven(host, effect.name, seen.motor_torque + more)
 
 
@@ -198,7 +197,7 @@ def _bristles(effect: Effect, seen: StandIn) -> Array:
     """Torque of bristles that the motion bends, straight at the start of each stretch - N*m (N) (m,)."""
     level, bent = np.maximum(seen.coulomb, 1e-12), np.zeros_like(seen.position)
     period = seen.host.trace.sample_period
-    for part in seen.parts:
+    for part in seen.host.trace.segments:
         for k, speed in enumerate(np.diff(seen.position[part]) / period, part.start):
             bent[k + 1] = effect.bend(speed, level[k], bent[k], period)
     return effect.bristle_torque(seen, level, bent)
@@ -216,7 +215,7 @@ def _behind_coupling(effect: Effect, seen: StandIn) -> Array:
     stiffness = effect.transmitted_torque(seen, 2.0 * far, 0.0 * far) - effect.transmitted_torque(seen, far, 0.0 * far)
     count = math.ceil(STEPS * period * math.sqrt(float(stiffness) / float(far) / load) / (2.0 * math.pi))
     step, less = period / count, np.zeros_like(seen.position)
-    for part in seen.parts:
+    for part in seen.host.trace.segments:
         twist = rate = np.zeros(())
         for k, alpha in enumerate(seen.acceleration[part], part.start):
             less[k] = load * alpha - effect.transmitted_torque(seen, twist, rate)
@@ -257,7 +256,7 @@ def _reported(effect: Effect, seen: StandIn) -> Array:
     for hook, lagging in (("acting_current", _ahead), ("recorded_current", behind)):
         if acts(effect, hook):
             period, constant = seen.host.trace.sample_period, effect.time_constant
-            current = np.concatenate([lagging(current[part], period, constant) for part in seen.parts])
+            current = np.concatenate([lagging(current[part], period, constant) for part in seen.host.trace.segments])
     return current
 
 

@@ -59,7 +59,10 @@ class Own:
 def own(trace: Trace, rig: Rig) -> Own:
     """By a diagnosis of the recording as it is, which may refuse it as `diagnose` does."""
     found = diagnose(trace, rig)
-    plain = Host(trace, rig, axis_of(found, trace, rig), moved=_moved(trace, found), lag=_lag(trace, found))
+    source = "position" if "position" in trace else "velocity"
+    lags = [(one.effect, one.values["time_constant"]) for one in found.effects if isinstance(one.effect, MotionLag)]
+    lag = sum(effect.delays([constant], source)[0] for effect, constant in lags)
+    plain = Host(trace, rig, axis_of(found, trace, rig), moved=_moved(trace, found), lag=lag)
     left, gap = found.torque.identify, found.torque
     assert left is not None
     taken = frozenset(name for one in found.effects for name in (one.name, *one.ambiguous_with))
@@ -104,13 +107,6 @@ def _moved(trace: Trace, found: Diagnosis) -> Trace | None:
     for effect, values in misread:
         position, velocity = effect.unseen(values, position, velocity)
     return trace.with_signals({"position": position, "velocity": velocity}, {})
-
-
-def _lag(trace: Trace, found: Diagnosis) -> float:
-    """By which the motion follows the reported effort, as its diagnosis names it - s."""
-    source = "position" if "position" in trace else "velocity"
-    lags = [(one.effect, one.values) for one in found.effects if isinstance(one.effect, MotionLag)]
-    return sum(effect.delays([values["time_constant"]], source)[0] for effect, values in lags)
 
 
 def _load(host: Host, found: Diagnosis) -> Array | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -87,15 +87,6 @@ def any_axis(index: int, rng: np.random.Generator) -> Case:
     return Case(index, plant, axis, rig, motion, name, random_sensors(axis, rng))
 
 
-def hide(case: Case, names: Sequence[str], rng: np.random.Generator) -> Case:
-    """The case with effects of these names, all as strong as one draw says."""
-    if not names:
-        return case
-    severity = float(rng.uniform(*SEVERITY))
-    effects = tuple(KINDS[name].draw(case.axis, severity, rng, case.motion.duration) for name in names)
-    return replace(case, effects=effects, severity=severity)
-
-
 #: Names that can be hidden: those that the independent axis has too.
 HIDEABLE = tuple(name for name in KINDS if name in catalogue())
 #: Effects at most in one axis.
@@ -168,10 +159,15 @@ class Plan:
     population: Population = any_axis
 
     def case(self, index: int) -> Case:
-        """The case of an index."""
+        """The case of an index; its effects are all as strong as one draw says."""
         rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(index,)))
         plain = self.population(index, rng)
-        return hide(plain, self.hiding.drawn(index, rng, plain.axis), rng)
+        names = self.hiding.drawn(index, rng, plain.axis)
+        if not names:
+            return plain
+        severity = float(rng.uniform(*SEVERITY))
+        effects = tuple(KINDS[name].draw(plain.axis, severity, rng, plain.motion.duration) for name in names)
+        return replace(plain, effects=effects, severity=severity)
 
 
 #: Signals that tell what moved an axis.
