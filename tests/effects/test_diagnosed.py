@@ -11,7 +11,11 @@ from scipy.stats import binom
 from bench.diagnosis.diagnosis import diagnose
 from bench.effects.catalogue import catalogue
 from bench.rig.rig import load_rig
-from bench.validation.independent import KINDS, Axis, Noise, Sensors, random_motion, simulate, write_rig
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
 from tests.cases import parameters
 from tests.kept import kept
 from tests.studies.blind.parameters import WHOLE, compared

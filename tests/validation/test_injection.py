@@ -9,8 +9,8 @@ from bench.arrays import rms
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from bench.validation.independent import KINDS, Axis, Motion, Sensors, simulate
 from bench.validation.independent.effects import (
+    KINDS,
     Backlash,
     CoggingTorque,
     CurrentGainAsymmetry,
@@ -23,7 +23,10 @@ from bench.validation.independent.effects import (
     VelocityFilterLag,
     VoltageLimit,
 )
-from bench.validation.independent.references import Multisine
+from bench.validation.independent.references import Motion, Multisine
+from bench.validation.independent.rig import Axis
+from bench.validation.independent.sensors import Sensors
+from bench.validation.independent.simulate import simulate
 from bench.validation.injection import INJECTABLE, Host, behind, disturbance, drawn, injected, modelled
 from tests.kept import kept
 
