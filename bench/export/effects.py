@@ -116,8 +116,7 @@ class Effects:
             simulations = Simulations(
                 model,
                 1,
-                lambda: np.array([data.time]),
-                cache(lambda name: getattr(data, name)[None]),
+                lambda name: np.asarray(getattr(data, name))[None],
                 cache(lambda name: getattr(model, name)[None]),
                 lambda: mujoco.mj_forward(model, data),
                 lambda: mujoco.mj_step(model, data),
@@ -135,10 +134,8 @@ class Effects:
         own = None
         if models is not None:
             own = [one if isinstance(one, Mapping) else dict.fromkeys(self.models, one) for one in models]
-        time = batch.bind("time")
-        simulations = Simulations(
-            batch.model, batch.nsim, lambda: time, cache(batch.bind), cache(batch.expand), batch.forward, batch.step
-        )
+        reads, writes = cache(batch.bind), cache(batch.expand)
+        simulations = Simulations(batch.model, batch.nsim, reads, writes, batch.forward, batch.step)
         return Worlds(self.models, simulations, own)
 
     def on_warp(self, model: mujoco.MjModel, warp_model: Foreign, warp_data: Foreign) -> Worlds:
@@ -157,11 +154,9 @@ class Effects:
                 setattr(warp_model, name, warp.array(values, dtype=one.dtype, device=one.device))
             return view(getattr(warp_model, name))
 
-        time = view(warp_data.time)
         simulations = Simulations(
             model,
             count,
-            lambda: time,
             cache(lambda name: view(getattr(warp_data, name))),
             cache(field),
             lambda: mujoco_warp.forward(warp_model, warp_data),
@@ -191,7 +186,6 @@ class Simulations:
     Attributes:
         model: of all of them.
         count: how many.
-        time: gives that of each - s - (count,).
         state: gives a field of their data (count, ...), live.
         field: gives a field of the model that each has for itself (count, ...), live.
         forward: computes forces.
@@ -200,7 +194,6 @@ class Simulations:
 
     model: mujoco.MjModel
     count: int
-    time: Callable[[], Number]
     state: Callable[[str], Number]
     field: Callable[[str], Number]
     forward: Callable[[], object]
@@ -250,7 +243,7 @@ class Worlds:
         state = self._simulations.state
         if self._actuators.needs_forces:
             (forward or self._simulations.forward)()
-        time = self._simulations.time().reshape(-1, 1)
+        time = state("time").reshape(-1, 1)
         again, self.last = time < self.last, time + 0.0
         position, velocity = (self._axes(state(name)[:, at]) for name, at in self._at.items())
         if self._memory is None:

@@ -19,7 +19,7 @@ from bench.validation.independent.effects import Effect as Hidden
 from bench.validation.independent.rig import Axis
 from bench.validation.plan import Case
 
-#: Terms of the equation of motion that are judged.
+#: Terms of the equation of motion that are judged, as `Axis` has them too.
 TERMS = (INERTIA, VISCOUS, COULOMB)
 
 
@@ -61,9 +61,8 @@ class Scored:
 
 def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[Scored]:
     """J, K_w and K_0, as far as they are determined, by identify or diagnose; parameters by the contract's names."""
-    truth = (case.axis.inertia, case.axis.viscous, case.axis.coulomb)
-    for term, true in zip(TERMS, truth, strict=True):
-        name = case.rig.axis_kind.parameter(term)
+    for term in TERMS:
+        name, true = case.rig.axis_kind.parameter(term), getattr(case.axis, term)
         if name in parameters:
             yield Scored(by, "", term, true, true, parameters[name])
 

@@ -1,16 +1,15 @@
 """Physical effects of the independent axis: those of the bench's catalogue, their parameters named as in truth.json.
 
-The same object serves one axis (fields are numbers) and many (fields are arrays); `stack` makes the latter. A coupling
-makes two bodies, the sensor on the motor, friction at the motor. The mechanics do not feel the faults of what is
-measured, except through the drive, which regulates what its sensors read; a filter of the recorded current is the
+The same object serves one axis (fields are numbers) and many (fields are arrays); `rig.stack` makes the latter. A
+coupling makes two bodies, the sensor on the motor, friction at the motor. The mechanics do not feel the faults of what
+is measured, except through the drive, which regulates what its sensors read; a filter of the recorded current is the
 recorder's alone.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -22,7 +21,7 @@ from bench.validation.independent.rig import Axis
 class Rows:
     """State and constants of those axes of a plant that have an effect, as the effect's hooks see them - (k,) each.
 
-    Any other attribute is the plant's array of axes of that name, of those axes alone.
+    Any other attribute is the plant's state of that name, or a constant of its axes, of those axes alone.
 
     Attributes:
         plant: that they belong to.
@@ -41,7 +40,7 @@ class Rows:
         self.memory = np.zeros_like(self.velocity)
 
     def __getattr__(self, name: str) -> np.ndarray:
-        return getattr(self.plant, name)[self.index]
+        return getattr(self.plant if hasattr(self.plant, name) else self.plant.axes, name)[self.index]
 
     @property
     def time(self) -> float:
@@ -101,12 +100,6 @@ class Effect:
     def quantities(self, axis: Axis) -> dict[str, float]:
         """Values of the quantities that the contract's effect of this name has."""
         return {key: float(value) for key, value in asdict(self).items()}
-
-
-def stack(effects: Sequence[Effect]) -> Effect:
-    """One effect on many axes from one on each: same class, fields as arrays - (n,)."""
-    kind = type(effects[0])
-    return kind(**{f.name: np.array([getattr(e, f.name) for e in effects], dtype=float) for f in fields(kind)})
 
 
 def phase(rng: np.random.Generator) -> float:

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.validation.independent.effects import Effect, Rows, stack
-from bench.validation.independent.rig import Axis
+from bench.validation.independent.effects import Effect, Rows
+from bench.validation.independent.rig import Axis, stack
 
 Array = NDArray[np.float64]
 
@@ -94,6 +95,7 @@ class Plant:
     kick solves J*dw/dt = M - K_w*w - K_0*sgn(w) exactly, with stops and breakaways within the step (`move`).
 
     Attributes:
+        axes: their constants, as arrays - (n,).
         position, velocity: of the motor - rad, rad/s - (n,).
         load_position, load_velocity: of the load, where a coupling separates it; unused elsewhere.
         current, acting_current: that the drive measures, and that makes torque - A.
@@ -106,29 +108,23 @@ class Plant:
     def __init__(
         self, axes: Sequence[Axis], effects: Sequence[Sequence[Effect]], position: float = 0.0, velocity: float = 0.0
     ) -> None:
-        def array(name: str) -> np.ndarray:
-            return np.array([getattr(axis, name) for axis in axes], dtype=float)
-
         n = len(axes)
-        self.inertia, self.viscous, self.coulomb = array("inertia"), array("viscous"), array("coulomb")
-        self.torque_constant, self.peak_current = array("torque_constant"), array("peak_current")
-        self.resistance, self.inductance = array("resistance"), array("inductance")
-        self.back_emf_constant = array("back_emf_constant")
+        self.axes: Any = stack(axes)
         self.position, self.velocity = np.full(n, position, dtype=float), np.full(n, velocity, dtype=float)
         self.current, self.motor_torque, self.time, self.midtime = np.zeros(n), np.zeros(n), 0.0, 0.0
         self.recorded_current, self._before = self.current, self.velocity
         self._acting = _acting(self, effects)
         self.load_position, self.load_velocity = self.position.copy(), self.velocity.copy()
         self._load_before = self.load_velocity.copy()
-        self._body = self.inertia.copy()
+        self._body = self.axes.inertia.copy()
         joints = np.zeros(n, dtype=int)
         for rows in self._acting["transmitted_torque"]:
             joints[rows.index] += 1
-            self._body[rows.index] = array("rotor_inertia")[rows.index]
+            self._body[rows.index] = rows.rotor_inertia
         if joints.max() > 1:
             raise ValueError("an axis has one coupling between motor and load")
-        self._load_inertia = self.inertia - self._body
-        self._rate = self.viscous / self._body
+        self._load_inertia = self.axes.inertia - self._body
+        self._rate = self.axes.viscous / self._body
         self._weights: dict[float, tuple[np.ndarray, np.ndarray]] = {}
         self._sense()
         for rows in self._acting["filtered"]:
@@ -141,7 +137,7 @@ class Plant:
         self.position = start + speed * (step / 2.0)  # hooks see the middle of the step
         self.velocity = 1.5 * speed - 0.5 * self._before
         self.acting_current = self._drive_current(demand, step)
-        self.motor_torque = self.torque_constant * self.acting_current
+        self.motor_torque = self.axes.torque_constant * self.acting_current
         for rows in self._acting["torque_factor"]:
             self.motor_torque[rows.index] *= rows.effect.torque_factor(rows)
         net = self.motor_torque.copy()
@@ -196,7 +192,7 @@ class Plant:
 
     def _friction_levels(self) -> tuple[np.ndarray, np.ndarray]:
         """(K_0 + excess +- difference/2)*factor, against positive and against negative motion."""
-        level = self.coulomb.copy()
+        level = self.axes.coulomb.copy()
         for rows in self._acting["friction_excess"]:
             level[rows.index] += rows.effect.friction_excess(rows)
         forward, backward = level, level.copy()
@@ -228,7 +224,7 @@ class Plant:
             body = body.copy()
             for rows in varying:
                 body[rows.index] += rows.effect.added_inertia(rows)
-            rate = self.viscous / body
+            rate = self.axes.viscous / body
         if varying or step not in self._weights:
             whole = np.full_like(body, step)
             self._weights[step] = speed_weight(rate, whole), distance_weight(rate, whole)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
+
+T = TypeVar("T", bound=Any)
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,12 @@ class Axis:
     def torque_scale(self) -> float:
         """What counts as a considerable disturbance on this axis: 4 % of peak torque - N*m."""
         return 0.04 * self.peak_torque
+
+
+def stack(ones: Sequence[T]) -> T:
+    """One object for many side by side: same dataclass, its numbers as arrays - (n,)."""
+    names = [each.name for each in fields(ones[0]) if not isinstance(getattr(ones[0], each.name), str)]
+    return replace(ones[0], **{name: np.array([getattr(one, name) for one in ones], dtype=float) for name in names})
 
 
 def random_rig(rng: np.random.Generator, name: str = "axis", *, linear: bool = False) -> Axis:
