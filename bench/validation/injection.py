@@ -113,9 +113,8 @@ def stand_in(host: Host, trace: Trace | None = None) -> StandIn:
     trace = trace or host.moved or host.trace
     position, velocity, acceleration, direction = np.concatenate([_motion(trace, p) for p in trace.segments], axis=1)
     effort, time = host.rig.effort(trace)[0], trace.time - trace.time[0]
-    peak = np.full(len(trace), host.axis.peak_current)
-    seen = StandIn(host, time, position, velocity, acceleration, direction, effort, effort, peak)
-    return seen.driven_by(effort)
+    current, peak = effort / host.axis.torque_constant, np.full(len(trace), host.axis.peak_current)
+    return StandIn(host, time, position, velocity, acceleration, direction, effort, current, peak)
 
 
 def _cubic(values: Array, period: float, order: int = 0) -> Array:

@@ -190,21 +190,16 @@ class Plant:
             self.recorded_current[rows.index] = rows.memory
         return middle
 
-    def _friction_levels(self) -> tuple[np.ndarray, np.ndarray]:
-        """(K_0 + excess +- difference/2)*factor, against positive and against negative motion."""
-        level = self.axes.coulomb.copy()
+    def _friction_levels(self) -> np.ndarray:
+        """(K_0 + excess +- difference/2)*factor, against positive and against negative motion (2, n)."""
+        levels = np.stack([self.axes.coulomb] * 2)
         for rows in self._acting["friction_excess"]:
-            level[rows.index] += rows.effect.friction_excess(rows)
-        forward, backward = level, level.copy()
+            levels[:, rows.index] += rows.effect.friction_excess(rows)
         for rows in self._acting["friction_difference"]:
-            half = 0.5 * rows.effect.friction_difference(rows)
-            forward[rows.index] += half
-            backward[rows.index] -= half
+            levels[:, rows.index] += np.outer([0.5, -0.5], rows.effect.friction_difference(rows))
         for rows in self._acting["friction_factor"]:
-            factor = rows.effect.friction_factor(rows)
-            forward[rows.index] *= factor
-            backward[rows.index] *= factor
-        return np.maximum(forward, 0.0), np.maximum(backward, 0.0)
+            levels[:, rows.index] *= rows.effect.friction_factor(rows)
+        return np.maximum(levels, 0.0)
 
     def _move_load(self, rows: Rows, step: float) -> np.ndarray:
         """Torque from motor to load at the middle of the step, and the load moved by it."""
