@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import gzip
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from bench.validation.independent.effects import KINDS, Effect
+from bench.validation.independent.effects import KINDS, Effect, ElasticCoupling
 from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis, random_rig, write_rig
 from bench.validation.independent.sensors import Sensors, random_sensors
@@ -75,13 +75,22 @@ def truth(case: Hidden, recorded: Recorded) -> dict[str, object]:
         "effects": [effect.name for effect in case.effects],
         "group": case.group,
         "severity": round(case.severity, 3),
-        "parameters": {effect.name: effect.truth(axis) for effect in case.effects},
+        "parameters": {effect.name: parameters(effect, axis) for effect in case.effects},
         "inertia": axis.inertia,
         "viscous_friction": axis.viscous,
         "coulomb_friction": axis.coulomb,
         "residual_ratio": round(residual_ratio(recorded), 2),
         "columns": ["time", *recorded.trace.signals],
     }
+
+
+def parameters(effect: Effect, axis: Axis) -> dict[str, float]:
+    """Parameters of an effect as truth.json names them."""
+    values = {key: float(value) for key, value in asdict(effect).items()}
+    if isinstance(effect, ElasticCoupling):
+        reduced = axis.rotor_inertia * (axis.inertia - axis.rotor_inertia) / axis.inertia
+        values = {"resonance_frequency": float(np.sqrt(effect.stiffness / reduced) / (2.0 * np.pi)), **values}
+    return values
 
 
 def residual_ratio(recorded: Recorded) -> float:

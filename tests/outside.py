@@ -7,7 +7,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from bench.validation.independent.effects.effect import Effect, Rows, about, phase
+from bench.validation.independent.effects import Effect, Rows, about, phase
 from bench.validation.independent.rig import Axis
 
 

@@ -34,7 +34,7 @@ from bench.effects.acting import AXIS, BRISTLES, CarriesFriction
 from bench.effects.signals import Number
 from bench.errors import InputError
 from bench.plant.model_file import StoredModel, load_models
-from bench.plant.stepped_effects import Acts, Joints, Made, Remembered, SteppedEffects, numpys, per_axis
+from bench.plant.stepped_effects import Acts, Joints, Made, Remembered, SteppedEffects, per_axis
 
 #: A model or its data of another engine, whose types are known where it is installed.
 Foreign = Any
@@ -70,7 +70,8 @@ class Effects:
         self.models = (
             dict(model) if isinstance(model, Mapping) else load_models(model, () if joint is None else (joint,))
         )
-        self._running: _Running | None = None
+        self._running: Worlds | None = None
+        self._simulated: tuple[mujoco.MjModel, mujoco.MjData] | None = None
 
     def step(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Advance a simulation by one step with the effects, instead of `mujoco.mj_step(model, data)`.
@@ -106,14 +107,22 @@ class Effects:
         if data.nisland:  # and parted into islands
             data.iefc_frictionloss[data.map_efc2iefc[rows]] = levels
 
-    def _run(self, model: mujoco.MjModel, data: mujoco.MjData) -> _Running:
+    def _run(self, model: mujoco.MjModel, data: mujoco.MjData) -> Worlds:
         """The effects on a simulation; others if it is another one."""
-        running = self._running
-        if running is None or running.data is not data or running.model is not model:
-            if running is not None:
-                running.place.restore_inertia()
-            self._running = running = _Running(self.models, model, data)
-        return running
+        known = self._simulated
+        if self._running is None or known is None or known[0] is not model or known[1] is not data:
+            if self._running is not None:
+                self._running.place.restore_inertia()
+            simulations = Simulations(
+                model,
+                1,
+                lambda name: np.asarray(getattr(data, name))[None],
+                cache(lambda name: getattr(model, name)[None]),
+                lambda: mujoco.mj_forward(model, data),
+                lambda: mujoco.mj_step(model, data),
+            )
+            self._running, self._simulated = Worlds(self.models, simulations), (model, data)
+        return self._running
 
     def on(self, batch: Batch, models: Sequence[StoredModel | Mapping[str, StoredModel]] | None = None) -> Worlds:
         """The effects on many copies at once: a `mujoco.batch.Batch` of a model that has the joints.
@@ -125,10 +134,8 @@ class Effects:
         own = None
         if models is not None:
             own = [one if isinstance(one, Mapping) else dict.fromkeys(self.models, one) for one in models]
-        time = batch.bind("time")
-        simulations = Simulations(
-            batch.model, batch.nsim, lambda: time, cache(batch.bind), cache(batch.expand), batch.forward, batch.step
-        )
+        reads, writes = cache(batch.bind), cache(batch.expand)
+        simulations = Simulations(batch.model, batch.nsim, reads, writes, batch.forward, batch.step)
         return Worlds(self.models, simulations, own)
 
     def on_warp(self, model: mujoco.MjModel, warp_model: Foreign, warp_data: Foreign) -> Worlds:
@@ -147,11 +154,9 @@ class Effects:
                 setattr(warp_model, name, warp.array(values, dtype=one.dtype, device=one.device))
             return view(getattr(warp_model, name))
 
-        time = view(warp_data.time)
         simulations = Simulations(
             model,
             count,
-            lambda: time,
             cache(lambda name: view(getattr(warp_data, name))),
             cache(field),
             lambda: mujoco_warp.forward(warp_model, warp_data),
@@ -181,7 +186,6 @@ class Simulations:
     Attributes:
         model: of all of them.
         count: how many.
-        time: gives that of each - s - (count,).
         state: gives a field of their data (count, ...), live.
         field: gives a field of the model that each has for itself (count, ...), live.
         forward: computes forces.
@@ -190,7 +194,6 @@ class Simulations:
 
     model: mujoco.MjModel
     count: int
-    time: Callable[[], Number]
     state: Callable[[str], Number]
     field: Callable[[str], Number]
     forward: Callable[[], object]
@@ -221,7 +224,7 @@ class Worlds:
             return
         self.place = _Place(simulations, self.joints)
         made = made_like(self.place.applied)
-        self._actuators = Actuators.of(model, self.joints, made)
+        self._actuators = Actuators(model, self.joints, made)
         axes = [one[name] for one in each for name in self.joints]
         self._effects = AtJoints(axes, float(model.opt.timestep), np.tile(self.place.bristled, len(each)), made)
         here = [model.joint(name) for name in self.joints]
@@ -240,7 +243,7 @@ class Worlds:
         state = self._simulations.state
         if self._actuators.needs_forces:
             (forward or self._simulations.forward)()
-        time = self._simulations.time().reshape(-1, 1)
+        time = state("time").reshape(-1, 1)
         again, self.last = time < self.last, time + 0.0
         position, velocity = (self._axes(state(name)[:, at]) for name, at in self._at.items())
         if self._memory is None:
@@ -266,9 +269,8 @@ class _Place(Joints):
 
     def __init__(self, simulations: Simulations, joints: Sequence[str]) -> None:
         model, self.applied = simulations.model, simulations.state("qfrc_applied")
-        names = [f"{joint} {BRISTLES}" for joint in joints]
-        exported = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, name) >= 0 for name in names]
-        bristles = [name if there else BRISTLES for name, there in zip(names, exported, strict=True)]
+        exported, kind = (f"{joint} {BRISTLES}" for joint in joints), mujoco.mjtObj.mjOBJ_ACTUATOR
+        bristles = [name if mujoco.mj_name2id(model, kind, name) >= 0 else BRISTLES for name in exported]
         super().__init__(model, simulations.field, self.applied, joints, bristles)
         self._given: Number = 0.0
 
@@ -280,25 +282,6 @@ class _Place(Joints):
     def again(self, where: Number) -> None:
         """Nothing was applied yet where simulations were reset: bool - (simulations, 1)."""
         self._given = namespace(where).where(where, 0.0 * self._given, self._given)
-
-
-class _Running(Worlds):
-    """The effects on one simulation of MuJoCo."""
-
-    def __init__(self, models: Mapping[str, StoredModel], model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        self.model, self.data = model, data
-        super().__init__(
-            models,
-            Simulations(
-                model,
-                1,
-                lambda: np.array([data.time]),
-                cache(lambda name: getattr(data, name)[None]),
-                cache(lambda name: getattr(model, name)[None]),
-                lambda: mujoco.mj_forward(model, data),
-                lambda: mujoco.mj_step(model, data),
-            ),
-        )
 
 
 class Mjx:
@@ -315,7 +298,7 @@ class Mjx:
         require(model, models)
         made = made_like(mjx_model.dof_armature)
         axes = {name: stored for name, stored in models.items() if stored.model.stepped}
-        self._actuators = Actuators.of(model, list(axes), made)
+        self._actuators = Actuators(model, list(axes), made)
         self._q = np.array([model.joint(name).qposadr[0] for name in axes], dtype=np.intp)
         self._w = np.array([model.joint(name).dofadr[0] for name in axes], dtype=np.intp)
         carried = bristled(axes.values())
@@ -375,9 +358,7 @@ class AtJoints:
         made: makes arrays of the library.
     """
 
-    def __init__(
-        self, models: Sequence[StoredModel], step: float, bristled: NDArray[np.bool_], made: Made = numpys
-    ) -> None:
+    def __init__(self, models: Sequence[StoredModel], step: float, bristled: NDArray[np.bool_], made: Made) -> None:
         ratio = np.array([stored.mounting.gear_ratio for stored in models])
         self._ratio = made(per_axis(ratio))
         self._levels = made(per_axis(np.where(bristled, 1.0, ratio)))  # bristles are behind the gear themselves
@@ -413,63 +394,41 @@ class AtJoints:
         )
 
 
-@dataclass(frozen=True)
 class Actuators:
-    """Actuators that drive some joints, as arrays of the library that steps.
+    """Actuators with an input that drive joints of a model, as arrays of the library that steps.
 
     Attributes:
         needs_forces: whether MuJoCo has to compute forces first, as those of a servo or a winding.
-        limited: whether an input or a force has a limit.
-        controls: places of their inputs in `ctrl` (k,).
-        actuators: their numbers (k,).
-        gears: torque of each joint per force of each (k, joints).
-        gains: force per input (k,).
-        asked: which of them MuJoCo has to be asked for, as it makes the force of more than the input (k,).
-        limits: lowest and highest input, lowest and highest force (k,) each.
     """
 
-    needs_forces: bool
-    limited: bool
-    controls: Number
-    actuators: Number
-    gears: Number
-    gains: Number
-    asked: Number
-    limits: Sequence[Number]
-
-    @classmethod
-    def of(cls, model: mujoco.MjModel, joints: Sequence[str], made: Made = numpys) -> Actuators:
-        """All actuators with an input on joints of a model."""
+    def __init__(self, model: mujoco.MjModel, joints: Sequence[str], made: Made) -> None:
         ids = np.array([model.joint(name).id for name in joints], dtype=np.intp)
         on = (model.actuator_trnid[:, :1] == ids) & (model.actuator_trntype[:, None] == mujoco.mjtTrn.mjTRN_JOINT)
         chosen = np.flatnonzero(on.any(axis=1) & (model.actuator_ctrlnum > 0))
         plain = model.actuator_gaintype[chosen] == mujoco.mjtGain.mjGAIN_FIXED
         plain &= model.actuator_biastype[chosen] == mujoco.mjtBias.mjBIAS_NONE
         plain &= model.actuator_dyntype[chosen] == mujoco.mjtDyn.mjDYN_NONE
-        limits = np.full((4, chosen.size), np.inf) * [[-1.0], [1.0], [-1.0], [1.0]]
+        limits = np.full((4, chosen.size), np.inf) * [[-1.0], [1.0], [-1.0], [1.0]]  # of inputs, and of forces
         for column, k in enumerate(chosen):
             if plain[column] and model.actuator_ctrllimited[model.actuator_ctrladr[k]]:
                 limits[:2, column] = model.actuator_ctrlrange[model.actuator_ctrladr[k]]
             if model.actuator_forcelimited[k]:
                 limits[2:, column] = model.actuator_forcerange[k]
-        return cls(
-            not plain.all(),
-            bool(np.isfinite(limits).any()),
-            made(model.actuator_ctrladr[chosen].astype(np.intp)),
-            made(chosen),
-            made(np.where(on[chosen], model.actuator_gear[chosen, :1], 0.0)),
-            made(np.where(plain, model.actuator_gainprm[chosen, 0], 0.0)),
-            made(~plain),
-            [made(bound) for bound in limits],
-        )
+        self.needs_forces = not plain.all()
+        self._limits = [made(bound) for bound in limits] if np.isfinite(limits).any() else None
+        self._controls, self._numbers = made(model.actuator_ctrladr[chosen].astype(np.intp)), made(chosen)
+        self._gears = made(np.where(on[chosen], model.actuator_gear[chosen, :1], 0.0))
+        self._gains = made(np.where(plain, model.actuator_gainprm[chosen, 0], 0.0))
+        self._asked = made(~plain)
 
     def torque(self, control: Number, force: Number) -> Number:
         """Torque of the joints - N*m (N) - (..., joints), of inputs (..., nu) and forces (..., actuators)."""
-        xp, (low, high, weakest, strongest) = namespace(control), self.limits
-        inputs = xp.take(control, self.controls, axis=-1)
-        driven = inputs * self.gains
-        if self.limited:
-            driven = xp.clip(xp.clip(inputs, low, high) * self.gains, weakest, strongest)
+        xp = namespace(control)
+        inputs = xp.take(control, self._controls, axis=-1)
+        driven = inputs * self._gains
+        if self._limits is not None:
+            low, high, weakest, strongest = self._limits
+            driven = xp.clip(xp.clip(inputs, low, high) * self._gains, weakest, strongest)
         if self.needs_forces:
-            driven = xp.where(self.asked, xp.take(force, self.actuators, axis=-1), driven)
-        return driven @ self.gears
+            driven = xp.where(self._asked, xp.take(force, self._numbers, axis=-1), driven)
+        return driven @ self._gears

@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from mujoco.batch import Batch
@@ -67,6 +66,11 @@ class TorqueTable:
         """Torque - N*m (N) - (m,)."""
         return np.interp(at, self.coordinate, self.torque, period=self.period)
 
+    @property
+    def largest(self) -> float:
+        """Magnitude of torque - N*m (N) -, above zero."""
+        return max(float(np.abs(self.torque).max()), 1e-300)
+
 
 @dataclass(frozen=True, eq=False)
 class Feedforward:
@@ -96,16 +100,35 @@ def feedforward(model: AxisModel, fastest: float, travelled: tuple[float, float]
     """
     if not fastest > 0.0:
         raise InputError("the motion", "found no speed in it", "allowed: one that moves")
-    turn = _SteadyTorque(model, fastest, (0.0, 2.0 * math.pi))
-    ends = resisting_torque(model, np.array(turn.span), np.full(2, SLOWLY * fastest))
-    repeats = model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * turn.largest
-    asked = turn if repeats else replace(turn, span=travelled)
-    return Feedforward(
-        model.parameters.inertia,
-        TorqueTable(asked.speeds, asked.over_speed),
-        TorqueTable(asked.positions, asked.over_position, 2.0 * math.pi if repeats else None),
-        tuple(_left(asked)),
-    )
+    span = 0.0, 2.0 * math.pi
+    tables = friction, cogging = _tables(model, fastest, span)
+    ends = resisting_torque(model, np.array(span), np.full(2, SLOWLY * fastest))
+    if model.parameters.kind.turns and abs(ends[1] - ends[0]) <= OPEN * friction.largest:
+        cogging = replace(cogging, period=2.0 * math.pi)
+    else:
+        span = travelled
+        tables = friction, cogging = _tables(model, fastest, span)
+    left = []
+    for present in model.effects:
+        others = model.with_effects([other for other in model.effects if other is not present])
+        without = _tables(others, fastest, span)
+        changes = (np.abs(one.torque - table.torque).max() for one, table in zip(without, tables, strict=True))
+        if max(changes) < NOTHING * friction.largest:
+            left.append(present.name)
+    return Feedforward(model.parameters.inertia, friction, cogging, tuple(left))
+
+
+def _tables(model: AxisModel, fastest: float, span: tuple[float, float]) -> tuple[TorqueTable, TorqueTable]:
+    """F up to a fastest speed - rad/s (m/s) -, and C within a span - rad (m) -, less its mean."""
+    positions = np.linspace(*span, POSITIONS, endpoint=False)
+    side = np.geomspace(SLOWEST, 1.0, SPEEDS) * fastest
+    speeds = np.concatenate([-side[::-1], [0.0], side])
+    some = positions[:: POSITIONS // 60]
+    q, w = (grid.ravel() for grid in np.meshgrid(some, speeds, indexing="ij"))
+    over_speed = resisting_torque(model, q, w).reshape(some.size, -1).mean(axis=0)
+    slowly = np.full(POSITIONS, SLOWLY * fastest)
+    both = 0.5 * (resisting_torque(model, positions, slowly) + resisting_torque(model, positions, -slowly))
+    return TorqueTable(speeds, over_speed), TorqueTable(positions, both - both.mean())
 
 
 def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Feedforward | None = None) -> Tracking:
@@ -128,57 +151,6 @@ class Tracking:
 
     position: float
     velocity: float
-
-
-@dataclass(frozen=True)
-class _SteadyTorque:
-    """What a model is asked for: torque up to a fastest speed - rad/s (m/s) -, and within a span - rad (m)."""
-
-    model: AxisModel
-    fastest: float
-    span: tuple[float, float]
-
-    @cached_property
-    def positions(self) -> Array:
-        """Of the table over position, its end left out where that is its beginning - (n,)."""
-        return np.linspace(*self.span, POSITIONS, endpoint=False)
-
-    @cached_property
-    def speeds(self) -> Array:
-        """Of the table over speed, from standstill closely to both sides - (m,)."""
-        side = np.geomspace(SLOWEST, 1.0, SPEEDS) * self.fastest
-        return np.concatenate([-side[::-1], [0.0], side])
-
-    @cached_property
-    def over_position(self) -> Array:
-        """C, less its mean - N*m (N) - (n,)."""
-        slowly = SLOWLY * self.fastest
-        both = [resisting_torque(self.model, self.positions, np.full(POSITIONS, way * slowly)) for way in (1.0, -1.0)]
-        mean = 0.5 * (both[0] + both[1])
-        return mean - mean.mean()
-
-    @cached_property
-    def over_speed(self) -> Array:
-        """F - N*m (N) - (m,)."""
-        some = self.positions[:: POSITIONS // 60]
-        q, w = (grid.ravel() for grid in np.meshgrid(some, self.speeds, indexing="ij"))
-        return resisting_torque(self.model, q, w).reshape(some.size, -1).mean(axis=0)
-
-    @property
-    def largest(self) -> float:
-        """Of F - N*m (N) -, above zero."""
-        return max(float(np.abs(self.over_speed).max()), 1e-300)
-
-
-def _left(asked: _SteadyTorque) -> list[str]:
-    """Effects without which both tables would be the same."""
-    model, left = asked.model, []
-    for present in model.effects:
-        without = replace(asked, model=model.with_effects([other for other in model.effects if other is not present]))
-        changes = without.over_speed - asked.over_speed, without.over_position - asked.over_position
-        if max(float(np.abs(change).max()) for change in changes) < NOTHING * asked.largest:
-            left.append(present.name)
-    return left
 
 
 def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Array:

@@ -49,7 +49,6 @@ PAYLOAD = "payload"
 ACTUATOR = ("gaintype", "biastype", "dyntype", "gainprm", "biasprm", "dynprm")
 ACTUATOR += ("actdim", "actearly", "actlimited", "actrange")
 ACTUATOR += ("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay")
-TRANSMISSION = mujoco.mjtTrn.mjTRN_JOINT
 #: Whether a joint of a type turns.
 TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}
 #: What makes an effect that is not native.
@@ -188,7 +187,7 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature
     joint.frictionloss = alone.frictionloss * ratio
     joint.solimp_friction, joint.solref_friction = STICKING_IMPEDANCE, [2.0 * spec.option.timestep, 1.0]
     moving = [actuator.name or "an actuator without a name" for actuator in spec.actuators if actuator.target == name]
-    geared: dict[str, Any] = {"target": name, "trntype": TRANSMISSION, "gear": [ratio, 0, 0, 0, 0, 0]}
+    geared: dict[str, Any] = {"target": name, "trntype": mujoco.mjtTrn.mjTRN_JOINT, "gear": [ratio, 0, 0, 0, 0, 0]}
     for actuator in axis.actuators:
         if actuator.name != DRIVE and (actuator.name != LOAD_TORQUE or actuator.biasprm[0] != 0.0):
             added = spec.add_actuator(name=f"{name} {actuator.name}", **geared)
@@ -265,12 +264,8 @@ def armature_of(stored: StoredModel, share: ArmatureShare | None = None) -> Arma
 def link_inertia(spec: mujoco.MjSpec, name: str) -> float:
     """Inertia about a joint of all that it carries, its armature aside, where the MJCF stands - kg*m**2 (kg)."""
     model = compiled(spec)
-    data, whole = mujoco.MjData(model), np.zeros((model.nv, model.nv))
-    with silenced():
-        mujoco.mj_forward(model, data)
-    mujoco.mj_fullM(model, data, whole)
     dof = model.joint(name).dofadr[0]
-    return float(whole[dof, dof] - model.dof_armature[dof])
+    return float(model.dof_M0[dof] - model.dof_armature[dof])
 
 
 def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
@@ -316,8 +311,7 @@ def ranges_json(stored: StoredModel, result: Path) -> str:
         found = content.get("schema") if isinstance(content, dict) else type(content).__name__
         raise InputError(f"{result}: schema", f"found {found!r}", f"allowed: {', '.join(SOURCES)}")
     try:
-        between, stated = content.get("between") or {}, _with_interval(content["parameters"])
-        parameters = {name: _range(table, between.get(name)) for name, table in stated.items()}
+        parameters = _ranges(content["parameters"], content.get("between") or {}, {})
         effects = [_effect(entry) for entry in content.get("effects", [])]
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         found = f"found a damaged one ({type(error).__name__}: {error})"
@@ -326,28 +320,28 @@ def ranges_json(stored: StoredModel, result: Path) -> str:
     return json_text({"schema": SCHEMA, "name": stored.name, **kept}) + "\n"
 
 
-def _with_interval(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: table for name, table in parameters.items() if table["ci95"] is not None}
-
-
-def _range(table: Mapping[str, Any], between: Mapping[str, Any] | None, lower: float = float("-inf")) -> dict[str, Any]:
-    """Value, range and origin of a quantity - its unit."""
-    low, high = (float(bound) for bound in table["ci95"])
-    origin = "interval of 95 %"
-    if between is not None:
-        ahead = [float(bound) for bound in between["predictive95"]]
-        low, high, origin = min(low, ahead[0]), max(high, ahead[1]), "what one recording more may tell, at 95 %"
-    value = float(table["value"])
-    return {"value": value, "low": max(low, lower), "high": high, "unit": str(table["unit"]), "from": origin}
+def _ranges(
+    parameters: Mapping[str, Any], between: Mapping[str, Any], lowest: Mapping[str, float]
+) -> dict[str, dict[str, Any]]:
+    """Value, range and origin of each quantity that has an interval, none below its lowest - its unit."""
+    ranges = {}
+    for name, table in parameters.items():
+        if table["ci95"] is not None:
+            low, high = (float(bound) for bound in table["ci95"])
+            origin = "interval of 95 %"
+            if between.get(name) is not None:
+                ahead = [float(bound) for bound in between[name]["predictive95"]]
+                low, high, origin = min(low, ahead[0]), max(high, ahead[1]), "what one recording more may tell, at 95 %"
+            value, low = float(table["value"]), max(low, lowest.get(name, -np.inf))
+            ranges[name] = {"value": value, "low": low, "high": high, "unit": str(table["unit"]), "from": origin}
+    return ranges
 
 
 def _effect(entry: Mapping[str, Any]) -> dict[str, Any]:
     """Ranges of an effect's quantities within their bounds."""
     effect: Effect = named(str(entry["name"]), "effects")
-    bounds = {quantity.name: quantity.lower for quantity in (*effect.quantities, *effect.derived)}
-    known = _with_interval(entry["parameters"])
-    ranges = {key: _range(table, None, bounds.get(key, float("-inf"))) for key, table in known.items()}
-    return {"name": effect.name, "parameters": ranges}
+    lowest = {quantity.name: quantity.lower for quantity in (*effect.quantities, *effect.derived)}
+    return {"name": effect.name, "parameters": _ranges(entry["parameters"], {}, lowest)}
 
 
 def _joint(stored: StoredModel, parameters: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:

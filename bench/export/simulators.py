@@ -75,12 +75,11 @@ class SimulatedJoint:
     def friction(self) -> tuple[FrictionLaw, dict[str, str]]:
         """Dry friction beside Coulomb's; and the effects that are its `rise` and its share of the `load`, the first."""
         model, found, names = self.stored.model, {"rise": FrictionLaw(), "load": FrictionLaw()}, {}
-        for present in model.effects:
-            effect = present.effect
-            law = effect.law(dict(present.values), model.axis) if isinstance(effect, RaisesFriction) else None
-            kind = None if law is None else "rise" if law.rise else "load"
-            if law is not None and kind is not None and kind not in names:
-                found[kind], names[kind] = law, present.name
+        for effect, values in model.acting(RaisesFriction):
+            law = effect.law(values, model.axis)
+            kind = "rise" if law is not None and law.rise else "load"
+            if law is not None and kind not in names:
+                found[kind], names[kind] = law, effect.name
         rising, loaded = found["rise"], found["load"]
         rise, velocity = rising.rise * self.ratio, rising.velocity / self.ratio
         return FrictionLaw(rise, velocity, rising.exponent, loaded.motor, loaded.external), names

@@ -19,7 +19,7 @@ from bench.validation.independent.effects import Effect as Hidden
 from bench.validation.independent.rig import Axis
 from bench.validation.plan import Case
 
-#: Terms of the equation of motion that are judged.
+#: Terms of the equation of motion that are judged, as `Axis` has them too.
 TERMS = (INERTIA, VISCOUS, COULOMB)
 
 
@@ -61,9 +61,8 @@ class Scored:
 
 def base(by: str, case: Case, parameters: Mapping[str, Parameter]) -> Iterator[Scored]:
     """J, K_w and K_0, as far as they are determined, by identify or diagnose; parameters by the contract's names."""
-    truth = (case.axis.inertia, case.axis.viscous, case.axis.coulomb)
-    for term, true in zip(TERMS, truth, strict=True):
-        name = case.rig.axis_kind.parameter(term)
+    for term in TERMS:
+        name, true = case.rig.axis_kind.parameter(term), getattr(case.axis, term)
         if name in parameters:
             yield Scored(by, "", term, true, true, parameters[name])
 
@@ -120,9 +119,6 @@ class Named:
         return bool(self.verdict) and not self.false and not self.missed
 
 
-Status = Literal["done", "refused", "failed"]
-
-
 @dataclass(frozen=True)
 class Run:
     """One run.
@@ -146,7 +142,7 @@ class Run:
     duration: float
     hidden: tuple[str, ...]
     severity: float
-    status: Status = "done"
+    status: Literal["done", "refused", "failed"] = "done"
     reason: str = ""
     scored: tuple[Scored, ...] = ()
     named: Named | None = None
@@ -154,8 +150,6 @@ class Run:
 
 #: Levels of the intervals that are compared with the truth.
 LEVELS = (0.5, 0.8, 0.95)
-#: Of bounds on a share.
-CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
@@ -181,7 +175,7 @@ class Share:
         """Of 95 %: 2.5 % on each side, and 0 and 1 of none."""
         if not self.of:
             return 0.0, 1.0
-        beyond, others = (1.0 - CONFIDENCE) / 2.0, self.of - self.count
+        beyond, others = (1.0 - 0.95) / 2.0, self.of - self.count
         low = special.betaincinv(self.count, others + 1, beyond) if self.count else 0.0
         high = special.betaincinv(self.count + 1, others, 1.0 - beyond) if others else 1.0
         return float(low), float(high)

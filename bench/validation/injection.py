@@ -12,17 +12,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from scipy.signal import lfilter, savgol_filter
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
+from bench.effects.catalogue import catalogue
 from bench.errors import InputError
+from bench.fit.fit import fit
+from bench.fit.layout import plain
+from bench.fit.rows import Rows
 from bench.rig.rig import Rig
+from bench.trace.motion import Conditioning
 from bench.trace.trace import Trace
 from bench.validation.independent.effects import KINDS, Effect
-from bench.validation.independent.effects.effect import Rows
 from bench.validation.independent.rig import Axis
 from bench.validation.plan import HIDEABLE
 
@@ -31,13 +34,17 @@ SAMPLES, WIDTH = 7, 12e-3
 #: Speed, over the noise of the cubic's speed, above which its sign is sure: noise alone passes it in 1 of 16,000.
 SURE = 4.0
 #: Hooks through which an effect acts on the motion itself.
-MOVING = frozenset({"driven_current", "remember"})
+MOVING = ("driven_current", "remember")
 #: Hooks through which the reported effort is another one, whatever acts behind it.
-REPORTED = frozenset({"acting_current", "recorded_current", "true_current"})
+REPORTED = ("acting_current", "recorded_current", "true_current")
 #: Steps in a swing of a load on its contact: its frequency is right to 0.7 %.
 STEPS = 16
 #: Steps in which what drives the axis is found, and the share of it that it is found to.
 TRIES, EXACT = 200, 1e-9
+#: Severities between which an effect of a wanted size is sought, the ratio at which the search ends, and the one by
+#: which the size may fall short where physics ends before it. The last severity is four times the strongest of the
+#: blind set: beyond it is no axis any more, as with warm-up of five times the friction.
+SEVERITIES, CLOSE, SHORT = (1e-4, 3.0), 1.03, 1.1
 
 
 @dataclass(frozen=True)
@@ -63,19 +70,18 @@ class Host:
 
 @dataclass(frozen=True)
 class StandIn:
-    """All samples of a recording, in the place of the plant that the formulas of effects ask - (m,) each.
+    """All samples of a recording, in the place of the rows of a plant that the hooks of effects ask - (m,) each.
 
     Attributes:
-        host, parts: the recording, and its stretches without a hole.
-        midtime: from the recording's start - s.
+        host: the recording.
+        time: from the recording's start - s.
         position, velocity, acceleration: of the axis - rad, rad/s, rad/s**2.
         direction: sign of the speed, 0 where the axis may rest: friction at rest takes what it is given.
         motor_torque, acting_current, peak_current: that move it, and its most - N*m (N), A, A.
     """
 
     host: Host
-    parts: tuple[slice, ...]
-    midtime: Array
+    time: Array
     position: Array
     velocity: Array
     acceleration: Array
@@ -86,7 +92,7 @@ class StandIn:
 
     def __getattr__(self, name: str) -> Array:
         """A constant of the axis."""
-        return np.full(self.midtime.size, getattr(self.host.axis, name))
+        return np.full(self.time.size, getattr(self.host.axis, name))
 
     @property
     def load_torque(self) -> Array:
@@ -107,9 +113,8 @@ def stand_in(host: Host, trace: Trace | None = None) -> StandIn:
     trace = trace or host.moved or host.trace
     position, velocity, acceleration, direction = np.concatenate([_motion(trace, p) for p in trace.segments], axis=1)
     effort, time = host.rig.effort(trace)[0], trace.time - trace.time[0]
-    peak = np.full(len(trace), host.axis.peak_current)
-    seen = StandIn(host, trace.segments, time, position, velocity, acceleration, direction, effort, effort, peak)
-    return seen.driven_by(effort)
+    current, peak = effort / host.axis.torque_constant, np.full(len(trace), host.axis.peak_current)
+    return StandIn(host, time, position, velocity, acceleration, direction, effort, current, peak)
 
 
 def _cubic(values: Array, period: float, order: int = 0) -> Array:
@@ -131,13 +136,13 @@ def _motion(trace: Trace, part: slice) -> Array:
     return np.stack([position, velocity, acceleration, np.sign(velocity) * (np.abs(velocity) > least)])
 
 
-def hooks(kind: type[Effect]) -> set[str]:
-    """Through which effects of a kind act: those that the class, or one that it is derived from, defines."""
-    return {hook for each in kind.mro() if each not in Effect.mro() for hook in vars(each)}
+def acts(effect: Effect | type[Effect], *hooks: str) -> list[str]:
+    """Those of these hooks through which an effect acts."""
+    return [hook for hook in hooks if hasattr(effect, hook)]
 
 
 #: Names of the catalogue that can be put into a recording: those of the independent axis that leave the motion to it.
-INJECTABLE = tuple(name for name in HIDEABLE if not hooks(KINDS[name]) & MOVING)
+INJECTABLE = tuple(name for name in HIDEABLE if not acts(KINDS[name], *MOVING))
 
 
 def injected(host: Host, effect: Effect) -> Trace:
@@ -147,75 +152,74 @@ def injected(host: Host, effect: Effect) -> Trace:
         InputError: an effect that acts on the motion itself, as a voltage limit, on a signal that is not recorded, or
             that is so strong that the axis cannot have moved as it did.
     """
-    acts = hooks(type(effect))
-    if unable := acts & MOVING:
+    if unable := acts(effect, *MOVING):
         raise InputError(effect.name, f"acts by {', '.join(unable)}", "allowed: what leaves the motion as it is")
-    if acts & {"measured", "filtered"}:
-        return _read_otherwise(host.trace, effect, acts)
+    if acts(effect, "measured", "filtered"):
+        return _read_otherwise(host.trace, effect)
     seen = stand_in(host)
-    current = _reported(effect, acts, seen.driven_by(_needed(effect, acts, seen)))
+    current = _reported(effect, seen.driven_by(_needed(effect, seen)))
     more = current * seen.torque_constant - seen.motor_torque
-    if host.lag and not acts & REPORTED:
-        more = np.concatenate([_ahead(more[part], host.trace.sample_period, host.lag) for part in seen.parts])
+    if host.lag and not acts(effect, *REPORTED):
+        more = np.concatenate([_ahead(more[part], host.trace.sample_period, host.lag) for part in host.trace.segments])
     return driven(host, effect.name, seen.motor_torque + more)
 
 
-def _needed(effect: Effect, acts: set[str], seen: StandIn) -> Array:
+def _needed(effect: Effect, seen: StandIn) -> Array:
     """Motor torque that the motion takes with the effect - N*m (N) (m,)."""
-    rows, torque = Rows(seen, slice(None), effect), seen.motor_torque
-    if "resisting_torque" in acts:
-        torque = torque + effect.resisting_torque(rows)
-    if "added_inertia" in acts:
-        torque = torque + effect.added_inertia(rows) * seen.acceleration
-    if "bristle_torque" in acts:
-        torque = torque + np.abs(seen.direction) * _bristles(effect, rows) - seen.coulomb * seen.direction
-    if "transmitted_torque" in acts:
-        torque = torque - _behind_coupling(effect, rows)
-    if acts & {"friction_excess", "friction_difference", "friction_factor"}:  # of the very torque that overcomes it
-        return _solved(lambda at: at - _friction(effect, acts, seen.driven_by(at)), torque, effect.name)
+    torque = seen.motor_torque
+    if acts(effect, "resisting_torque"):
+        torque = torque + effect.resisting_torque(seen)
+    if acts(effect, "added_inertia"):
+        torque = torque + effect.added_inertia(seen) * seen.acceleration
+    if acts(effect, "bristle_torque"):
+        torque = torque + np.abs(seen.direction) * _bristles(effect, seen) - seen.coulomb * seen.direction
+    if acts(effect, "transmitted_torque"):
+        torque = torque - _behind_coupling(effect, seen)
+    if acts(effect, "friction_excess", "friction_difference", "friction_factor"):  # of the torque that overcomes it
+        return _solved(lambda at: at - _friction(effect, seen.driven_by(at)), torque, effect.name)
     return torque
 
 
-def _friction(effect: Effect, acts: set[str], seen: StandIn) -> Array:
+def _friction(effect: Effect, seen: StandIn) -> Array:
     """Dry friction beyond K_0, against the motion - N*m (N) (m,)."""
-    rows, level = Rows(seen, slice(None), effect), seen.coulomb
-    if "friction_excess" in acts:
-        level = level + effect.friction_excess(rows)
-    if "friction_difference" in acts:
-        level = level + 0.5 * seen.direction * effect.friction_difference(rows)
-    if "friction_factor" in acts:
-        level = level * effect.friction_factor(rows)
+    level = seen.coulomb
+    if acts(effect, "friction_excess"):
+        level = level + effect.friction_excess(seen)
+    if acts(effect, "friction_difference"):
+        level = level + 0.5 * seen.direction * effect.friction_difference(seen)
+    if acts(effect, "friction_factor"):
+        level = level * effect.friction_factor(seen)
     return (np.maximum(level, 0.0) - seen.coulomb) * seen.direction
 
 
-def _bristles(effect: Effect, rows: Rows) -> Array:
+def _bristles(effect: Effect, seen: StandIn) -> Array:
     """Torque of bristles that the motion bends, straight at the start of each stretch - N*m (N) (m,)."""
-    level, bent = np.maximum(rows.coulomb, 1e-12), np.zeros_like(rows.position)
-    period = rows.plant.host.trace.sample_period
-    for part in rows.plant.parts:
-        for k, speed in enumerate(np.diff(rows.position[part]) / period, part.start):
+    level, bent = np.maximum(seen.coulomb, 1e-12), np.zeros_like(seen.position)
+    period = seen.host.trace.sample_period
+    for part in seen.host.trace.segments:
+        for k, speed in enumerate(np.diff(seen.position[part]) / period, part.start):
             bent[k + 1] = effect.bend(speed, level[k], bent[k], period)
-    return effect.bristle_torque(rows, level, bent)
+    return effect.bristle_torque(seen, level, bent)
 
 
-def _behind_coupling(effect: Effect, rows: Rows) -> Array:
+def _behind_coupling(effect: Effect, seen: StandIn) -> Array:
     """Torque that a load behind a coupling does not ask of the motor that a rigid one would - N*m (N) (m,).
 
     With the motor's motion given, twist obeys J_l*twist'' + transmitted(twist, twist') = J_l*alpha; the motor carries
     what is transmitted in the place of J_l*alpha.
     """
-    axis, period = rows.plant.host.axis, rows.plant.host.trace.sample_period
+    axis, period = seen.host.axis, seen.host.trace.sample_period
     load = axis.inertia - axis.rotor_inertia
     far = np.array(1e6)  # in contact, whatever the gap: there what is transmitted rises by the stiffness
-    stiffness = effect.transmitted_torque(rows, 2.0 * far, 0.0 * far) - effect.transmitted_torque(rows, far, 0.0 * far)
+    stiffness = effect.transmitted_torque(seen, 2.0 * far, 0.0 * far) - effect.transmitted_torque(seen, far, 0.0 * far)
     count = math.ceil(STEPS * period * math.sqrt(float(stiffness) / float(far) / load) / (2.0 * math.pi))
-    step, less = period / count, np.zeros_like(rows.position)
-    for part in rows.plant.parts:
+    step, less = period / count, np.zeros_like(seen.position)
+    for part in seen.host.trace.segments:
         twist = rate = np.zeros(())
-        for k, alpha in enumerate(rows.acceleration[part], part.start):
-            less[k] = load * alpha - effect.transmitted_torque(rows, twist, rate)
+        for k, alpha in enumerate(seen.acceleration[part], part.start):
+            less[k] = load * alpha - effect.transmitted_torque(seen, twist, rate)
             for _ in range(count):
-                rate = rate + step * (alpha - effect.transmitted_torque(rows, twist, rate) / load)
+                rate = rate + step * (alpha - effect.transmitted_torque(seen, twist, rate) / load)
                 twist = twist + step * rate
     return less
 
@@ -235,26 +239,23 @@ def _solved(function: Callable[[Array], Array], wanted: Array, what: str) -> Arr
     raise InputError(what, "found so strong that no torque moves the axis as it moved", "allowed: a weaker one")
 
 
-def _reported(effect: Effect, acts: set[str], seen: StandIn) -> Array:
+def _reported(effect: Effect, seen: StandIn) -> Array:
     """Current that is recorded while one makes the torque that moves the axis - A (m,)."""
     current = seen.acting_current
 
     def delivered(at: Array) -> Array:
         """What one acts like; where the rig tells no peak current, the largest that is recorded is it."""
         peak = np.maximum(seen.peak_current, np.abs(at).max())
-        rows = Rows(replace(seen, acting_current=at, peak_current=peak), slice(None), effect)
-        return at * effect.torque_factor(rows)
+        return at * effect.torque_factor(replace(seen, acting_current=at, peak_current=peak))
 
-    if "torque_factor" in acts:
+    if acts(effect, "torque_factor"):
         current = _solved(delivered, current, effect.name)
-    if "true_current" in acts:
-        current = _solved(lambda at: effect.true_current(Rows(seen, slice(None), effect), at), current, effect.name)
-    if acts & {"acting_current", "recorded_current"}:
-        constant: float = effect.time_constant  # type: ignore[attr-defined]
-        lagging = partial(
-            _ahead if "acting_current" in acts else behind, period=seen.host.trace.sample_period, constant=constant
-        )
-        current = np.concatenate([lagging(current[part]) for part in seen.parts])
+    if acts(effect, "true_current"):
+        current = _solved(lambda at: effect.true_current(seen, at), current, effect.name)
+    for hook, lagging in (("acting_current", _ahead), ("recorded_current", behind)):
+        if acts(effect, hook):
+            period, constant = seen.host.trace.sample_period, effect.time_constant
+            current = np.concatenate([lagging(current[part], period, constant) for part in seen.host.trace.segments])
     return current
 
 
@@ -276,17 +277,15 @@ def behind(values: Array, period: float, constant: float) -> Array:
     return values - lag
 
 
-def _read_otherwise(trace: Trace, effect: Effect, acts: set[str]) -> Trace:
+def _read_otherwise(trace: Trace, effect: Effect) -> Trace:
     """The recording with another reading of its sensor of position and speed."""
-    signals = {name: trace[name] for name in ("position", "velocity") if name in trace}
-    if "filtered" in acts:
-        constant, velocity = effect.time_constant, trace["velocity"]  # type: ignore[attr-defined]
-        late = [behind(velocity[part], trace.sample_period, constant) for part in trace.segments]
-        signals["velocity"] = np.concatenate(late)
-    else:
-        read = effect.measured(trace["position"], signals.get("velocity", np.zeros(len(trace))))
-        signals = {name: values for name, values in zip(("position", "velocity"), read, strict=True) if name in signals}
-    return trace.with_signals(signals, {})
+    if acts(effect, "filtered"):
+        velocity = trace["velocity"]
+        late = [behind(velocity[part], trace.sample_period, effect.time_constant) for part in trace.segments]
+        return trace.with_signals({"velocity": np.concatenate(late)}, {})
+    velocity = trace["velocity"] if "velocity" in trace else np.zeros(len(trace))
+    read = zip(("position", "velocity"), effect.measured(trace["position"], velocity), strict=True)
+    return trace.with_signals({name: values for name, values in read if name in trace}, {})
 
 
 def driven(host: Host, what: str, effort: Array) -> Trace:
@@ -300,3 +299,84 @@ def driven(host: Host, what: str, effort: Array) -> Trace:
     step = np.full(len(trace), 1e-6 * float(np.abs(trace[name]).max() or 1.0))
     gain = float(np.median((effort_of(step) - effort_of(0.0 * step)) / step))
     return trace.with_signals({name: _solved(lambda at: effort_of(at / gain), effort, what) / gain}, {})
+
+
+def disturbance(host: Host, made: Trace, seen_as: Conditioning | None = None) -> tuple[float, float]:
+    """How much torque a change of a recording makes, and how much of it a fit without effects leaves - N*m (N).
+
+    RMS of M - J*alpha - K_w*omega - K_0*sgn(omega) in `made` less in the recording: by the axis' own values at all
+    samples in motion; and after J, K_w, K_0 and the shift of torque against speed are fitted to each, at the rows of
+    the balance and through its filter, as what a diagnosis leaves is measured. A change of the reported speed
+    alone is judged by that speed, though a position be recorded.
+
+    Args:
+        host: the axis, with the recording.
+        made: the changed recording.
+        seen_as: filter and thresholds of the balance, if not those of the recording itself.
+    """
+    trace, axis = host.trace, host.axis
+    changed = {name for name in trace.signals if not np.array_equal(trace[name], made[name])}
+    if changed == {"velocity"} and "position" in trace:
+        trace, made = trace.without("position"), made.without("position")
+    before, after = stand_in(host, trace), stand_in(host, made)
+    axes = np.stack([after.acceleration, after.velocity, after.direction])
+    values = np.array([axis.inertia, axis.viscous, axis.coulomb])
+    more = after.motor_torque - before.motor_torque
+    more = more - values @ (axes - [before.acceleration, before.velocity, before.direction])
+    rows = Rows.of(trace, host.rig, conditioning=seen_as)
+    changed_rows = Rows.of(made, host.rig, conditioning=rows.conditioning)
+    _, own, others = np.intersect1d(rows.samples(), changed_rows.samples(), return_indices=True)
+    left = fit(changed_rows, plain(changed_rows)).left[others] - fit(rows, plain(rows)).left[own]
+    return rms(more[before.direction != 0.0]), rms(left)
+
+
+def modelled(host: Host) -> Host:
+    """The axis alone, as it was found to move under J, K_w, K_0 and its load: what else a recording holds left out."""
+    seen, axis = stand_in(host), host.axis
+    torque = axis.inertia * seen.acceleration + axis.viscous * seen.velocity + axis.coulomb * seen.direction
+    plain = driven(host, "the axis", torque + (0.0 if host.load is None else host.load))
+    return replace(host, trace=plain, moved=None, lag=0.0)
+
+
+def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:
+    """An effect of a kind that leaves a wanted RMS beyond what J, K_w and K_0 take up, on the axis alone.
+
+    An effect made of torque scales what else a recording holds, too, which shows nothing of it; the filter is the one
+    of the recording, as coherence of motion and torque, which it is chosen by, is greater on the axis alone.
+
+    Args:
+        host: that it is to be put into.
+        kind: name of the effect.
+        size: the second RMS of its `disturbance` - N*m (N).
+        seed: of its other parameters.
+
+    Returns:
+        None if the axis cannot have it, or not of this size within its physical bounds.
+    """
+    if not KINDS[kind].possible(host.axis):
+        return None
+    bounds = {quantity.name: quantity for quantity in catalogue()[kind].quantities}
+    duration, alone = float(host.trace.time[-1] - host.trace.time[0]), modelled(host)
+    seen_as = Rows.of(host.trace, host.rig).conditioning
+
+    def of(severity: float) -> Effect:
+        return KINDS[kind].draw(host.axis, severity, np.random.default_rng(seed), duration)
+
+    def reached(severity: float) -> float:
+        effect = of(severity)
+        values = effect.quantities(host.axis).items()
+        if any(not bounds[name].lower <= value <= bounds[name].upper for name, value in values if name in bounds):
+            return math.inf
+        try:
+            return disturbance(alone, injected(alone, effect), seen_as)[1]
+        except InputError:  # the axis cannot have it so strong
+            return math.inf
+
+    (low, high), below = SEVERITIES, 0.0
+    if not reached(high) > size:
+        return None
+    while high > CLOSE * low:
+        middle = math.sqrt(low * high)
+        now = reached(middle)
+        low, high, below = (low, middle, below) if now > size else (middle, high, now)
+    return of(low) if below > size / SHORT else None

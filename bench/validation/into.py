@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -23,19 +22,15 @@ from bench.names import nearest
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from bench.validation.coverage import UNEXPLAINED, Named, Scored, of_effects
-from bench.validation.independent.effects import KINDS, Effect
-from bench.validation.independent.effects.effect import Rows
+from bench.validation.independent.effects import KINDS
 from bench.validation.independent.rig import Axis
-from bench.validation.injection import INJECTABLE, Host, injected, stand_in
-from bench.validation.severity import disturbance, drawn
+from bench.validation.injection import INJECTABLE, Host, disturbance, drawn, injected, stand_in
 
 #: What becomes of an effect. Right: named, and nothing else is that was not before; part: something else, too; flagged:
 #: not named, and a remainder is left or a refusal says why; missed: neither; wrong: not named, and something else is.
 RIGHT, PART, FLAGGED, MISSED, WRONG = FATES = ("right", "part", "flagged", "missed", "wrong")
 #: Effects whose torque a gear carries.
 LOADS = frozenset(name for name, kind in KINDS.items() if kind.transmitted)
-#: The name of what no catalogue holds, beside names.
-NONE = ""
 #: Strengths between which the least is sought, over what the recording leaves, and how often: its step is then 19 %.
 SPAN, TRIALS = (0.1, 25.6), 5
 #: For one effect: ten times what five diagnoses of a large recording take - s.
@@ -51,7 +46,6 @@ class Own:
         names, verdict: of its own diagnosis.
         taken: these names, and what it cannot tell from them.
         left, unit: RMS that it leaves, noise included, and its unit.
-        hidden: what is in it and is not named, where that is known, as of a simulated one.
     """
 
     host: Host
@@ -60,13 +54,15 @@ class Own:
     taken: frozenset[str]
     left: float
     unit: str
-    hidden: tuple[str, ...] = ()
 
 
 def own(trace: Trace, rig: Rig) -> Own:
     """By a diagnosis of the recording as it is, which may refuse it as `diagnose` does."""
     found = diagnose(trace, rig)
-    plain = Host(trace, rig, axis_of(found, trace, rig), moved=_moved(trace, found), lag=_lag(trace, found))
+    source = "position" if "position" in trace else "velocity"
+    lags = [(one.effect, one.values["time_constant"]) for one in found.effects if isinstance(one.effect, MotionLag)]
+    lag = sum(effect.delays([constant], source)[0] for effect, constant in lags)
+    plain = Host(trace, rig, axis_of(found, trace, rig), moved=_moved(trace, found), lag=lag)
     left, gap = found.torque.identify, found.torque
     assert left is not None
     taken = frozenset(name for one in found.effects for name in (one.name, *one.ambiguous_with))
@@ -113,13 +109,6 @@ def _moved(trace: Trace, found: Diagnosis) -> Trace | None:
     return trace.with_signals({"position": position, "velocity": velocity}, {})
 
 
-def _lag(trace: Trace, found: Diagnosis) -> float:
-    """By which the motion follows the reported effort, as its diagnosis names it - s."""
-    source = "position" if "position" in trace else "velocity"
-    lags = [(one.effect, one.values) for one in found.effects if isinstance(one.effect, MotionLag)]
-    return sum(effect.delays([values["time_constant"]], source)[0] for effect, values in lags)
-
-
 def _load(host: Host, found: Diagnosis) -> Array | None:
     """Torque of the load that the rig knows, or that the diagnosis names - N*m (N) (m,)."""
     known = host.rig.effort(host.trace)[0] - host.rig.own_effort(host.trace)[0]
@@ -127,7 +116,7 @@ def _load(host: Host, found: Diagnosis) -> Array | None:
     if not loads and not known.any():
         return None
     seen = stand_in(host)
-    return sum((np.asarray(load.resisting_torque(Rows(seen, slice(None), load))) for load in loads), known)
+    return sum((np.asarray(load.resisting_torque(seen)) for load in loads), known)
 
 
 @dataclass(frozen=True)
@@ -143,8 +132,6 @@ class Injection:
         names: given now, and not before.
         verdict, reason: of the diagnosis; why there is none.
         scored: its quantities beside the truth, where it is named.
-        probabilities: of the effect's name, of others that are new, and of `NONE`.
-        seconds: of CPU that the diagnosis took - s.
     """
 
     effect: str
@@ -158,8 +145,6 @@ class Injection:
     verdict: str = ""
     reason: str = ""
     scored: tuple[Scored, ...] = ()
-    probabilities: Mapping[str, float] = field(default_factory=dict)
-    seconds: float = 0.0
 
     @property
     def named(self) -> bool:
@@ -167,9 +152,7 @@ class Injection:
         return self.fate in (RIGHT, PART)
 
 
-def put_into(
-    own: Own, name: str, strength: float, seed: int, made_with: Callable[[Host, Effect], Trace] = injected
-) -> Injection | None:
+def put_into(own: Own, name: str, strength: float, seed: int) -> Injection | None:
     """Put an effect into a recording and diagnose it; None if the axis cannot have it, or has it already.
 
     Args:
@@ -177,41 +160,29 @@ def put_into(
         name: of the effect.
         strength: over what the recording leaves.
         seed: of its other parameters.
-        made_with: the recording, had the axis had an effect.
     """
     effect = None if name in own.taken else drawn(own.host, name, strength * own.left, seed)
     if effect is None:
         return None
-    made, known = made_with(own.host, effect), catalogue()[name].quantities[0]
-    size, unit = effect.quantities(own.host.axis)[known.name], own.host.rig.axis_kind.unit(known, own.unit)
-    torque = disturbance(own.host, injected(own.host, effect))[0]
-    case = Injection(name, strength, known.name, size, unit, torque)
-    began = time.process_time()
+    host, known = own.host, catalogue()[name].quantities[0]
+    made, size = injected(host, effect), effect.quantities(host.axis)[known.name]
+    unit = host.rig.axis_kind.unit(known, own.unit)
+    case = Injection(name, strength, known.name, size, unit, disturbance(host, made)[0])
     try:
-        found = diagnose(made, own.host.rig)
+        found = diagnose(made, host.rig)
     except BenchError as refused:
-        return replace(case, reason=" ".join(str(refused).split()), probabilities={NONE: 1.0})
-    return judged(replace(case, seconds=time.process_time() - began), own, effect, found)
+        return replace(case, reason=" ".join(str(refused).split()))
+    became, new = fate(found, name, own.names)
+    scored = tuple(of_effects([effect], host.axis, found))
+    return replace(case, fate=became, names=new, verdict=found.verdict, scored=scored)
 
 
-def judged(case: Injection, own: Own, effect: Effect, found: Diagnosis) -> Injection:
-    """The case with what a diagnosis says of it."""
-    named = Named.of(found.verdict, found.effects, (*own.names, *own.hidden, case.effect))
-    is_named, remains = case.effect not in named.missed, found.verdict == UNEXPLAINED
-    known = (PART if named.false else RIGHT) if is_named else ""
-    fate = known or (WRONG if named.false else FLAGGED if remains else MISSED)
-    new = (*[case.effect] * is_named, *named.false)
-    scored = tuple(of_effects([effect], own.host.axis, found))
-    answer = {"names": new, "verdict": found.verdict, "probabilities": believed(found, case.effect, own.names)}
-    return replace(case, fate=fate, scored=scored, **answer)
-
-
-def believed(found: Diagnosis, effect: str, own: Sequence[str]) -> dict[str, float]:
-    """Probabilities of an effect, or what looks like it, of names that are not the recording's own, of none."""
-    likely = found.probabilities.names
-    twin = next((one.name for one in found.effects if effect in (one.name, *one.ambiguous_with)), effect)
-    others = {name: share for name, share in likely.items() if name not in (effect, twin, *own)}
-    return {effect: likely.get(twin, 0.0), **others, NONE: found.probabilities.none}
+def fate(found: Diagnosis, effect: str, beside: Sequence[str]) -> tuple[str, tuple[str, ...]]:
+    """What becomes of an effect in a diagnosis, one of `FATES`, and the names given but for those of others beside."""
+    named = Named.of(found.verdict, found.effects, (*beside, effect))
+    if effect not in named.missed:
+        return PART if named.false else RIGHT, (effect, *named.false)
+    return WRONG if named.false else FLAGGED if found.verdict == UNEXPLAINED else MISSED, named.false
 
 
 def tried(own: Own, strengths: Sequence[float], seed: int, name: str) -> tuple[Injection, ...]:

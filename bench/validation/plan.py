@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -87,15 +87,6 @@ def any_axis(index: int, rng: np.random.Generator) -> Case:
     return Case(index, plant, axis, rig, motion, name, random_sensors(axis, rng))
 
 
-def hide(case: Case, names: Sequence[str], rng: np.random.Generator) -> Case:
-    """The case with effects of these names, all as strong as one draw says."""
-    if not names:
-        return case
-    severity = float(rng.uniform(*SEVERITY))
-    effects = tuple(KINDS[name].draw(case.axis, severity, rng, case.motion.duration) for name in names)
-    return replace(case, effects=effects, severity=severity)
-
-
 #: Names that can be hidden: those that the independent axis has too.
 HIDEABLE = tuple(name for name in KINDS if name in catalogue())
 #: Effects at most in one axis.
@@ -168,10 +159,15 @@ class Plan:
     population: Population = any_axis
 
     def case(self, index: int) -> Case:
-        """The case of an index."""
+        """The case of an index; its effects are all as strong as one draw says."""
         rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(index,)))
         plain = self.population(index, rng)
-        return hide(plain, self.hiding.drawn(index, rng, plain.axis), rng)
+        names = self.hiding.drawn(index, rng, plain.axis)
+        if not names:
+            return plain
+        severity = float(rng.uniform(*SEVERITY))
+        effects = tuple(KINDS[name].draw(plain.axis, severity, rng, plain.motion.duration) for name in names)
+        return replace(plain, effects=effects, severity=severity)
 
 
 #: Signals that tell what moved an axis.
@@ -183,25 +179,18 @@ class OwnAxis:
     """The same axis in every run; noise and the age of the current are drawn.
 
     Attributes:
-        rig: of the axis.
-        axis: its true values.
-        motion, motion_name: that its drive is commanded to make.
-        sensors: that record it.
+        case: of it, but for what is drawn.
         plants: that can move it.
     """
 
-    rig: Rig
-    axis: Axis
-    motion: Motion
-    motion_name: str
-    sensors: Sensors
+    case: Case
     plants: tuple[Plant, ...]
 
     def __call__(self, index: int, rng: np.random.Generator) -> Case:
         """A case of it, as of any population."""
         plant = self.plants[int(rng.integers(len(self.plants)))]
-        sensors = replace(self.sensors, current_age=int(rng.integers(2)))
-        return Case(index, plant, self.axis, self.rig, self.motion, self.motion_name, sensors)
+        sensors = replace(self.case.sensors, current_age=int(rng.integers(2)))
+        return replace(self.case, index=index, plant=plant, sensors=sensors)
 
 
 def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
@@ -237,7 +226,8 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
     # the independent plant has a motor that does not saturate, and no load torque
     plain = simulation.friction == "mechanics" and not simulation.load_torque and not constant.curvature
     axis = _axis(rig, parameters, cascade, motion.top)
-    return OwnAxis(rig, axis, Motion((motion,)), profile, sensors, PLANTS if plain else ("mujoco",))
+    plants = PLANTS if plain else ("mujoco",)
+    return OwnAxis(Case(0, plants[0], axis, rig, Motion((motion,)), profile, sensors), plants)
 
 
 def as_recorded(rig: Rig, recording: Trace) -> Simulation:
@@ -263,7 +253,10 @@ def _step(recording: Trace | None, name: str) -> float:
 def _axis(rig: Rig, parameters: AxisParameters, cascade: Cascade, top_speed: float) -> Axis:
     constant, drive, winding = rig.motor.torque_per_ampere, rig.drive, winding_of(rig)
     assert constant is not None and drive is not None  # `require` has seen to it
-    axis = Axis(
+    emf = {"back_emf_constant": 0.0}
+    if winding is not None:
+        emf = {name: getattr(winding, name) for name in ("resistance", "inductance", "back_emf_constant")}
+    return Axis(
         name=rig.name,
         inertia=parameters.inertia,
         viscous=parameters.viscous_friction_coefficient,
@@ -278,8 +271,5 @@ def _axis(rig: Rig, parameters: AxisParameters, cascade: Cascade, top_speed: flo
         control_period=cascade.control_period,
         top_speed=top_speed,
         linear=not rig.axis_kind.turns,
+        **emf,
     )
-    if winding is None:
-        return replace(axis, back_emf_constant=0.0)
-    known = {name: getattr(winding, name) for name in ("resistance", "inductance", "back_emf_constant")}
-    return replace(axis, **known)

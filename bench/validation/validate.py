@@ -46,8 +46,7 @@ def record(cases: Sequence[Case], seed: int) -> list[Trace | BenchError]:
         numbers=[case.index for case in beside],
         longest_step=LONGEST_STEP,
     )
-    made: dict[int, Trace | BenchError] = {}
-    made |= {case.index: run.trace for case, run in zip(beside, integrated, strict=True)}
+    made: dict[int, Trace | BenchError] = {k.index: run.trace for k, run in zip(beside, integrated, strict=True)}
     for case in cases:
         if case.plant == "mujoco":
             try:

@@ -77,7 +77,7 @@ def shown(effect: Effect) -> bool:
 
 def signature(effect: Effect) -> Signature:
     """The effect on the axis of the pictures, with values as `bench validate` draws them."""
-    own = own_axis(rig(), DEFAULT, None)
+    own = own_axis(rig(), DEFAULT, None).case
     drawn = KINDS[effect.name].draw(own.axis, SEVERITY, np.random.default_rng(SEED), own.motion.duration)
     values = ",".join(f"{key}={float(value):.3g}" for key, value in drawn.quantities(own.axis).items())
     text = f"{effect.name}:{values}"

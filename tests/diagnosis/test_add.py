@@ -15,8 +15,11 @@ from bench.effects.effect import Detected
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.rig.rig import load_rig
-from bench.validation.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
 from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
 from tests.kept import kept
 
 AXIS = Axis(

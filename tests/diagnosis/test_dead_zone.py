@@ -11,8 +11,7 @@ from bench.effects.backlash import likeliest_shape
 from bench.effects.catalogue import catalogue
 from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
-from bench.validation.independent.effects.electronics import CoggingTorque
-from bench.validation.independent.effects.mechanics import Backlash, LoadTorqueEvent, PositionDependentInertia
+from bench.validation.independent.effects import Backlash, CoggingTorque, LoadTorqueEvent, PositionDependentInertia
 from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis, write_rig
 from bench.validation.independent.sensors import Noise, Sensors

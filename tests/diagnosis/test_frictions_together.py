@@ -13,7 +13,7 @@ from bench.effects.catalogue import catalogue
 from bench.effects.presliding_friction import bristles, sliding_level
 from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
-from bench.validation.independent.effects.mechanics import (
+from bench.validation.independent.effects import (
     DirectionDependentFriction,
     FrictionWarmup,
     PositionDependentFriction,

@@ -11,8 +11,11 @@ import pytest
 from bench.diagnosis.diagnosis import diagnose
 from bench.report.diagnosis import diagnosis_json
 from bench.rig.rig import load_rig
-from bench.validation.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
 from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
 from tests.kept import kept
 from tests.outside import OUTSIDE
 

@@ -12,9 +12,10 @@ from bench.fit.hypothesis import Hypothesis
 from bench.fit.rows import Rows
 from bench.plant.tracking import Tracked
 from bench.rig.rig import load_rig
-from bench.validation.independent import simulate, write_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import Motion, Ramps, slow_reversals
+from bench.validation.independent.rig import write_rig
+from bench.validation.independent.simulate import simulate
 from tests.diagnosis.constructed import RIG, moved
 from tests.diagnosis.constructed import recorded as made_up
 from tests.diagnosis.hand_made import term

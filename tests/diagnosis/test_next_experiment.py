@@ -11,9 +11,11 @@ from bench.diagnosis.next_experiment import LONG_ENOUGH, motions, one_direction
 from bench.diagnosis.recordings import Recordings
 from bench.plant.drive import References
 from bench.rig.rig import load_rig
-from bench.validation.independent import Axis, Noise, Sensors, random_motion, simulate, write_rig
 from bench.validation.independent.effects import KINDS
-from bench.validation.independent.references import Motion, Ramps
+from bench.validation.independent.references import Motion, Ramps, random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3

@@ -17,9 +17,11 @@ from bench.errors import UndeterminedError
 from bench.plant.model_file import load_model
 from bench.report.diagnosis import diagnosis, diagnosis_json, write_diagnosis
 from bench.rig.rig import load_rig
-from bench.validation.independent import Axis, Noise, Sensors, simulate, write_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import Motion, slow_reversals
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
 from tests.diagnosis.off import without
 from tests.kept import kept
 

@@ -13,7 +13,7 @@ from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
 from bench.rig.rig import Rig, load_rig
 from bench.trace.trace import Trace
-from bench.validation.independent.effects.mechanics import ElasticCoupling, PreslidingFriction
+from bench.validation.independent.effects import ElasticCoupling, PreslidingFriction
 from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis, write_rig
 from bench.validation.independent.sensors import Noise, Sensors

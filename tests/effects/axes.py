@@ -14,7 +14,9 @@ from bench.plant.closed_loop import States
 from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant
 from bench.plant.run import run
-from bench.validation.independent import KINDS, Effect, Sensors, simulate
+from bench.validation.independent.effects import KINDS, Effect
+from bench.validation.independent.sensors import Sensors
+from bench.validation.independent.simulate import simulate
 from tests.independent.axes import PLAIN
 
 PERIOD = 125e-6

@@ -10,7 +10,11 @@ from scipy.signal import lfilter
 from bench.diagnosis.diagnosis import diagnose
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from bench.validation.independent import KINDS, Axis, Noise, Sensors, random_motion, simulate
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3

@@ -11,7 +11,12 @@ from scipy.stats import binom
 from bench.diagnosis.diagnosis import diagnose
 from bench.effects.catalogue import catalogue
 from bench.rig.rig import load_rig
-from bench.validation.independent import KINDS, Axis, Noise, Sensors, random_motion, simulate, write_rig
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
+from tests.cases import parameters
 from tests.kept import kept
 from tests.studies.blind.parameters import WHOLE, compared
 
@@ -68,7 +73,7 @@ def diagnosed(hidden, tmp_path_factory):
 def quantities(diagnosis, effect):
     """What is reported of an effect that was hidden, beside the truth."""
     truth = {"coulomb_friction": AXIS.coulomb, "viscous_friction": AXIS.viscous}
-    truth |= {"parameters": {effect.name: effect.truth(AXIS)}}
+    truth |= {"parameters": {effect.name: parameters(effect, AXIS)}}
     named = next(named for named in diagnosis.effects if named.name == effect.name)
     reported = {key: (found.value, *found.ci95) for key, found in named.parameters.items()}
     return compared(truth, effect.name, effect.name, reported)

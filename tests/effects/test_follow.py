@@ -7,7 +7,7 @@ from bench.errors import InputError
 from bench.plant.tracking import follow_references
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
-from bench.validation.independent import write_rig
+from bench.validation.independent.rig import write_rig
 from tests.effects.axes import AXIS, PERIOD, model
 from tests.effects.conftest import MOTION
 

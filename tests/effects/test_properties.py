@@ -33,7 +33,7 @@ from bench.effects.effect import (
 from bench.effects.signals import Moment
 from bench.effects.waves import OncePerRevolution, Wave
 from bench.plant.axis_model import build_spec
-from bench.validation.independent import KINDS
+from bench.validation.independent.effects import KINDS
 from tests.effects.axes import PARAMETERS, PERIOD, model
 from tests.effects.recording import (
     BASE,

@@ -6,8 +6,10 @@ import pytest
 from bench.fit.identify import identify
 from bench.plant.simulate import simulate
 from bench.rig.rig import Rig, load_rig
-from bench.validation.independent import Axis, Noise, Sensors, random_motion, write_rig
-from bench.validation.independent import simulate as integrate
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate as integrate
 
 LIMITS = np.array([1e-3, 1.5e-2, 5e-3])
 

@@ -12,10 +12,11 @@ from bench.fit.identify import identify
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
 from bench.trace.write import write
-from bench.validation.independent import Motion, Noise, Sensors, write_rig
-from bench.validation.independent import simulate as integrate
 from bench.validation.independent.effects import TorqueOffset
-from bench.validation.independent.references import Ramps
+from bench.validation.independent.references import Motion, Ramps
+from bench.validation.independent.rig import write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate as integrate
 from tests.diagnosis.command import started
 from tests.fit.motions import NAMES, RIG, UNITS, Truth, recording
 from tests.fit.test_recovery import AXES, STEP

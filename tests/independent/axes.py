@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from bench.validation.independent import Axis
 from bench.validation.independent.plant import Plant
+from bench.validation.independent.rig import Axis
 
 PLAIN = Axis(
     name="plain",

@@ -3,8 +3,16 @@
 import numpy as np
 import pytest
 
-from bench.validation.independent import random_motion, random_rig
-from bench.validation.independent.references import Chirp, Multisine, Ramps, multisine, slow_reversals, staircase
+from bench.validation.independent.references import (
+    Chirp,
+    Multisine,
+    Ramps,
+    multisine,
+    random_motion,
+    slow_reversals,
+    staircase,
+)
+from bench.validation.independent.rig import random_rig
 
 
 @pytest.mark.parametrize("seed", range(6))

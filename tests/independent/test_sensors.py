@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.validation.independent import Motion, Noise, Sensors, simulate
 from bench.validation.independent.effects import CoggingTorque, CurrentLoopLag
-from bench.validation.independent.references import multisine, slow_reversals
-from bench.validation.independent.sensors import NoiseStream, rounded
+from bench.validation.independent.references import Motion, multisine, slow_reversals
+from bench.validation.independent.sensors import Noise, NoiseStream, Sensors, rounded
+from bench.validation.independent.simulate import simulate
 from tests.independent.axes import PLAIN
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.validation.independent import Axis, Sensors, simulate
 from bench.validation.independent.effects import (
     DirectionDependentFriction,
     ElasticCoupling,
@@ -25,6 +24,9 @@ from bench.validation.independent.effects import (
     VelocityFilterLag,
     VoltageLimit,
 )
+from bench.validation.independent.rig import Axis
+from bench.validation.independent.sensors import Sensors
+from bench.validation.independent.simulate import simulate
 
 SHARED = Path(__file__).parents[3] / "shared" / "cases"
 SECONDS = 6.0

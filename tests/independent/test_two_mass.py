@@ -5,6 +5,7 @@ import pytest
 
 from bench.validation.independent.effects import ElasticCoupling
 from bench.validation.independent.plant import Plant
+from tests.cases import parameters
 from tests.independent.axes import FREE, run
 
 ROTOR, LOAD = FREE.rotor_inertia, FREE.inertia - FREE.rotor_inertia
@@ -27,7 +28,7 @@ def test_motor_and_load_swing_at_the_natural_frequency_and_decay():
 
 def test_truth_names_the_resonance():
     effect = ElasticCoupling(45.0, 0.004)
-    assert effect.truth(FREE)["resonance_frequency"] == pytest.approx(np.sqrt(45.0 / REDUCED) / (2.0 * np.pi))
+    assert parameters(effect, FREE)["resonance_frequency"] == pytest.approx(np.sqrt(45.0 / REDUCED) / (2.0 * np.pi))
 
 
 def test_at_the_antiresonance_the_motor_stands_still():

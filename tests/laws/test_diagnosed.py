@@ -14,10 +14,11 @@ from bench.rig.rig import Rig
 from bench.trace.read import read
 from bench.trace.trace import Trace
 from bench.trace.write import write
-from bench.validation.independent import random_motion, simulate
 from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import random_rig, rig_text
 from bench.validation.independent.sensors import Noise, random_sensors
+from bench.validation.independent.simulate import simulate
 from tests.kept import kept
 
 OFTEN = (

@@ -9,8 +9,8 @@ from bench.arrays import rms
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from bench.validation.independent import KINDS, Axis, Motion, Sensors, simulate
 from bench.validation.independent.effects import (
+    KINDS,
     Backlash,
     CoggingTorque,
     CurrentGainAsymmetry,
@@ -23,9 +23,11 @@ from bench.validation.independent.effects import (
     VelocityFilterLag,
     VoltageLimit,
 )
-from bench.validation.independent.references import Multisine
-from bench.validation.injection import INJECTABLE, Host, behind, hooks, injected
-from bench.validation.severity import disturbance, drawn, modelled
+from bench.validation.independent.references import Motion, Multisine
+from bench.validation.independent.rig import Axis
+from bench.validation.independent.sensors import Sensors
+from bench.validation.independent.simulate import simulate
+from bench.validation.injection import INJECTABLE, Host, behind, disturbance, drawn, injected, modelled
 from tests.kept import kept
 
 PERIOD = 250e-6
@@ -44,7 +46,7 @@ AXIS = Axis(
 RIG = Rig.of({"name": "axis", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A", "peak_current": "2.5 A"}})
 MOTION = Motion((Multisine(1.6, np.array([40.0, 12.0, 5.0]), np.array([0.7, 2.3, 5.1]), np.array([0.3, 1.9, 0.7])),))
 #: A coupling's truth is in closed form: the motion that contacts make is too fast for the cubic.
-RIGID = tuple(name for name in INJECTABLE if "transmitted_torque" not in hooks(KINDS[name]))
+RIGID = tuple(name for name in INJECTABLE if not hasattr(KINDS[name], "transmitted_torque"))
 #: By which currents differ since a drive's current is held over its tick - A.
 SKEW = 5e-4
 WEIGHT = Unbalance(0.2, 0.4)

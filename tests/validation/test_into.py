@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bench.diagnosis.probability import NameSet, Probabilities
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError, UndeterminedError
 from bench.parameter import Parameter
 from bench.validation import into
+from bench.validation.coverage import of_effects
 from bench.validation.independent.effects import CoggingTorque
-from bench.validation.into import NONE, Injection, Injections, Own, axis_of, inject, judged, own, tried
+from bench.validation.into import Injection, Injections, Own, axis_of, fate, inject, own, tried
 from tests.validation.test_injection import AXIS, RIG, SWING, host_of
 
 OWN = Own(host_of(SWING, np.zeros(SWING.size)), ("unbalance",), "explained", frozenset({"unbalance"}), 0.01, "N*m")
@@ -27,12 +27,11 @@ def found(verdict, *names, ambiguous=()):
         )
         for name in names
     ]
-    sets = (NameSet(frozenset(names), 0.9), NameSet(frozenset({"torsion_spring"}), 0.06))
-    return SimpleNamespace(verdict=verdict, effects=effects, probabilities=Probabilities(sets, 0.04))
+    return SimpleNamespace(verdict=verdict, effects=effects)
 
 
 @pytest.mark.parametrize(
-    ("verdict", "names", "fate", "new"),
+    ("verdict", "names", "became", "new"),
     [
         ("explained", ("unbalance", "cogging_torque"), "right", ("cogging_torque",)),
         ("unexplained_remainder", ("cogging_torque",), "right", ("cogging_torque",)),
@@ -44,30 +43,18 @@ def found(verdict, *names, ambiguous=()):
         ("unexplained_remainder", ("torque_ripple",), "wrong", ("torque_ripple",)),
     ],
 )
-def test_what_becomes_of_an_effect(verdict, names, fate, new):
-    case = judged(CASE, OWN, CoggingTorque(0.05, 8.0), found(verdict, *names))
-    assert (case.fate, case.names, case.verdict) == (fate, new, verdict)
-    assert case.named is ("cogging_torque" in new)
-    assert [(one.quantity, one.true, one.inside(0.95)) for one in case.scored] == [
-        ("amplitude", 0.05, True)
-    ] * case.named
+def test_what_becomes_of_an_effect(verdict, names, became, new):
+    diagnosis = found(verdict, *names)
+    assert fate(diagnosis, "cogging_torque", OWN.names) == (became, new)
+    named = "cogging_torque" in new
+    assert replace(CASE, fate=became).named is named
+    scored = of_effects([CoggingTorque(0.05, 8.0)], AXIS, diagnosis)
+    assert [(one.quantity, one.true, one.inside(0.95)) for one in scored] == [("amplitude", 0.05, True)] * named
 
 
 def test_a_name_that_no_such_recording_tells_from_it_is_right():
     diagnosis = found("explained", "torque_ripple", ambiguous=("cogging_torque",))
-    assert judged(CASE, OWN, CoggingTorque(0.05, 8.0), diagnosis).fate == "right"
-
-
-def test_how_likely_the_effect_is_and_others_that_are_new():
-    def probabilities(*said, **more):
-        return judged(CASE, OWN, CoggingTorque(0.05, 8.0), found(*said, **more)).probabilities
-
-    others = {"torsion_spring": 0.06, NONE: 0.04}
-    assert probabilities("explained", "cogging_torque") == {"cogging_torque": 0.9, **others}
-    assert probabilities("explained", "backlash") == {"cogging_torque": 0.0, "backlash": 0.9, **others}
-    assert probabilities("explained", "unbalance") == {"cogging_torque": 0.0, **others}  # its own
-    twin = probabilities("explained", "torque_ripple", ambiguous=("cogging_torque",))
-    assert twin == {"cogging_torque": 0.9, **others}
+    assert fate(diagnosis, "cogging_torque", OWN.names)[0] == "right"
 
 
 @pytest.mark.parametrize("least", [0.2, 3.3, 20.0])
@@ -137,7 +124,6 @@ def test_a_name_that_cannot_be_put_in_is_refused(recording):
 
 
 def test_what_a_simulated_recording_holds_besides_is_no_false_name():
-    known = replace(OWN, hidden=("backlash",))
     named = found("explained", "unbalance", "cogging_torque", "backlash")
-    assert judged(CASE, known, CoggingTorque(0.05, 8.0), named).fate == "right"
-    assert judged(CASE, OWN, CoggingTorque(0.05, 8.0), named).fate == "part"
+    assert fate(named, "cogging_torque", (*OWN.names, "backlash"))[0] == "right"
+    assert fate(named, "cogging_torque", OWN.names)[0] == "part"

@@ -43,11 +43,11 @@ def test_the_motion_is_the_reference_where_there_is_one():
 def test_what_the_rig_does_not_say_the_recording_does():
     truth = Truth()
     own = own_axis(Rig.of(TABLE), "monday.csv", recording(np.random.default_rng(1), truth, duration=10.0))
-    assert [own.axis.inertia, own.axis.coulomb] == pytest.approx([truth.inertia, truth.coulomb], rel=0.02)
-    assert own.sensors.velocity.white == pytest.approx(0.03, rel=0.1)
-    assert own.sensors.current.white == pytest.approx(0.01 / 0.8, rel=0.1)
+    assert [own.case.axis.inertia, own.case.axis.coulomb] == pytest.approx([truth.inertia, truth.coulomb], rel=0.02)
+    assert own.case.sensors.velocity.white == pytest.approx(0.03, rel=0.1)
+    assert own.case.sensors.current.white == pytest.approx(0.01 / 0.8, rel=0.1)
     assert own.plants == ("independent", "mujoco")
-    assert own.axis.back_emf_constant == 0.0  # so that no voltage limit is hidden in it
+    assert own.case.axis.back_emf_constant == 0.0  # so that no voltage limit is hidden in it
 
 
 @pytest.mark.parametrize(
@@ -66,5 +66,5 @@ def test_what_a_rig_lacks_is_reported(change, expected):
 
 def test_a_motor_that_saturates_is_mujocos_alone():
     own = own_axis(load_rig(asset("data", "rigs", "sh30701p.toml")), "fast_reversals", None)
-    assert own.rig.motor.torque_per_ampere is not None
-    assert own.plants == (("mujoco",) if own.rig.motor.torque_per_ampere.curvature else ("independent", "mujoco"))
+    assert own.case.rig.motor.torque_per_ampere is not None
+    assert own.plants == (("mujoco",) if own.case.rig.motor.torque_per_ampere.curvature else ("independent", "mujoco"))

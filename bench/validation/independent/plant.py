@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.validation.independent.effects.effect import Effect, Rows, stack
-from bench.validation.independent.rig import Axis
+from bench.validation.independent.effects import Effect, Rows
+from bench.validation.independent.rig import Axis, stack
 
 Array = NDArray[np.float64]
 
@@ -94,6 +95,7 @@ class Plant:
     kick solves J*dw/dt = M - K_w*w - K_0*sgn(w) exactly, with stops and breakaways within the step (`move`).
 
     Attributes:
+        axes: their constants, as arrays - (n,).
         position, velocity: of the motor - rad, rad/s - (n,).
         load_position, load_velocity: of the load, where a coupling separates it; unused elsewhere.
         current, acting_current: that the drive measures, and that makes torque - A.
@@ -106,32 +108,25 @@ class Plant:
     def __init__(
         self, axes: Sequence[Axis], effects: Sequence[Sequence[Effect]], position: float = 0.0, velocity: float = 0.0
     ) -> None:
-        def array(name: str) -> np.ndarray:
-            return np.array([getattr(axis, name) for axis in axes], dtype=float)
-
         n = len(axes)
-        self.inertia, self.viscous, self.coulomb = array("inertia"), array("viscous"), array("coulomb")
-        self.torque_constant, self.peak_current = array("torque_constant"), array("peak_current")
-        self.resistance, self.inductance = array("resistance"), array("inductance")
-        self.back_emf_constant = array("back_emf_constant")
+        self.axes: Any = stack(axes)
         self.position, self.velocity = np.full(n, position, dtype=float), np.full(n, velocity, dtype=float)
         self.current, self.motor_torque, self.time, self.midtime = np.zeros(n), np.zeros(n), 0.0, 0.0
         self.recorded_current, self._before = self.current, self.velocity
         self._acting = _acting(self, effects)
         self.load_position, self.load_velocity = self.position.copy(), self.velocity.copy()
         self._load_before = self.load_velocity.copy()
-        self._body = self.inertia.copy()
+        self._body = self.axes.inertia.copy()
         joints = np.zeros(n, dtype=int)
         for rows in self._acting["transmitted_torque"]:
             joints[rows.index] += 1
-            self._body[rows.index] = array("rotor_inertia")[rows.index]
+            self._body[rows.index] = rows.rotor_inertia
         if joints.max() > 1:
             raise ValueError("an axis has one coupling between motor and load")
-        self._load_inertia = self.inertia - self._body
-        self._rate = self.viscous / self._body
+        self._load_inertia = self.axes.inertia - self._body
+        self._rate = self.axes.viscous / self._body
         self._weights: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        self.measured_position, self.measured_velocity = self._sensed(self.position, self.velocity)
-        self.sensed_velocity = self.measured_velocity
+        self._sense()
         for rows in self._acting["filtered"]:
             rows.memory = self.measured_velocity[rows.index].copy()
 
@@ -142,7 +137,7 @@ class Plant:
         self.position = start + speed * (step / 2.0)  # hooks see the middle of the step
         self.velocity = 1.5 * speed - 0.5 * self._before
         self.acting_current = self._drive_current(demand, step)
-        self.motor_torque = self.torque_constant * self.acting_current
+        self.motor_torque = self.axes.torque_constant * self.acting_current
         for rows in self._acting["torque_factor"]:
             self.motor_torque[rows.index] *= rows.effect.torque_factor(rows)
         net = self.motor_torque.copy()
@@ -154,9 +149,12 @@ class Plant:
         for rows in self._acting["transmitted_torque"]:
             net[rows.index] -= self._move_load(rows, step)
         forward, backward = self._friction_levels()
-        for rows in self._acting["bristle_torque"]:
-            net[rows.index] -= self._bend_half(rows, speed, forward, backward, step)
         body, rate, weights = self._inertia(step)
+        for rows in self._acting["bristle_torque"]:
+            i = rows.index
+            rows.level = np.maximum(np.where(self.velocity[i] > 0.0, forward[i], backward[i]), 1e-12)
+            rows.memory = rows.effect.bend(speed[i], rows.level, rows.memory, step / 2.0)
+            net[i] -= rows.effect.bristle_torque(rows, rows.level, rows.memory)
         for rows in self._acting["bristle_torque"]:
             forward[rows.index] = backward[rows.index] = 0.0
         after, distance = move(speed, net, forward, backward, body, rate, weights, step)
@@ -164,58 +162,44 @@ class Plant:
             rows.memory = rows.effect.remember(rows, rows.memory, step)
         for rows in self._acting["bristle_torque"]:
             rows.memory = rows.effect.bend(after[rows.index], rows.level, rows.memory, step / 2.0)
-        self._sense(start + distance, after, step)
         self._before, self.velocity, self.position = speed, after, start + distance
+        sensed = self.sensed_velocity
+        self._sense()
+        for rows in self._acting["filtered"]:
+            i = rows.index
+            rows.memory = rows.effect.filtered(sensed[i], self.sensed_velocity[i], rows.memory, step)
+            self.measured_velocity[i] = rows.memory
         self.time += step
 
     def _drive_current(self, demand: np.ndarray, step: float) -> np.ndarray:
         """Current that makes torque, at the middle of the step; the measured one is advanced to its end."""
-        limited = self._acting["driven_current"]
-        lagging, misread = self._acting["acting_current"], self._acting["true_current"]
-        before, self.current = self.current, demand
-        middle = demand
-        if limited or lagging or misread:
-            self.current, middle = demand.copy(), demand.copy()
-        for rows in limited:
+        before, self.current, middle = self.current, demand.copy(), demand.copy()
+        for rows in self._acting["driven_current"]:
             i = rows.index
             self.current[i] = rows.effect.driven_current(rows, demand[i], before[i], step)
             middle[i] = 0.5 * (before[i] + self.current[i])
-        for rows in misread:
+        for rows in self._acting["true_current"]:
             middle[rows.index] = rows.effect.true_current(rows, middle[rows.index])
-        for rows in lagging:
+        for rows in self._acting["acting_current"]:
             measured, start = middle[rows.index].copy(), rows.memory
             middle[rows.index] = rows.effect.acting_current(measured, start, step / 2.0)
             rows.memory = rows.effect.acting_current(measured, start, step)
-        self.recorded_current = self.current
+        self.recorded_current = self.current.copy()
         for rows in self._acting["recorded_current"]:
             rows.memory = rows.effect.recorded_current(self.current[rows.index], rows.memory, step)
-            self.recorded_current = self.recorded_current.copy()
             self.recorded_current[rows.index] = rows.memory
         return middle
 
-    def _friction_levels(self) -> tuple[np.ndarray, np.ndarray]:
-        """(K_0 + excess +- difference/2)*factor, against positive and against negative motion."""
-        level = self.coulomb.copy()
+    def _friction_levels(self) -> np.ndarray:
+        """(K_0 + excess +- difference/2)*factor, against positive and against negative motion (2, n)."""
+        levels = np.stack([self.axes.coulomb] * 2)
         for rows in self._acting["friction_excess"]:
-            level[rows.index] += rows.effect.friction_excess(rows)
-        forward, backward = level, level.copy()
+            levels[:, rows.index] += rows.effect.friction_excess(rows)
         for rows in self._acting["friction_difference"]:
-            half = 0.5 * rows.effect.friction_difference(rows)
-            forward[rows.index] += half
-            backward[rows.index] -= half
+            levels[:, rows.index] += np.outer([0.5, -0.5], rows.effect.friction_difference(rows))
         for rows in self._acting["friction_factor"]:
-            factor = rows.effect.friction_factor(rows)
-            forward[rows.index] *= factor
-            backward[rows.index] *= factor
-        return np.maximum(forward, 0.0), np.maximum(backward, 0.0)
-
-    def _bend_half(
-        self, rows: Rows, speed: np.ndarray, forward: np.ndarray, backward: np.ndarray, step: float
-    ) -> np.ndarray:
-        i = rows.index
-        rows.level = np.maximum(np.where(self.velocity[i] > 0.0, forward[i], backward[i]), 1e-12)
-        rows.memory = rows.effect.bend(speed[i], rows.level, rows.memory, step / 2.0)
-        return rows.effect.bristle_torque(rows, rows.level, rows.memory)
+            levels[:, rows.index] *= rows.effect.friction_factor(rows)
+        return np.maximum(levels, 0.0)
 
     def _move_load(self, rows: Rows, step: float) -> np.ndarray:
         """Torque from motor to load at the middle of the step, and the load moved by it."""
@@ -230,42 +214,29 @@ class Plant:
         return torque
 
     def _inertia(self, step: float) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
-        varying = self._acting["added_inertia"]
-        if not varying:
-            if step not in self._weights:
-                whole = np.full_like(self._rate, step)
-                self._weights[step] = speed_weight(self._rate, whole), distance_weight(self._rate, whole)
-            return self._body, self._rate, self._weights[step]
-        body = self._body.copy()
-        for rows in varying:
-            body[rows.index] += rows.effect.added_inertia(rows)
-        rate, whole = self.viscous / body, np.full_like(body, step)
-        return body, rate, (speed_weight(rate, whole), distance_weight(rate, whole))
+        body, rate, varying = self._body, self._rate, self._acting["added_inertia"]
+        if varying:
+            body = body.copy()
+            for rows in varying:
+                body[rows.index] += rows.effect.added_inertia(rows)
+            rate = self.axes.viscous / body
+        if varying or step not in self._weights:
+            whole = np.full_like(body, step)
+            self._weights[step] = speed_weight(rate, whole), distance_weight(rate, whole)
+        return body, rate, self._weights[step]
 
-    def _sensed(self, position: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        members = self._acting["measured"]
-        if members:
-            position, speed = position.copy(), speed.copy()
-        for rows in members:
+    def _sense(self) -> None:
+        """What the sensor reads of position and speed, a filter of the speed aside."""
+        self.measured_position, self.sensed_velocity = self.position.copy(), self.velocity.copy()
+        for rows in self._acting["measured"]:
             i = rows.index
-            position[i], speed[i] = rows.effect.measured(position[i], speed[i])
-        return position, speed
-
-    def _sense(self, position: np.ndarray, after: np.ndarray, step: float) -> None:
-        before = self.sensed_velocity
-        self.measured_position, self.sensed_velocity = self._sensed(position, after)
-        self.measured_velocity = self.sensed_velocity
-        filters = self._acting["filtered"]
-        if filters:
-            self.measured_velocity = self.sensed_velocity.copy()
-        for rows in filters:
-            i = rows.index
-            rows.memory = rows.effect.filtered(before[i], self.sensed_velocity[i], rows.memory, step)
-            self.measured_velocity[i] = rows.memory
+            read = rows.effect.measured(self.position[i], self.velocity[i])
+            self.measured_position[i], self.sensed_velocity[i] = read
+        self.measured_velocity = self.sensed_velocity.copy()
 
 
 def _acting(plant: Plant, effects: Sequence[Sequence[Effect]]) -> defaultdict[str, list[Rows]]:
-    """For each hook the effects whose class, or one that it is derived from, defines it, each stacked over its axes."""
+    """For each hook the effects that have it, each stacked over its axes."""
     found: dict[tuple[type[Effect], int], list[tuple[int, Effect]]] = {}
     for row, those in enumerate(effects):
         for order, effect in enumerate(those):
@@ -276,6 +247,6 @@ def _acting(plant: Plant, effects: Sequence[Sequence[Effect]]) -> defaultdict[st
         index = np.array([row for row, _ in pairs])
         everywhere = len(index) == len(effects)
         rows = Rows(plant, slice(None) if everywhere else index, stack([effect for _, effect in pairs]))
-        for hook in {hook for each in kind.mro() if each not in Effect.mro() for hook in vars(each)}:
+        for hook in dir(kind):
             acting[hook].append(rows)
     return acting

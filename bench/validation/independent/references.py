@@ -12,12 +12,7 @@ from bench.validation.independent.rig import Axis
 
 
 class Phase(Protocol):
-    """A part of a motion.
-
-    Attributes:
-        duration: of it - s.
-        distance: gone in it - rad.
-    """
+    """A part of a motion: its duration - s -, and the distance gone in it - rad."""
 
     duration: float
     distance: float

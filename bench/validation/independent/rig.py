@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
+
+T = TypeVar("T", bound=Any)
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,12 @@ class Axis:
         return 0.04 * self.peak_torque
 
 
+def stack(ones: Sequence[T]) -> T:
+    """One object for many side by side: same dataclass, its numbers as arrays - (n,)."""
+    names = [each.name for each in fields(ones[0]) if not isinstance(getattr(ones[0], each.name), str)]
+    return replace(ones[0], **{name: np.array([getattr(one, name) for one in ones], dtype=float) for name in names})
+
+
 def random_rig(rng: np.random.Generator, name: str = "axis", *, linear: bool = False) -> Axis:
     """An axis drawn at random: J over two decades, any kT, friction 0.8 to 3 % of peak torque, drive of 10 to 50 Hz."""
 
@@ -98,25 +108,23 @@ def write_rig(axis: Axis, path: str | Path) -> None:
 
 def rig_text(axis: Axis) -> str:
     """The same as text."""
-    mass, per_ampere, emf = ("kg", "N/A", "V*s/m") if axis.linear else ("kg*m**2", "N*m/A", "V*s/rad")
-    rate, spring = ("N*s/m", "N/m") if axis.linear else ("N*m*s/rad", "N*m/rad")
-    inertia_key, constant_key = (
-        ("moving_mass", "force_constant") if axis.linear else ("rotor_inertia", "torque_constant")
-    )
-    return (
-        f'name = "{axis.name}"\n'
-        f'kind = "{"linear" if axis.linear else "rotary"}"\n\n'
-        "[motor]\n"
-        f'{inertia_key} = "{axis.rotor_inertia:.8g} {mass}"\n'
-        f'{constant_key} = "{axis.torque_constant:.8g} {per_ampere}"\n'
-        f'peak_current = "{axis.peak_current:.8g} A"\n'
-        f'resistance = "{axis.resistance:.8g} ohm"\n'
-        f'inductance = "{axis.inductance:.8g} H"\n'
-        f'back_emf_constant = "{axis.back_emf_constant:.8g} {emf}"\n\n'
-        "[drive]\n"
-        f'position_gain = "{axis.position_gain:.8g} 1/s"\n'
-        f'velocity_gain = "{axis.velocity_gain:.8g} {rate}"\n'
-        f'integral_gain = "{axis.integral_gain:.8g} {spring}"\n'
-        f'inertia_feedforward = "{axis.inertia_feedforward:.8g} {mass}"\n'
-        f'control_period = "{axis.control_period * 1e6:.8g} us"\n'
-    )
+    kind, length, mass, effort = ("linear", "m", "kg", "N") if axis.linear else ("rotary", "rad", "kg*m**2", "N*m")
+    inertia, constant = ("moving_mass", "force_constant") if axis.linear else ("rotor_inertia", "torque_constant")
+    return f'''name = "{axis.name}"
+kind = "{kind}"
+
+[motor]
+{inertia} = "{axis.rotor_inertia:.8g} {mass}"
+{constant} = "{axis.torque_constant:.8g} {effort}/A"
+peak_current = "{axis.peak_current:.8g} A"
+resistance = "{axis.resistance:.8g} ohm"
+inductance = "{axis.inductance:.8g} H"
+back_emf_constant = "{axis.back_emf_constant:.8g} V*s/{length}"
+
+[drive]
+position_gain = "{axis.position_gain:.8g} 1/s"
+velocity_gain = "{axis.velocity_gain:.8g} {effort}*s/{length}"
+integral_gain = "{axis.integral_gain:.8g} {effort}/{length}"
+inertia_feedforward = "{axis.inertia_feedforward:.8g} {mass}"
+control_period = "{axis.control_period * 1e6:.8g} us"
+'''

@@ -9,10 +9,10 @@ from math import ceil
 import numpy as np
 
 from bench.trace.trace import Trace
-from bench.validation.independent.effects.effect import Effect
+from bench.validation.independent.effects import Effect
 from bench.validation.independent.plant import Plant
 from bench.validation.independent.references import Motion
-from bench.validation.independent.rig import Axis
+from bench.validation.independent.rig import Axis, stack
 from bench.validation.independent.sensors import NoiseStream, Sensors, rounded
 
 
@@ -23,22 +23,17 @@ class Drive:
     """
 
     def __init__(self, axes: Sequence[Axis], control_period: float) -> None:
-        def array(name: str) -> np.ndarray:
-            return np.array([getattr(axis, name) for axis in axes])
-
-        self._kp, self._kv, self._ki = array("position_gain"), array("velocity_gain"), array("integral_gain")
-        self._jff, self._kt, self._peak = array("inertia_feedforward"), array("torque_constant"), array("peak_current")
-        self._period, self._integral = control_period, np.zeros(len(axes))
+        self._axes, self._period, self._integral = stack(axes), control_period, np.zeros(len(axes))
 
     def current(self, reference: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Current demand - A - from q_ref, w_ref, alpha_ref (3, n) and measurements - (n,) each."""
-        q, w, alpha = reference
-        error = w + self._kp * (q - position) - velocity
-        torque = self._kv * error + self._ki * self._integral + self._jff * alpha
-        demand = torque / self._kt
-        free = np.abs(demand) < self._peak
+        (q, w, alpha), axes = reference, self._axes
+        error = w + axes.position_gain * (q - position) - velocity
+        torque = axes.velocity_gain * error + axes.integral_gain * self._integral + axes.inertia_feedforward * alpha
+        demand = torque / axes.torque_constant
+        free = np.abs(demand) < axes.peak_current
         self._integral += self._period * error * free
-        return np.where(free, demand, np.sign(demand) * self._peak)
+        return np.where(free, demand, np.sign(demand) * axes.peak_current)
 
 
 LONGEST_STEP = 20e-6

@@ -26,8 +26,10 @@ from bench.effects.acting import AXIS, DRIVE, LOAD
 from bench.fit.identify import identify
 from bench.plant.axis_model import AxisParameters, build_spec, disk_inertia, half_step_inertia
 from bench.rig.rig import Rig
-from bench.validation.independent import Axis, Noise, Recorded, Sensors, random_motion, random_rig, simulate
-from bench.validation.independent.rig import rig_text
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, random_rig, rig_text
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import Recorded, simulate
 from tests.studies.benchmarks.table import Table
 
 PARAMETERS = ("J", "viscous", "Coulomb")

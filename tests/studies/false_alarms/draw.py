@@ -11,19 +11,11 @@ import numpy as np
 
 from bench.rig.rig import Rig, load_rig
 from bench.trace.trace import Trace
-from bench.validation.independent import (
-    KINDS,
-    Axis,
-    Effect,
-    Motion,
-    Sensors,
-    random_motion,
-    random_rig,
-    random_sensors,
-    simulate,
-)
-from bench.validation.independent.references import Phase
-from bench.validation.independent.rig import write_rig
+from bench.validation.independent.effects import KINDS, Effect
+from bench.validation.independent.references import Motion, Phase, random_motion
+from bench.validation.independent.rig import Axis, random_rig, write_rig
+from bench.validation.independent.sensors import Sensors, random_sensors
+from bench.validation.independent.simulate import simulate
 from tests.cases import residual_ratio
 
 #: Tick of all drives, so that many run side by side, and step of the integration - s.

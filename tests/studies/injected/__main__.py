@@ -13,9 +13,8 @@ from rich.progress import Progress
 from bench.files import write_text
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
-from bench.validation.into import Own
 from tests.studies.injected import stability
-from tests.studies.injected.cases import FAILED, Case, Row, draw, itself, judged, keep, kept, kept_in, write_case
+from tests.studies.injected.cases import FAILED, Case, Known, Row, draw, itself, judged, keep, kept, kept_in, write_case
 from tests.studies.injected.sources import Source, real, simulated
 from tests.studies.injected.table import markdown
 
@@ -42,13 +41,13 @@ def done(
             progress.advance(bar)
 
 
-def owns_of(sources: Sequence[Source], jobs: int) -> tuple[dict[str, Own], dict[str, str]]:
+def owns_of(sources: Sequence[Source], jobs: int) -> tuple[dict[str, Known], dict[str, str]]:
     """Of all sources, and why some are refused; in their order."""
-    found: dict[str, Own] = {}
+    found: dict[str, Known] = {}
     refused: dict[str, str] = {}
 
-    def tell(source: Source, outcome: Own | str | Failure) -> str:
-        if isinstance(outcome, Own):
+    def tell(source: Source, outcome: Known | str | Failure) -> str:
+        if isinstance(outcome, Known):
             found[source.name] = outcome
             return ""
         refused[source.name] = outcome.reason if isinstance(outcome, Failure) else outcome
@@ -59,12 +58,12 @@ def owns_of(sources: Sequence[Source], jobs: int) -> tuple[dict[str, Own], dict[
     return {name: found[name] for name in names if name in found}, refused
 
 
-def rows_of(items: Sequence[tuple[Case, Source, Own]], path: Path, jobs: int) -> dict[str, Row]:
+def rows_of(items: Sequence[tuple[Case, Source, Known]], path: Path, jobs: int) -> dict[str, Row]:
     """Rows of cases with their recordings, those that are kept already and the others."""
     asked = {case.name for case, *_ in items}
     rows = {row.case.name: row for row in kept(path) if row.case.name in asked}
 
-    def tell(item: tuple[Case, Source, Own], outcome: Row | Failure) -> str:
+    def tell(item: tuple[Case, Source, Known], outcome: Row | Failure) -> str:
         row = Row(item[0], FAILED, reason=outcome.reason) if isinstance(outcome, Failure) else outcome
         keep(path, row)
         rows[row.case.name] = row
@@ -98,7 +97,7 @@ def answers_of(sources: Sequence[Source], seed: int, jobs: int) -> dict[str, dic
     return {source.name: said[source.name] for source in sources if source.name in said}
 
 
-def written(drawn: Sequence[Case], count: int, folder: Path, sources: dict[str, Source], owns: dict[str, Own]) -> int:
+def written(drawn: Sequence[Case], count: int, folder: Path, sources: dict[str, Source], owns: dict[str, Known]) -> int:
     """Write the first cases that their axes can have as folders; how many there are."""
     made = 0
     for case in drawn:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from hashlib import sha256
@@ -14,12 +15,14 @@ from zlib import crc32
 import numpy as np
 
 import bench
+from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.errors import BenchError
 from bench.trace.write import write
-from bench.validation.independent.effects import KINDS
-from bench.validation.injection import INJECTABLE, injected
-from bench.validation.into import Injection, Own, own, put_into
-from bench.validation.severity import disturbance, drawn
+from bench.validation.coverage import of_effects
+from bench.validation.independent.effects import KINDS, Effect
+from bench.validation.injection import INJECTABLE, disturbance, drawn, injected
+from bench.validation.into import FLAGGED, Own, fate, own
+from tests.cases import parameters
 from tests.studies.blind.score import same, twins
 from tests.studies.injected.sources import Source
 
@@ -29,6 +32,20 @@ STRENGTHS = (2.0, 5.0)
 OPPOSED = {"current_loop_lag", "current_filter_lag"}
 #: Fates beside those of the bench: the axis cannot have the effect so large, and work that gave no result.
 UNABLE, FAILED = "unable", "failed"
+#: The name of what no catalogue holds, beside names.
+NONE = ""
+
+
+@dataclass(frozen=True)
+class Known(Own):
+    """A recording before anything is put into it, and names of what is hidden in it, as of a simulated one."""
+
+    hidden: tuple[str, ...] = ()
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """Names of all that it holds."""
+        return (*self.names, *self.hidden)
 
 
 @dataclass(frozen=True)
@@ -51,10 +68,10 @@ class Case:
         return crc32(f"{self.seed} {self.name}".encode())
 
 
-def itself(source: Source) -> Own | str:
+def itself(source: Source) -> Known | str:
     """What a recording says before anything is put into it, or why it says nothing."""
     try:
-        found = own(*source.read())
+        found = Known(**vars(own(*source.read())))
     except BenchError as refusal:
         return " ".join(str(refusal).split())
     if source.drawn is None:
@@ -65,9 +82,9 @@ def itself(source: Source) -> Own | str:
     return replace(found, host=host, taken=found.taken.union(*map(twins, hidden)), hidden=hidden)
 
 
-def possible(effect: str, own: Own) -> bool:
+def possible(effect: str, own: Known) -> bool:
     """Whether an axis can have an effect beside what it has, and show it: one coupling, one friction by its load."""
-    beside = {effect, *own.names, *own.hidden}
+    beside = {effect, *own.beside}
     return not beside >= OPPOSED and not any(KINDS[name].never_beside in beside for name in beside)
 
 
@@ -85,7 +102,9 @@ class Row:
     Attributes:
         case: as drawn.
         fate: as `bench.validation.into` has it, or UNABLE or FAILED.
-        names, verdict, reason, probabilities, seconds: as there.
+        names, verdict, reason: as there.
+        probabilities: of the effect's name, of others that are new, and of `NONE`.
+        seconds: of CPU that the diagnosis took - s.
         quantities: true value, value, and both ends of the interval of 95 %, by name.
         hidden: what is in the recording, too, as far as it is known or was named before.
     """
@@ -99,16 +118,6 @@ class Row:
     seconds: float = 0.0
     quantities: dict[str, tuple[float, float, float, float]] = field(default_factory=dict)
     hidden: tuple[str, ...] = ()
-
-    @classmethod
-    def of(cls, case: Case, own: Own, found: Injection | None) -> Row:
-        """Of what the bench says."""
-        if found is None:
-            return cls(case, UNABLE)
-        quantities = {one.quantity: (one.true, one.parameter.value, *one.parameter.ci95) for one in found.scored}
-        beliefs = dict(found.probabilities)
-        answer = found.names, found.verdict, found.reason, beliefs, found.seconds, quantities
-        return cls(case, found.fate, *answer, (*own.names, *own.hidden))
 
     @property
     def believed(self) -> float:
@@ -127,12 +136,39 @@ class Row:
         return f"| {' | '.join(cells)} |"
 
 
-def judged(item: tuple[Case, Source, Own]) -> Row:
+def effect_of(case: Case, own: Known) -> Effect | None:
+    """The effect of a case; None if the axis cannot have it, or has it already."""
+    if case.effect in own.taken or not possible(case.effect, own):
+        return None
+    return drawn(own.host, case.effect, case.strength * own.left, case.own_seed)
+
+
+def judged(item: tuple[Case, Source, Known]) -> Row:
     """Put in, diagnosed and judged."""
     case, source, own = item
-    if not possible(case.effect, own):
+    effect = effect_of(case, own)
+    if effect is None:
         return Row(case, UNABLE)
-    return Row.of(case, own, put_into(own, case.effect, case.strength, case.own_seed, source.made_with))
+    made, began = source.made_with(own.host, effect), time.process_time()
+    try:
+        found = diagnose(made, own.host.rig)
+    except BenchError as refused:
+        reason = " ".join(str(refused).split())
+        return Row(case, FLAGGED, reason=reason, probabilities={NONE: 1.0}, hidden=own.beside)
+    seconds = time.process_time() - began
+    became, new = fate(found, case.effect, own.beside)
+    scored = of_effects([effect], own.host.axis, found)
+    quantities = {one.quantity: (one.true, one.parameter.value, *one.parameter.ci95) for one in scored}
+    beliefs = believed(found, case.effect, own.names)
+    return Row(case, became, new, found.verdict, "", beliefs, seconds, quantities, own.beside)
+
+
+def believed(found: Diagnosis, effect: str, own: Sequence[str]) -> dict[str, float]:
+    """Probabilities of an effect, or what looks like it, of names that are not the recording's own, of none."""
+    likely = found.probabilities.names
+    twin = next((one.name for one in found.effects if effect in (one.name, *one.ambiguous_with)), effect)
+    others = {name: share for name, share in likely.items() if name not in (effect, twin, *own)}
+    return {effect: likely.get(twin, 0.0), **others, NONE: found.probabilities.none}
 
 
 def kept_in(seed: int) -> Path:
@@ -165,11 +201,9 @@ def kept(path: Path) -> Iterator[Row]:
             yield row
 
 
-def write_case(folder: Path, case: Case, source: Source, own: Own) -> bool:
+def write_case(folder: Path, case: Case, source: Source, own: Known) -> bool:
     """Write a case as other sets have them: run1.csv.gz, rig.toml, truth.json; whether the axis can have it."""
-    host = own.host
-    able = case.effect not in own.taken and possible(case.effect, own)
-    effect = drawn(host, case.effect, case.strength * own.left, case.own_seed) if able else None
+    host, effect = own.host, effect_of(case, own)
     if effect is None:
         return False
     made = source.made_with(host, effect)
@@ -184,12 +218,12 @@ def write_case(folder: Path, case: Case, source: Source, own: Own) -> bool:
         "group": "injected",
         **asdict(case),
         "real": source.real,
-        "own": (*own.names, *own.hidden),
+        "own": own.beside,
         "own_verdict": own.verdict,
         "left": own.left,
         "rms": whole,
         "rms_beyond_base": beyond,
-        "parameters": {case.effect: effect.truth(host.axis)},
+        "parameters": {case.effect: parameters(effect, host.axis)},
         "quantities": {case.effect: effect.quantities(host.axis)},
         "inertia": host.axis.inertia,
         "viscous_friction": host.axis.viscous,

@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from bench.validation.into import FATES, NONE, PART, RIGHT, WRONG, Own
+from bench.validation.into import FATES, PART, RIGHT, WRONG, Own
 from tests.studies.blind.score import same, twins
-from tests.studies.injected.cases import FAILED, UNABLE, Row
+from tests.studies.injected.cases import FAILED, NONE, UNABLE, Row
 from tests.studies.injected.sources import Source
 
 #: Edges of the probabilities that are distinguished.

@@ -7,19 +7,33 @@ import numpy as np
 import pytest
 
 import bench
+from bench.diagnosis.probability import NameSet, Probabilities
 from bench.trace.trace import Trace
 from bench.validation.independent.effects import LoadDependentFriction, TorqueOffset
 from bench.validation.injection import INJECTABLE
-from bench.validation.into import NONE
 from tests.shared import needs_shared
-from tests.studies.injected.cases import FAILED, STRENGTHS, Case, Row, draw, keep, kept, possible, write_case
+from tests.studies.injected.cases import (
+    FAILED,
+    NONE,
+    STRENGTHS,
+    Case,
+    Known,
+    Row,
+    believed,
+    draw,
+    keep,
+    kept,
+    possible,
+    write_case,
+)
 from tests.studies.injected.sources import Source, real
 from tests.studies.injected.stability import HALVES, NOISE, WHOLE, Answer, compared, markdown, variants
 from tests.studies.injected.table import calibration_error, headline, pairs
 from tests.studies.nuisance.realistic import one
-from tests.validation.test_into import OWN
+from tests.validation.test_into import OWN, found
 
 LOADED = LoadDependentFriction(0.1)
+KNOWN = Known(**vars(OWN))
 CASE = Case("axis/r1", "cogging_torque", 2.0, 7)
 ROW = Row(
     CASE, "right", ("cogging_torque",), "explained", "", {"cogging_torque": 0.9}, 1.5, {"amplitude": (1, 2, 0, 3)}
@@ -104,7 +118,7 @@ def test_a_case_is_written_with_its_truth(tmp_path):
     )
     source = Source("axis", "axis/r1", tmp_path / "run.csv", rig)
     swings = OWN.host.trace.with_signals({"current": np.cos(5.0 * OWN.host.trace.time)}, {})
-    own = replace(OWN, host=replace(OWN.host, trace=swings))
+    own = replace(KNOWN, host=replace(KNOWN.host, trace=swings))
     assert write_case(tmp_path / "made", CASE, source, own)
     assert not write_case(tmp_path / "none", replace(CASE, effect="unbalance"), source, own)  # it has one
     truth = json.loads((tmp_path / "made" / "truth.json").read_text(encoding="utf-8"))
@@ -123,11 +137,27 @@ def test_the_real_recordings_are_there():
 
 
 def test_an_axis_has_one_coupling_and_shows_one_lag_of_its_current():
-    own = replace(OWN, names=("backlash",), hidden=("current_loop_lag",))
+    own = replace(KNOWN, names=("backlash",), hidden=("current_loop_lag",))
     assert not possible("elastic_coupling", own)
     assert not possible("current_filter_lag", own)
     assert possible("cogging_torque", own)
-    assert possible("elastic_coupling", OWN)
+    assert possible("elastic_coupling", KNOWN)
+
+
+def test_how_likely_the_effect_is_and_others_that_are_new():
+    def probabilities(*said, **more):
+        diagnosis = found(*said, **more)
+        names = frozenset(one.name for one in diagnosis.effects)
+        sets = (NameSet(names, 0.9), NameSet(frozenset({"torsion_spring"}), 0.06))
+        diagnosis.probabilities = Probabilities(sets, 0.04)
+        return believed(diagnosis, "cogging_torque", OWN.names)
+
+    others = {"torsion_spring": 0.06, NONE: 0.04}
+    assert probabilities("explained", "cogging_torque") == {"cogging_torque": 0.9, **others}
+    assert probabilities("explained", "backlash") == {"cogging_torque": 0.0, "backlash": 0.9, **others}
+    assert probabilities("explained", "unbalance") == {"cogging_torque": 0.0, **others}  # its own
+    twin = probabilities("explained", "torque_ripple", ambiguous=("cogging_torque",))
+    assert twin == {"cogging_torque": 0.9, **others}
 
 
 def test_a_simulated_axis_is_recorded_once_more_with_the_effect():

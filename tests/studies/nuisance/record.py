@@ -15,6 +15,7 @@ import numpy as np
 from bench.validation.independent.rig import write_rig
 from bench.validation.independent.sensors import Sensors
 from bench.validation.independent.simulate import simulate
+from tests.cases import parameters
 from tests.kept import INTEGRATOR
 from tests.studies.nuisance.draw import Case
 from tests.studies.nuisance.signals import FINE, Signals, noisy, write_csv
@@ -86,6 +87,6 @@ def write_case(folder: Path, case: Case) -> Path:
     write_rig(case.kind.known(case.axis, case.strength), rig)
     rig.write_text(case.kind.rig_text(rig.read_text("utf-8"), case.axis, case.strength), encoding="utf-8")
     truth = {"inertia": case.axis.inertia, "viscous": case.axis.viscous, "coulomb": case.axis.coulomb}
-    truth |= {effect.name: effect.truth(case.axis) for effect in case.effects}
+    truth |= {effect.name: parameters(effect, case.axis) for effect in case.effects}
     (place / "truth.json").write_text(json.dumps(truth, indent=1), encoding="utf-8")
     return place
