@@ -6,24 +6,21 @@ bring it back, so that positions in and out of them are those of the velocities 
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.signals import Number
 from bench.plant.axis_model import AxisModel
-from bench.plant.stepped_effects import per_axis
+from bench.plant.drive import FollowReferences
 
-#: Bytes of inputs and states that a simulation holds at once, however long it is.
-BLOCK_BYTES = 8 * 2**20
-#: Of the number of a tick, which come in turn, and true position and velocity at it - rad (m), rad/s (m/s) - (axes,):
-#: effort from it to the next - N*m (N) - (axes,), reported, asked of the motor, and known to resist beside. Of a lone
-#: axis all may be numbers.
-Tick = Callable[[int, Number, Number], tuple[Number, Number, Number]]
+#: Inputs of the actuator `drive` that are known before the motion, so that MuJoCo closes the loop: from a tick to
+#: before another, held from each to the next - (ticks, inputs + 1). The last two are the motor's effort, and what is
+#: known to resist it beside the axis.
+PlannedInputs: TypeAlias = Callable[[int, int], Array]
 DIVERGED = "the simulation diverged: lower the drive's gains or its control period"
 
 
@@ -34,7 +31,7 @@ class ClosedLoop:
     Attributes:
         axis: the model with the effects that act inside the loop.
         compiled: the axis for MuJoCo, what is native in it and its actuator `drive`.
-        controller: of the actuator.
+        controller: of the actuator: the drive, or inputs that are known before.
         time: of the controller's ticks, from zero - s - (ticks,).
         position, velocity: to start with - rad (m), rad/s (m/s).
         substeps: steps of the integration per tick.
@@ -45,7 +42,7 @@ class ClosedLoop:
 
     axis: AxisModel
     compiled: mujoco.MjModel
-    controller: Controller
+    controller: FollowReferences | PlannedInputs
     time: Array
     position: float = 0.0
     velocity: float = 0.0
@@ -62,7 +59,7 @@ class ClosedLoop:
     @property
     def native(self) -> bool:
         """Whether MuJoCo runs it all by itself."""
-        return isinstance(self.controller, PlannedInputs) and self.axis.all_native
+        return not isinstance(self.controller, FollowReferences) and self.axis.all_native
 
     @property
     def alike(self) -> tuple[object, ...]:
@@ -101,68 +98,3 @@ class States:
     def signals(self) -> tuple[Array, ...]:
         """All but the time."""
         return self.position, self.velocity, self.torque, self.motor_torque
-
-
-class Controller(ABC):
-    """What sets the inputs of the actuator `drive` of an axis."""
-
-    @classmethod
-    @abstractmethod
-    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Tick:
-        """What controls the axes of loops whose controllers are all of this class.
-
-        `setpoints` are the inputs of the actuators before the effort, to be written at each tick - (axes, inputs).
-        """
-
-
-class PlannedInputs(Controller):
-    """Inputs that are known before the motion: MuJoCo's own actuator closes the loop."""
-
-    @abstractmethod
-    def between(self, start: int, stop: int) -> Array:
-        """Inputs from a tick to before another, held from each to the next - (ticks, inputs + 1).
-
-        The last two are the motor's effort, and what is known to resist it beside the axis.
-        """
-
-    @classmethod
-    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Tick:
-        """Read in blocks; after the end of a loop its last inputs are held."""
-        rows = _rows_of(loops, setpoints.shape[1] + 2)
-
-        def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number, Number]:
-            inputs = next(rows)
-            setpoints[:] = inputs[:, :-2]
-            effort = per_axis(inputs[:, -2])
-            return effort, effort, per_axis(inputs[:, -1])
-
-        return tick
-
-
-class Listed(PlannedInputs):
-    """Inputs in an array, (ticks, inputs), of an axis with nothing known beside it."""
-
-    def __init__(self, inputs: Array) -> None:
-        self._inputs = np.column_stack([inputs, np.zeros(len(inputs))])
-
-    def between(self, start: int, stop: int) -> Array:
-        """See `PlannedInputs`."""
-        return self._inputs[start:stop]
-
-
-def blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
-    """First tick of each block and the one after its last."""
-    size = max(1, BLOCK_BYTES // bytes_per_tick)
-    return ((start, min(start + size, ticks)) for start in range(0, ticks, size))
-
-
-def _rows_of(loops: Sequence[ClosedLoop], inputs: int) -> Iterator[Array]:
-    """Planned inputs at each tick of the longest loop - (axes, inputs)."""
-    for start, stop in blocks(max(loop.ticks for loop in loops), 8 * inputs * len(loops)):
-        held = []
-        for loop in loops:
-            assert isinstance(loop.controller, PlannedInputs)
-            first = min(start, loop.ticks - 1)
-            known = loop.controller.between(first, min(stop, loop.ticks))
-            held.append(known[np.minimum(np.arange(start, stop), loop.ticks - 1) - first])
-        yield from np.stack(held, axis=1)

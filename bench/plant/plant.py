@@ -9,12 +9,11 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from bench.arrays import Array
 from bench.effects.acting import Friction
 from bench.effects.present import Present
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
-from bench.plant.closed_loop import ClosedLoop, Controller, Listed
+from bench.plant.closed_loop import ClosedLoop
 from bench.plant.drive import Cascade, FollowReferences, References, add_pid, pid_inputs
 from bench.rig.rig import Rig
 
@@ -76,16 +75,14 @@ class Plant:
     def native_loop(self, references: References) -> ClosedLoop:
         """The axis with its drive as MuJoCo's `pid`, which does not hold its integrator while limited."""
         time = self.timestep * np.arange(references.time.size, dtype=np.float64)
-        return self._loop(self._with_pid, Listed(pid_inputs(self.cascade, references)), time, references)
+        inputs, start = pid_inputs(self.cascade, references), references.start
+        return ClosedLoop(self.model, self._with_pid, lambda first, last: inputs[first:last], time, *start)
 
     def ticked_loop(self, references: References) -> ClosedLoop:
         """The axis with its drive ticked in Python."""
         drive = FollowReferences(self.cascade, references, self.axis.parameters if self.emulated else None)
-        return self._loop(self._mechanics, drive, references.time, references)
-
-    def _loop(self, compiled: mujoco.MjModel, drive: Controller, time: Array, references: References) -> ClosedLoop:
-        start = float(references.position[0]), float(references.velocity[0])
-        return ClosedLoop(self.model, compiled, drive, time, *start, substeps=self.substeps)
+        start = references.start
+        return ClosedLoop(self.model, self._mechanics, drive, references.time, *start, substeps=self.substeps)
 
     @cached_property
     def _mechanics(self) -> mujoco.MjModel:

@@ -27,7 +27,7 @@ from bench.arrays import Array
 from bench.effects.acting import Mechanism, TorqueLag, TorqueLoss
 from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
-from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs
+from bench.plant.closed_loop import DIVERGED, ClosedLoop
 from bench.plant.drive import Cascade, References, add_pid
 from bench.plant.plant import Plant
 from bench.plant.run import run, run_loops
@@ -163,7 +163,7 @@ def _loops(
         loop = ClosedLoop(
             mechanics,
             compiled,
-            inputs,
+            inputs.between,
             timestep * np.arange(inputs.ticks, dtype=np.float64),
             *inputs.start,
             every=1 if filters(model) else substeps,  # a filter needs every step, and nothing else does
@@ -180,7 +180,7 @@ def _longest_step(spec: mujoco.MjSpec) -> float:
     return min([LONGEST_STEP, *(CONTACT_STEP / rate for rate in rates)])
 
 
-class _HoldingInputs(PlannedInputs):
+class _HoldingInputs:
     """Position, velocity and effort that the cascade of a held model gets along one stretch.
 
     Of velocities reported in it - rad/s (m/s) - (n,), at timesteps - s -, `substeps` of which make a sample period.
@@ -198,7 +198,7 @@ class _HoldingInputs(PlannedInputs):
         self.start = float(self._position[0]), float(self._velocity[0])
 
     def between(self, start: int, stop: int) -> Array:
-        """See `PlannedInputs`: read between samples."""
+        """Those of some ticks, as `PlannedInputs` has them: read between samples."""
         ticks = self._ticks(start, stop)
         wanted = np.interp(ticks, self._time, self._velocity)
         # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts
