@@ -33,7 +33,6 @@ from bench.joints.identified import LIMITS, JointLogs
 from bench.parameter import Parameter
 from bench.plant.robot import AddedBody, Robot, joint_rig, logs_of
 from bench.trace.filter import Column
-from bench.trace.read import read_recording
 
 #: Speeds over which friction may fall, as shares of the usual one; columns that every joint has of its own.
 SLOW = (0.1, 0.4)
@@ -111,7 +110,7 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
         try:
             robot = Robot.of(asked.mjcf, asked.joint, asked.added)
             rig = joint_rig(asked.rig, robot)
-            trace, *changed = logs_of(read_recording(log), log, rig, robot, asked.stated, changes)
+            trace, *changed = logs_of(log, rig, robot, asked.stated, changes)
             rows = Rows.of(trace, rig)
             columns = [lay_out(rows, plain(rows)).columns[:, : len(BASE)], rows.table(_frictions)]
             columns += [rows.effort - Rows.of(one, rig, conditioning=rows.conditioning).effort for one in changed]

@@ -159,10 +159,14 @@ class Robot:
         return cls(model, joint, str(path), joints, notes)
 
     @property
+    def names(self) -> list[str]:
+        """Of `joints`."""
+        return [self.model.joint(k).name for k in self.joints]
+
+    @property
     def units(self) -> dict[str, str]:
         """Names of the other joints with the units of their positions."""
-        names = [self.model.joint(k).name for k in self.joints]
-        return {name: self.unit(name) for name in names if name != self.joint}
+        return {name: self.unit(name) for name in self.names if name != self.joint}
 
     def unit(self, joint: str) -> str:
         """Of a joint's position."""
@@ -185,23 +189,25 @@ class Robot:
     def inertia(self) -> float:
         """Of all that the joint carries, where the MJCF stands - kg*m**2 (kg)."""
         unit = np.zeros((1, self.model.nv))
-        unit[0, self.model.joint(self.joint).dofadr[0]] = 1.0
+        unit[0, self._dof] = 1.0
         return float(self._momentum(self.model.qpos0[None], unit)[0])
+
+    @property
+    def _dof(self) -> int:
+        return int(self.model.joint(self.joint).dofadr[0])
 
     def rest(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         """What the links ask of the joint beside its own inertia: r - N*m (N) - and p - N*m*s (N*s) -, (n,) each.
 
         Of positions and velocities of `joints` - rad (m), rad/s (m/s) - (n, joints).
         """
-        dof = int(self.model.joint(self.joint).dofadr[0])
-        torque, momentum = np.empty(len(position)), np.empty(len(position))
-        for start in range(0, len(position), TOGETHER):
-            part = slice(start, start + TOGETHER)
+        dof = self._dof
+        torque, momentum = np.empty((2, len(position)))
+        for part in _parts(len(position)):
             q, w = self._posed(position[part], velocity[part])
             step = ASIDE * velocity[part]
-            ahead, behind = (
-                self._momentum(self._posed(position[part] + side * step, step)[0], w) for side in (1.0, -1.0)
-            )
+            poses = (self._posed(position[part] + side * step, step)[0] for side in (1.0, -1.0))
+            ahead, behind = (self._momentum(pose, w) for pose in poses)
             turning = (ahead - behind) / (2.0 * ASIDE)
             bias, passive, matrix = self._evaluated(q, w, "qfrc_bias", "qfrc_passive", "M")
             torque[part] = bias[:, dof] - passive[:, dof] - turning
@@ -220,10 +226,9 @@ class Robot:
         if not added:
             return []
         found = [(np.empty(len(position)), np.empty(len(position))) for _ in added]
-        own, model = self.joints.index(self.model.joint(self.joint).id), self.model
+        own, model = self.names.index(self.joint), self.model
         standing = list(self._paths(added, model.qpos0[None, model.jnt_qposadr[list(self.joints)]]))
-        for first in range(0, len(position), TOGETHER):
-            part = slice(first, first + TOGETHER)
+        for part in _parts(len(position)):
             q, w = position[part], velocity[part]
             paths = zip(*(self._paths(added, q + side * ASIDE * w) for side in (0.0, 1.0, -1.0)), strict=True)
             for one, (here, ahead, behind), still, (r, p) in zip(added, paths, standing, found, strict=True):
@@ -277,9 +282,8 @@ class Robot:
 
     def _row(self, matrix: Array, velocity: Array) -> Array:
         """The joint's row of mass matrices (n, entries), of which MuJoCo has the lower half, times velocities (n,)."""
-        model, dof = self.model, int(self.model.joint(self.joint).dofadr[0])
-        row = np.repeat(np.arange(model.nv), model.M_rownnz)
-        column = model.M_colind
+        dof, column = self._dof, self.model.M_colind
+        row = np.repeat(np.arange(self.model.nv), self.model.M_rownnz)
         found = np.zeros(len(velocity))
         for k in np.flatnonzero((row == dof) | (column == dof)):
             found += matrix[:, k] * velocity[:, column[k] if row[k] == dof else row[k]]
@@ -292,6 +296,11 @@ class Robot:
         batch.bind("qpos")[:], batch.bind("qvel")[:] = position, velocity
         batch.forward()
         return [np.array(values) for values in bound]
+
+
+def _parts(poses: int) -> Iterator[slice]:
+    """Poses in turn, as many as are evaluated at once."""
+    return (slice(start, start + TOGETHER) for start in range(0, poses, TOGETHER))
 
 
 def link_about_centre(model: mujoco.MjModel, name: str) -> float:
@@ -375,20 +384,15 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
         InputError: the log cannot be read, a joint is neither in it nor stated, stands beyond what the MJCF allows by
             the unit assumed, or its effort is in A or V, which the MJCF's links are not.
     """
-    return logs_of(read_recording(path), path, rig, robot, stated)[0]
+    return logs_of(path, rig, robot, stated)[0]
 
 
 def logs_of(
-    recording: Recording,
-    path: Path,
-    rig: Rig,
-    robot: Robot,
-    stated: Mapping[str, float],
-    changes: Sequence[AddedBody] = (),
+    path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], changes: Sequence[AddedBody] = ()
 ) -> list[Trace]:
-    """The same of what a file holds, and then of the robot with each of some changes."""
+    """The same, and then of the robot with each of some changes."""
     own = rig.of_joint(robot.joint)
-    trace, position, velocity, stand = moved(recording, path, rig, robot, stated)
+    trace, position, velocity, stand = _moved(path, rig, robot, stated)
     torque, momentum = robot.rest(position, velocity)
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
@@ -404,7 +408,7 @@ def _standing(
     """Where other joints were stated to stand, in words, and what one that moved would ask of the motor - N*m (N)."""
     if not stand:
         return {}
-    names, asked = [robot.model.joint(k).name for k in robot.joints], 0.0
+    names, asked = robot.names, 0.0
     for name in stand:
         aside = position.copy()
         aside[:, names.index(name)] += FAR
@@ -413,56 +417,50 @@ def _standing(
     return {STANDING: ", ".join(places), STANDING_ASK: repr(asked)}
 
 
-def moved(
-    recording: Recording, path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]
-) -> tuple[Trace, Array, Array, tuple[str, ...]]:
+def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Trace, Array, Array, list[str]]:
     """A joint's own signals, how the robot's `joints` moved - rad (m), rad/s (m/s) - (n, joints), and which are stated.
 
     InputError as `read_log`.
     """
-    recording = named(recording, list(filter(None, (robot.model.joint(k).name for k in range(robot.model.njnt)))))
-    own, names = rig.of_joint(robot.joint), [robot.model.joint(k).name for k in robot.joints]
+    every = (robot.model.joint(k).name for k in range(robot.model.njnt))
+    recording = named(read_recording(path), list(filter(None, every)))
+    own, load = rig.of_joint(robot.joint), rig.of_joint(robot.joint).load or Load()
     if any(_holds(recording, name) for name in robot.units) and not (
         _holds(recording, robot.joint) or own.trace.columns or own.trace.axis
     ):
         allowed = f"allowed: a column '{robot.joint}.position [rad]' and so on, or [trace.columns] in a rig"
         raise InputError(f"{path}: joint '{robot.joint}'", "has no column of its own", allowed)
-    load = own.load or Load()
     trace, ratio = _joint_of(recording, robot.joint, own, robot), load.gear_ratio
     if load.behind_rotor and own.axis_kind.effort in trace:
         trace = trace.with_signals({own.axis_kind.effort: trace[own.axis_kind.effort] / ratio}, {})
     position, velocity = _motion(trace, trace)
-    motion = {robot.joint: (position / ratio, velocity / ratio)}
+    motion, stand = {robot.joint: (position / ratio, velocity / ratio)}, list[str]()
     for name in robot.units:
         if name in rig.joints or _holds(recording, name):
             motion[name] = _motion(_joint_of(recording, name, rig, robot), trace)
         elif name in stated:
             motion[name] = np.full(len(trace), stated[name]), np.zeros(len(trace))
-    for name in names:
-        followed = None if name in motion else robot.follows(name, motion)
-        if followed is not None:
-            motion[name] = followed
-        elif name not in motion:
+            stand.append(name)
+    for name in robot.names:
+        found = motion.get(name) or robot.follows(name, motion)
+        if found is None:
             allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0, or which one of the log it is "
             allowed += f'({", ".join(axes_of(recording.channels))}): axis = "..." under [joints.{name}] in a rig'
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
-        _require_within(motion[name][0], name, robot, path)
-    if own.effort(trace)[1] != own.effort_unit:
+        motion[name] = found
+        _require_within(found[0], name, robot, path)
+    unit = own.effort(trace)[1]
+    if unit != own.effort_unit:
         allowed = f"allowed: {own.effort_unit}, or its torque_constant under [joints.{robot.joint}] in a rig"
-        found = f"found an effort in {own.effort(trace)[1]}, beside links in kg"
-        raise InputError(f"{path}: joint '{robot.joint}'", found, allowed)
-    position, velocity = (np.column_stack([motion[name][k] for name in names]) for k in (0, 1))
-    standing = [
-        name for name in robot.units if name in stated and name not in rig.joints and not _holds(recording, name)
-    ]
-    return trace, position, velocity, tuple(standing)
+        raise InputError(f"{path}: joint '{robot.joint}'", f"found an effort in {unit}, beside links in kg", allowed)
+    position, velocity = (np.column_stack([motion[name][k] for name in robot.names]) for k in (0, 1))
+    return trace, position, velocity, stand
 
 
 def poses_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Array, dict[str, Array]]:
     """Times of a log - s (n,) -, and where a robot's joints were, by name - rad (m) (n,); raises as `read_log`."""
-    trace, position, _, _ = moved(read_recording(path), path, rig, robot, stated)
-    names = (robot.model.joint(k).name for k in robot.joints)
-    return trace.time, dict(zip(names, position.T, strict=True))
+    trace, position, _, _ = _moved(path, rig, robot, stated)
+    return trace.time, dict(zip(robot.names, position.T, strict=True))
 
 
 #: What a joint that slides has where messages tell all joints as if they turned.
@@ -471,11 +469,10 @@ _SLIDES = {"rad": "m", "rad/s": "m/s", "N*m": "N"}
 
 def _joint_of(recording: Recording, name: str, rig: Rig, robot: Robot) -> Trace:
     """The log of one of a robot's joints, counted as the robot's model does."""
-    notes = rig.joints.get(name, JointNotes())
-    how = rig.trace if name == robot.joint else GivenOptions(notes.columns, rig.trace.sample_period, axis=notes.axis)
+    notes, angle = rig.joints.get(name, JointNotes()), robot.unit(name)
+    how, period = (rig.trace, rig.trace.position_period) if name == robot.joint else (notes, None)
     axis = how.axis or (name if _holds(recording, name) else None)
-    how = GivenOptions(how.columns, how.sample_period, how.position_period, axis)
-    angle = robot.unit(name)
+    how = GivenOptions(how.columns, rig.trace.sample_period, period, axis)
     if angle == "m":
         recording = replace(recording, channels=tuple(map(_sliding, recording.channels)))
     units = {"position": angle, "velocity": f"{angle}/s", "torque": "N*m", "force": "N", "current": "A", "time": "s"}
