@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 
 import mujoco
 import numpy as np
@@ -241,10 +242,7 @@ class References:
 
     def repeated(self, times: int) -> References:
         """This motion so many times, each from where the one before ends."""
-        again = self
-        for _ in range(times - 1):
-            again = again.then(self)
-        return again
+        return reduce(References.then, [self] * times)
 
     def csv(self, period: float, position: tuple[str, float], velocity: tuple[str, float]) -> str:
         """Table for a controller: time, position, velocity, acceleration.

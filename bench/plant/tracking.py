@@ -24,22 +24,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.acting import Mechanism, TorqueLag, TorqueLoss
+from bench.effects.acting import Mechanism, MisreadEffort, TorqueLag, TorqueLoss
 from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
-from bench.plant.closed_loop import DIVERGED, ClosedLoop
+from bench.plant.closed_loop import DIVERGED, ClosedLoop, States
 from bench.plant.drive import Cascade, References, add_pid
 from bench.plant.plant import Plant
 from bench.plant.run import run, run_loops
-from bench.plant.sensing import (
-    filters,
-    misreads_effort,
-    reported,
-    reported_states,
-    true_effort,
-    true_motion,
-    true_velocity,
-)
+from bench.plant.sensing import filters, reported, reported_states, true_effort, true_motion, true_velocity
 from bench.rig.rig import Rig
 from bench.trace.motion import integrated, measured_velocity, stretches_of
 from bench.trace.trace import Trace
@@ -107,12 +99,10 @@ def track_all(held: Sequence[SoftTracking], bandwidth: float = BANDWIDTH) -> lis
     stretches = [(row, *stretch) for row, one in enumerate(held) for stretch in _loops(one, bandwidth)]
     motions = run_loops([loop for _, _, loop, _ in stretches])
     found: list[Tracked | None] = [Tracked(*np.full((2, len(one.trace)), np.nan)) for one in held]
-    for (row, part, loop, substeps), states in zip(stretches, motions, strict=True):
+    for (row, part, loop, skip), states in zip(stretches, motions, strict=True):
         tracked = found[row] = None if states.diverged else found[row]
         if tracked is not None:
-            step, skip = loop.compiled.opt.timestep, substeps // loop.every
-            position, velocity = reported(held[row].model, states.position[:, 0], states.velocity[:, 0], step)
-            tracked.position[part], tracked.velocity[part] = position[::skip], velocity[::skip]
+            tracked.position[part], tracked.velocity[part] = _at_samples(held[row].model, loop, states, skip)
     return found
 
 
@@ -122,14 +112,18 @@ def run_free(held: SoftTracking, windows: Sequence[slice]) -> list[Tracked]:
     SimulationError where the model diverged.
     """
     loops = [*_loops(held, FREE, windows)]
-    motions, found = run_loops([loop for _, loop, _ in loops]), []
-    for (_, loop, substeps), states in zip(loops, motions, strict=True):
-        if states.diverged:
-            raise SimulationError(DIVERGED)
-        step, skip = loop.compiled.opt.timestep, substeps // loop.every
-        motion = reported(held.model, states.position[:, 0], states.velocity[:, 0], step)
-        found.append(Tracked(*(signal[::skip] for signal in motion)))
-    return found
+    motions = run_loops([loop for _, loop, _ in loops])
+    if any(states.diverged for states in motions):
+        raise SimulationError(DIVERGED)
+    of_each = zip(loops, motions, strict=True)
+    return [Tracked(*_at_samples(held.model, loop, states, skip)) for (_, loop, skip), states in of_each]
+
+
+def _at_samples(model: AxisModel, loop: ClosedLoop, states: States, skip: int) -> tuple[Array, Array]:
+    """Position and velocity that sensors report of a loop's motion, at the recording's samples."""
+    step = loop.compiled.opt.timestep
+    position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
+    return position[::skip], velocity[::skip]
 
 
 def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDTH) -> Cascade:
@@ -143,7 +137,7 @@ def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDT
 def _loops(
     held: SoftTracking, bandwidth: float, parts: Sequence[slice] | None = None
 ) -> Iterator[tuple[slice, ClosedLoop, int]]:
-    """Samples of parts of a recording, the loop that holds the model along each, and steps per sample.
+    """Samples of parts of a recording, the loop that holds the model along each, and recorded ticks per sample.
 
     The parts are all stretches without holes unless others are given.
     """
@@ -157,6 +151,7 @@ def _loops(
         compiled = spec.compile()
     except ValueError as error:
         raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
+    every = 1 if filters(model, "velocity") else substeps  # a filter needs every step, and nothing else does
     for part in stretches_of(trace) if parts is None else parts:
         inputs = _HoldingInputs(held, part, velocity[part], timestep, substeps)
         start = trace.start_of(part)
@@ -166,11 +161,11 @@ def _loops(
             inputs.between,
             timestep * np.arange(inputs.ticks, dtype=np.float64),
             *inputs.start,
-            every=1 if filters(model) else substeps,  # a filter needs every step, and nothing else does
+            every=every,
             since=float(trace.time[part.start]) - start,
             began=start - float(trace.time[0]),
         )
-        yield part, loop, substeps
+        yield part, loop, substeps // every
 
 
 def _longest_step(spec: mujoco.MjSpec) -> float:
@@ -221,11 +216,10 @@ class _HoldingInputs:
     def _acting(self) -> Array | None:
         """Effort at all ticks, faults of its sensor and lags undone - N*m (N); None without any."""
         model = self._held.model
-        lags = model.acting(TorqueLag)
-        if not misreads_effort(model) and not lags:
+        if not model.of_kind((MisreadEffort, TorqueLag)) and not filters(model, "current"):
             return None
         effort = true_effort(model, self._recorded(0, self.ticks), self._since, self._timestep)
-        for effect, values in lags:
+        for effect, values in model.acting(TorqueLag):
             effort = effect.acting_along(values, effort, self._timestep)
         return effort
 
