@@ -47,11 +47,8 @@ def joint_motion(
 ) -> JointMotion | None:
     """The motion of a diagnosed joint; None where its model does not move, or runs away from the log.
 
-    Args:
-        found: its diagnosis, whose first recording begins with the trace.
-        trace: its log.
-        rig: of it.
-        poses: where the robot's joints were at times of the log - s, rad (m).
+    The trace begins the first recording of the diagnosis; `poses` are where the robot's joints were at times of the log
+    - s, rad (m).
     """
     course, count = found.courses[0], len(trace)
     held = {HELD: course.velocity_left[-1], BARE: course.velocity_left[0] if found.effects else None}

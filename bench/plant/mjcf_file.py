@@ -32,8 +32,7 @@ FINITE = ("qpos0", "body_mass", "body_inertia", "dof_armature", "dof_damping", "
 def require_compiles(path: Path) -> None:
     """Register an MJCF and the files that it names as read.
 
-    Raises:
-        InputError: one of them is not a regular file, or MuJoCo does not make a model of it within LIMITS.
+    InputError where one of them is not a regular file, or MuJoCo does not make a model of it within LIMITS.
     """
     _read_all(path)
     fault = _outcome(str(path), path.stat().st_mtime_ns)

@@ -98,19 +98,18 @@ def model_xml(stored: StoredModel) -> str:
 
 def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:
     """The whole model as TOML, every value with its unit; `further` are tables of the same file, by name."""
-    return tables_toml(stored.model.parameters.kind, {**_content(stored), **(further or {})})
+    return tomli_w.dumps({"schema": SCHEMA, **_content(stored), **(further or {})})
 
 
 def joints_toml(models: Mapping[str, StoredModel]) -> str:
     """The models of a robot's joints, by name, as one TOML."""
-    kinds = {name: stored.model.parameters.kind.name for name, stored in models.items()}
-    tables = {name: {"kind": kinds[name], **_content(stored)} for name, stored in models.items()}
-    return tomli_w.dumps({"schema": OF_JOINTS, "joints": tables})
+    return tomli_w.dumps({"schema": OF_JOINTS, "joints": {name: _content(stored) for name, stored in models.items()}})
 
 
 def _content(stored: StoredModel) -> dict[str, Any]:
     model, kind, mounting = stored.model, stored.model.parameters.kind, stored.mounting
-    content: dict[str, Any] = {"name": stored.name, **_texts({"misalignment": (stored.misalignment, "s")})}
+    content: dict[str, Any] = {"kind": kind.name, "name": stored.name}
+    content |= _texts({"misalignment": (stored.misalignment, "s")})
     if math.isfinite(model.peak_effort):
         content |= _texts({"peak_effort": (model.peak_effort, kind.effort_unit)})
     content["parameters"] = _texts(model.parameters.values)

@@ -65,15 +65,10 @@ class MotionLimits:
 
     @classmethod
     def from_rig(cls, rig: Rig, parameters: AxisParameters, period: float) -> MotionLimits:
-        """Limits from the motor's peak torque and speed, and the inertia and friction it has to overcome.
+        """Limits from a motor's peak torque and speed, and the inertia and friction, true or identified, it overcomes.
 
-        Args:
-            rig: motor, load and, on a linear axis, its stroke.
-            parameters: true or identified.
-            period: of the references - s.
-
-        Raises:
-            InputError: no peak current or torque, or too little torque for friction and load.
+        `period` is that of the references - s. InputError where there is no peak current or torque, or too little
+        torque for friction and load.
         """
         torque = peak_torque(rig)
         if not np.isfinite(torque):

@@ -18,9 +18,8 @@ from bench.arrays import Array
 from bench.effects.acting import AXIS, DRIVE
 from bench.effects.signals import Number
 from bench.errors import InputError, SimulationError
-from bench.plant.closed_loop import DIVERGED, ClosedLoop, States
 from bench.plant.drive import TORQUE, CascadeDrive, FollowReferences, References
-from bench.plant.plant import Plant
+from bench.plant.plant import DIVERGED, ClosedLoop, Plant, States
 from bench.plant.stepped_effects import Joints, SteppedEffects, per_axis
 
 Progress = Callable[[float], None]

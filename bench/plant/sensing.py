@@ -11,8 +11,8 @@ from bench.axis_kind import ROTARY, AxisKind
 from bench.effects.acting import FilteredSignal, MisreadEffort, MisreadMotion
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
-from bench.plant.closed_loop import States
 from bench.plant.drive import References
+from bench.plant.plant import States
 from bench.rig.motor import TorqueConstant
 from bench.rig.rig import Rig
 from bench.trace.signals import unit_on

@@ -27,9 +27,8 @@ from bench.arrays import Array
 from bench.effects.acting import Mechanism, MisreadEffort, TorqueLag, TorqueLoss
 from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
-from bench.plant.closed_loop import DIVERGED, ClosedLoop, States
 from bench.plant.drive import Cascade, References, add_pid
-from bench.plant.plant import Plant
+from bench.plant.plant import DIVERGED, ClosedLoop, Plant, States
 from bench.plant.run import run, run_loops
 from bench.plant.sensing import filters, reported, reported_states, true_effort, true_motion, true_velocity
 from bench.rig.rig import Rig
@@ -237,12 +236,7 @@ class Followed:
 
 
 def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
-    """Run a model along the references of a recording without holes.
-
-    Args:
-        model: with effects.
-        trace: with `velocity_reference` or `position_reference`, at rest at its start.
-        rig: with `[drive]`.
+    """Run a model under the drive of a rig along the references of a recording that starts at rest.
 
     Raises:
         InputError: no references, holes, a rig without drive, or samples that are no multiple of its ticks.

@@ -53,12 +53,9 @@ _EFFORTS = ("torque", "force", "current", "voltage")
 
 
 def draft(inspection: Inspection, motor: str | None = None, axis: str | None = None) -> str:
-    """Text of a rig file; InputError where the catalogue has no such motor.
+    """Text of a rig file for the recording, with a motor by its name in the catalogue, and the axis picked of several.
 
-    Args:
-        inspection: of the recording.
-        motor: name in the motor catalogue.
-        axis: picked of several.
+    InputError where the catalogue has no such motor.
     """
     if motor is not None:
         catalogue_motor(motor, "--motor")
@@ -77,14 +74,9 @@ def draft(inspection: Inspection, motor: str | None = None, axis: str | None = N
 
 
 def drafted(path: Path, axis: str | None = None) -> tuple[Rig, str, str]:
-    """The rig that a recording drafts, where none is given: its text too, and what it assumes, in a line.
+    """The rig that a recording, or one axis of several in it, drafts: its text too, and what it assumes, in a line.
 
-    Args:
-        path: of the recording.
-        axis: to read where it holds several.
-
-    Raises:
-        InputError: the file leaves open what only the user knows.
+    InputError where the file leaves open what only the user knows.
     """
     recording = read_recording(path)
     found = inspect_recording(recording, GivenOptions(axis=axis))

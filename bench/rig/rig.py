@@ -371,11 +371,7 @@ def shipped() -> dict[str, Path]:
 
 
 def rig_file(given: str | Path) -> Path:
-    """The file of a rig: as given, or of a shipped one by its name.
-
-    Raises:
-        InputError: neither a file nor a name.
-    """
+    """The file of a rig: as given, or of a shipped one by its name; InputError where it is neither."""
     path, known = Path(given), shipped()
     try:
         if path.suffix or path.name != str(given) or path.exists():
@@ -389,14 +385,10 @@ def rig_file(given: str | Path) -> Path:
 
 
 def load_rig(path: str | Path, defaults: Mapping[str, Any] | None = None) -> Rig:
-    """Read and check a rig file.
+    """Read and check a rig file, or a shipped one by its name.
 
-    Args:
-        path: of the file, or the name of a shipped rig.
-        defaults: keys and whole tables for those that the file leaves out, as TOML gives them.
-
-    Raises:
-        InputError: no such file, no TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
+    `defaults` are keys and whole tables for those that it leaves out, as TOML gives them. InputError: no such file, no
+    TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
     """
     path = rig_file(path)
     return Rig.of({**(defaults or {}), **read_toml(path, "a rig file")}, str(path))

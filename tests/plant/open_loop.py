@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 
 from bench.plant.axis_model import AxisModel, AxisParameters
-from bench.plant.closed_loop import ClosedLoop, States
 from bench.plant.drive import sense_torque
+from bench.plant.plant import ClosedLoop, States
 from bench.plant.run import run_native
 
 
