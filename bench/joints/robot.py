@@ -58,12 +58,11 @@ class IdentifiedRobot:
 
         InputError where MuJoCo cannot have it.
         """
-        armatures = {name: self.joints[name].parameters.get(ARMATURE) for name in self.models}
-        armature = {
-            name: None if one is None else Armature(max(one.value, 0.0), "all that moved but the links")
-            for name, one in armatures.items()
-        }
-        models = {name: (model, armature[name]) for name, model in self.models.items()}
+        models = {}
+        for name, model in self.models.items():
+            found = self.joints[name].parameters.get(ARMATURE)
+            armature = None if found is None else Armature(max(found.value, 0.0), "all that moved but the links")
+            models[name] = model, armature
         return robot_with(self.mjcf, models, out, self.added)
 
 

@@ -33,6 +33,7 @@ from bench.trace.channel import Channel, Recording
 from bench.trace.choose import GivenOptions, axes_of
 from bench.trace.inspect import time_unit
 from bench.trace.joints import named
+from bench.trace.motion import stretches_of
 from bench.trace.read import read_recording
 from bench.trace.signals import STANDING, STANDING_ASK, signal_of
 from bench.trace.time_base import interpolate
@@ -171,11 +172,6 @@ class Robot:
     def unit(self, joint: str) -> str:
         """Of a joint's position."""
         return UNITS[int(self.model.joint(joint).type[0])]
-
-    @property
-    def turns(self) -> bool:
-        """Whether the joint turns rather than slides."""
-        return self.unit(self.joint) == "rad"
 
     @property
     def link_inertia(self) -> float:
@@ -318,15 +314,13 @@ def _bound(model: mujoco.MjModel, joint: int) -> Iterator[str]:
     of = {name: tied & (model.eq_type == int(getattr(mujoco.mjtEq, f"mjEQ_{name}"))) for name in ("JOINT", "TENDON")}
     if (ends[of["JOINT"]] == joint).any():
         yield "an equality that couples it with another joint"
-    moved = _moved_tendons(model, joint)
     driven = model.actuator_trnid[model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_TENDON), 0]
-    for k in moved:
+    for k in _moved_tendons(model, joint):
         if k in driven or model.tendon_frictionloss[k] > 0.0 or k in ends[of["TENDON"]]:
             yield f"the tendon '{model.tendon(k).name}' on it"
     carried = _carried(model, int(model.jnt_bodyid[joint]))
-    for k in np.flatnonzero(
-        tied & np.isin(model.eq_type, [int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD)])
-    ):
+    closing = [int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD)]
+    for k in np.flatnonzero(tied & np.isin(model.eq_type, closing)):
         sites = model.eq_objtype[k] == int(mujoco.mjtObj.mjOBJ_SITE)
         bodies = model.site_bodyid[ends[k]] if sites else ends[k]
         if carried[bodies[0]] != carried[bodies[1]]:
@@ -358,10 +352,11 @@ def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
 
     InputError where the rig is of another kind.
     """
-    alone = {"name": robot.joint, "kind": "rotary" if robot.turns else "linear"}
+    turns = robot.unit(robot.joint) == "rad"
+    alone = {"name": robot.joint, "kind": "rotary" if turns else "linear"}
     own = Rig.of(alone, robot.source) if rig is None else rig.of_joint(robot.joint)
-    if own.axis_kind.turns is not robot.turns:
-        found = f"found a joint that {'turns' if robot.turns else 'slides'}"
+    if own.axis_kind.turns is not turns:
+        found = f"found a joint that {'turns' if turns else 'slides'}"
         raise InputError(f"--joint {robot.joint}", found, f"allowed: a {own.kind} one, as {own.source} says")
     return rig_within(own, robot)
 
@@ -512,12 +507,12 @@ def _holds(recording: Recording, name: str) -> bool:
 def _motion(trace: Trace, at: Trace) -> tuple[Array, Array]:
     """Position and speed of a joint - rad (m), rad/s (m/s) - at the times of another trace (n,)."""
     position = trace["position"]
-    velocity = np.empty_like(position)
-    for part in trace.segments:
-        alone = part.stop - part.start < 2
-        velocity[part] = 0.0 if alone else np.gradient(position[part], trace.sample_period)
     if "velocity" in trace:
         velocity = trace["velocity"]
+    else:
+        velocity = np.zeros_like(position)
+        for part in stretches_of(trace):
+            velocity[part] = np.gradient(position[part], trace.sample_period)
     if np.array_equal(trace.time, at.time):
         return position, velocity
     return interpolate(at.time, trace.time, position), interpolate(at.time, trace.time, velocity)

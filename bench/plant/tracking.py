@@ -223,20 +223,10 @@ class _HoldingInputs:
         return effort
 
 
-@dataclass(frozen=True)
-class Followed:
-    """What a model under its drive reports at the samples of a recording - rad (m), rad/s (m/s), N*m (N) - (n,) each.
+def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> States:
+    """What a model reports under the drive of a rig, along the references of a recording that starts at rest.
 
-    The effort is that of the tick which begins with the sample.
-    """
-
-    position: Array
-    velocity: Array
-    effort: Array
-
-
-def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
-    """Run a model under the drive of a rig along the references of a recording that starts at rest.
+    At the samples of the recording; the effort of one is that of the tick which begins with it.
 
     Raises:
         InputError: no references, holes, a rig without drive, or samples that are no multiple of its ticks.
@@ -252,8 +242,7 @@ def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
         raise InputError(trace.origin, f"found samples every {sampled:g} s", allowed)
     plant = Plant(model, cascade, period)
     states = reported_states(plant.model, run([plant], [references_of(trace, period, stride)]))
-    rows = slice(None, None, stride)
-    return Followed(states.position[rows, 0], states.velocity[rows, 0], states.torque[rows, 0])
+    return States(states.time[::stride], *(signal[::stride] for signal in states.signals))
 
 
 def references_of(trace: Trace, period: float, stride: int) -> References:
