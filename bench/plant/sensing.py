@@ -109,27 +109,24 @@ class Sensors:
         over each tick; the current of a row is interpolated between the middles of the ticks around it, by a cubic
         that keeps their shape (Fritsch, Carlson, SIAM J. Numer. Anal. 17, 1980, 238-246), so it never exceeds the peak.
         """
+        from scipy.interpolate import PchipInterpolator  # 0.1 s, which only a simulated recording has to pay
+
         rows = slice(None, None, self.stride(references.period))
         time, position, velocity = states.time[rows], states.position[rows, 0], states.velocity[rows, 0]
         noise = random.standard_normal((2, len(time)))
         if self.encoder_resolution > 0.0:
             position = np.round(position / self.encoder_resolution) * self.encoder_resolution
-        effort = "current" if self.torque_constant is not None else self.kind.effort
+        effort, held = self.kind.effort, states.torque[:, 0]
+        if self.torque_constant is not None:
+            effort, held = "current", self.torque_constant.current(held)
+        middles = states.time + (states.time[1] - states.time[0]) / 2.0
+        held = PchipInterpolator(middles, held)(np.maximum(time, middles[0]))
         signals = {
             "position": position,
             "velocity": velocity + self.velocity_noise * noise[0],
-            effort: self._effort(states, time) + self.current_noise * noise[1],
+            effort: held + self.current_noise * noise[1],
             "position_reference": references.position[rows],
             "velocity_reference": references.velocity[rows],
         }
         units = {name: unit_on(self.kind, name) for name in signals}
         return Trace(time, signals, units, origin)
-
-    def _effort(self, states: States, time: Array) -> Array:
-        """Current (torque) of one axis at some times - (n,)."""
-        from scipy.interpolate import PchipInterpolator  # 0.1 s, which only a simulated recording has to pay
-
-        torque = states.torque[:, 0]
-        held = torque if self.torque_constant is None else self.torque_constant.current(torque)
-        middles = states.time + (states.time[1] - states.time[0]) / 2.0
-        return PchipInterpolator(middles, held)(np.maximum(time, middles[0]))

@@ -18,7 +18,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +27,7 @@ from bench.effects.acting import Mechanism, MisreadEffort, TorqueLag, TorqueLoss
 from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References, add_pid
-from bench.plant.plant import DIVERGED, ClosedLoop, Plant, States
+from bench.plant.plant import DIVERGED, ClosedLoop, PlannedInputs, Plant, States
 from bench.plant.run import run, run_loops
 from bench.plant.sensing import filters, reported, reported_states, true_effort, true_motion, true_velocity
 from bench.rig.rig import Rig
@@ -152,14 +151,11 @@ def _loops(
         raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
     every = 1 if filters(model, "velocity") else substeps  # a filter needs every step, and nothing else does
     for part in stretches_of(trace) if parts is None else parts:
-        inputs = _HoldingInputs(held, part, velocity[part], timestep, substeps)
-        start = trace.start_of(part)
+        ticks, start = (part.stop - part.start - 1) * substeps + 1, trace.start_of(part)
         loop = ClosedLoop(
             mechanics,
             compiled,
-            inputs.between,
-            timestep * np.arange(inputs.ticks, dtype=np.float64),
-            *inputs.start,
+            *_holding_inputs(held, part, velocity[part], timestep, ticks),
             every=every,
             since=float(trace.time[part.start]) - start,
             began=start - float(trace.time[0]),
@@ -174,53 +170,41 @@ def _longest_step(spec: mujoco.MjSpec) -> float:
     return min([LONGEST_STEP, *(CONTACT_STEP / rate for rate in rates)])
 
 
-class _HoldingInputs:
-    """Position, velocity and effort that the cascade of a held model gets along one stretch.
+def _holding_inputs(
+    held: SoftTracking, part: slice, velocity: Array, timestep: float, count: int
+) -> tuple[PlannedInputs, Array, float, float]:
+    """Position, velocity and effort that the cascade of a held model gets along one stretch, and where that starts.
 
-    Of velocities reported in it - rad/s (m/s) - (n,), at timesteps - s -, `substeps` of which make a sample period.
+    Of velocities reported in it - rad/s (m/s) - (n,), at so many ticks, which are timed from zero - s - (ticks,).
     """
+    model, trace, time, known = held.model, held.trace, held.trace.time[part], held.known
+    velocity = true_velocity(model, velocity, trace.sample_period)
+    position = trace["position"][part] if "position" in trace else integrated(velocity, trace.sample_period)
+    position, velocity = true_motion(model, position, velocity)
 
-    def __init__(self, held: SoftTracking, part: slice, velocity: Array, timestep: float, substeps: int) -> None:
-        model, trace = held.model, held.trace
-        velocity = true_velocity(model, velocity, trace.sample_period)
-        position = trace["position"][part] if "position" in trace else integrated(velocity, trace.sample_period)
-        self._position, self._velocity = true_motion(model, position, velocity)
-        self._time, self._effort, self._held = trace.time[part], held.effort[part], held
-        self._since, self._timestep = float(trace.time[part.start]) - trace.start_of(part), timestep
-        self._known, self._losses = None if held.known is None else held.known[part], model.acting(TorqueLoss)
-        self.ticks = (velocity.size - 1) * substeps + 1
-        self.start = float(self._position[0]), float(self._velocity[0])
+    def recorded(ticks: Array) -> Array:
+        return np.interp(ticks + timestep / 2.0 + held.misalignment, time, held.effort[part])
 
-    def between(self, start: int, stop: int) -> Array:
-        """Those of some ticks, as `PlannedInputs` has them: read between samples."""
-        ticks = self._ticks(start, stop)
-        wanted = np.interp(ticks, self._time, self._velocity)
-        # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts
-        lead = np.interp(ticks, self._time, self._position) + self._timestep / 2.0 * wanted
-        effort = self._recorded(start, stop) if self._acting is None else self._acting[start:stop]
-        for effect, values in self._losses:
-            effort = effect.delivered(values, self._held.model.axis, effort)
-        known = np.zeros_like(effort) if self._known is None else np.interp(ticks, self._time, self._known)
-        return np.stack([lead, wanted, effort, known], axis=-1)
-
-    def _ticks(self, start: int, stop: int) -> Array:
-        return self._time[0] + np.arange(start, stop) * self._timestep
-
-    def _recorded(self, start: int, stop: int) -> Array:
-        """Effort as it is recorded - N*m (N) - (ticks,)."""
-        at = self._ticks(start, stop) + self._timestep / 2.0 + self._held.misalignment
-        return np.interp(at, self._time, self._effort)
-
-    @cached_property
-    def _acting(self) -> Array | None:
-        """Effort at all ticks, faults of its sensor and lags undone - N*m (N); None without any."""
-        model = self._held.model
-        if not model.of_kind((MisreadEffort, TorqueLag)) and not filters(model, "current"):
-            return None
-        effort = true_effort(model, self._recorded(0, self.ticks), self._since, self._timestep)
+    elapsed = timestep * np.arange(count, dtype=np.float64)
+    acting = None  # at all ticks, where faults of its sensor and lags are undone
+    if model.of_kind((MisreadEffort, TorqueLag)) or filters(model, "current"):
+        acting = true_effort(model, recorded(time[0] + elapsed), float(time[0]) - trace.start_of(part), timestep)
         for effect, values in model.acting(TorqueLag):
-            effort = effect.acting_along(values, effort, self._timestep)
-        return effort
+            acting = effect.acting_along(values, acting, timestep)
+
+    def between(start: int, stop: int) -> Array:
+        """Read between samples."""
+        ticks = time[0] + elapsed[start:stop]
+        wanted = np.interp(ticks, time, velocity)
+        # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts
+        lead = np.interp(ticks, time, position) + timestep / 2.0 * wanted
+        effort = recorded(ticks) if acting is None else acting[start:stop]
+        for effect, values in model.acting(TorqueLoss):
+            effort = effect.delivered(values, model.axis, effort)
+        beside = np.zeros_like(effort) if known is None else np.interp(ticks, time, known[part])
+        return np.stack([lead, wanted, effort, beside], axis=-1)
+
+    return between, elapsed, float(position[0]), float(velocity[0])
 
 
 def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> States:
