@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -68,15 +69,13 @@ def run_loops(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> 
 
     Native ones run on all cores, the others side by side with those that are alike, which costs hardly more than one.
     """
-    found: dict[int, States] = {}
-    alike: dict[tuple[object, ...], list[int]] = {}
+    alike = defaultdict[object, list[int]](list)
     for k, loop in enumerate(loops):
-        if not loop.native:
-            alike.setdefault(loop.alike, []).append(k)
-    native = [k for k, loop in enumerate(loops) if loop.native]
+        alike["native" if loop.native else loop.alike].append(k)
+    native = alike.pop("native", [])
     with silenced():
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            found |= zip(native, pool.map(run_native, (loops[k] for k in native)), strict=True)
+            found = dict(zip(native, pool.map(run_native, (loops[k] for k in native)), strict=True))
         for group in alike.values():
             together = run_ticked([loops[k] for k in group], progress)
             for column, k in enumerate(group):
