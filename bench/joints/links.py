@@ -27,9 +27,7 @@ from bench.effects.signals import Signals
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.layout import BASE, lay_out, plain
 from bench.fit.rows import Rows
-from bench.jobs.each import each
-from bench.jobs.process import Failure
-from bench.joints.identified import LIMITS, JointLogs
+from bench.joints.identified import JointLogs, of_each
 from bench.parameter import Parameter
 from bench.plant.robot import AddedBody, Robot, joint_rig, logs_of
 from bench.trace.filter import Column
@@ -135,11 +133,7 @@ def of_joints(
     work: Sequence[JointLogs], changes: Sequence[AddedBody], progress: Callable[[float], None] = lambda share: None
 ) -> list[Array]:
     """Those products of all joints that the logs tell, each on a process."""
-    found: dict[int, Array | Failure | None] = {}
-    for place, one in each(partial(gathered, changes=tuple(changes)), work, LIMITS):
-        found[place] = one
-        progress(len(found) / len(work))
-    every = (found[place] for place in sorted(found))
+    every = of_each(partial(gathered, changes=tuple(changes)), work, progress)
     return [one for one in every if isinstance(one, np.ndarray)]
 
 

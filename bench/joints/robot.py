@@ -9,9 +9,8 @@ from pathlib import Path
 from bench.axis_kind import ARMATURE
 from bench.errors import InputError, UndeterminedError
 from bench.export.mjcf import Armature, robot_with
-from bench.jobs.each import each
 from bench.jobs.process import Failure
-from bench.joints.identified import LIMITS, IdentifiedJoint, JointLogs, identified
+from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
 from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
 from bench.names import nearest
 from bench.plant.model_file import StoredModel
@@ -128,10 +127,7 @@ def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:
 
 
 def _identified(work: Sequence[JointLogs], progress: Callable[[float], None]) -> dict[str, IdentifiedJoint]:
-    """Every joint, side by side on processes."""
     found: dict[str, IdentifiedJoint] = {}
-    for count, (place, one) in enumerate(each(identified, work, LIMITS), 1):
-        name = work[place].joint
-        found[name] = IdentifiedJoint(name, failed=one.reason) if isinstance(one, Failure) else one
-        progress(count / len(work))
-    return {asked.joint: found[asked.joint] for asked in work}
+    for asked, one in zip(work, of_each(identified, work, progress), strict=True):
+        found[asked.joint] = IdentifiedJoint(asked.joint, failed=one.reason) if isinstance(one, Failure) else one
+    return found

@@ -49,9 +49,6 @@ def recordings_of(given: Given | Sequence[Given], rig: Rig) -> list[Trace]:
     return [trace_of(one, rig) for one in every]
 
 
-_EFFORTS = ("torque", "force", "current", "voltage")
-
-
 def draft(inspection: Inspection, motor: str | None = None, axis: str | None = None) -> str:
     """Text of a rig file for the recording, with a motor by its name in the catalogue, and the axis picked of several.
 
@@ -107,7 +104,7 @@ def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]
         lines.append('# current = "effective"     # where the datasheet tells its values for Arms')
     if any("%" in text or "permille" in text for text in units):
         lines.append('# rated_torque = "? N*m"     # what 100 % of the recorded torque means, datasheet')
-    if not efforts & set(_EFFORTS):
+    if not efforts & {"torque", "force", "current", "voltage"}:
         lines.append("# no torque, force or current was found in the file: identification needs one of them")
     return lines
 
