@@ -119,9 +119,8 @@ class IdentifiedJoint:
         viscous, coulomb = (max(self.parameters[kind.parameter(term)].value, 0.0) for term in (VISCOUS, COULOMB))
         if inertia <= 0.0:
             return None
-        return StoredModel(
-            self.name, AxisModel(AxisParameters(inertia, viscous, coulomb, kind=kind)), mounting=mounting
-        )
+        axis = AxisModel(AxisParameters(inertia, viscous, coulomb, kind=kind))
+        return StoredModel(self.name, axis, mounting=mounting)
 
 
 def identified(asked: JointLogs) -> IdentifiedJoint:

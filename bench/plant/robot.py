@@ -48,11 +48,11 @@ FAR = 1.0
 #: Joints of one coordinate, and its unit.
 UNITS = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
 #: What inverse dynamics leaves out: what is no property of the links.
-DISABLED = (
-    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT,
-    mujoco.mjtDisableBit.mjDSBL_CONTACT,
-    mujoco.mjtDisableBit.mjDSBL_ACTUATION,
-    mujoco.mjtDisableBit.mjDSBL_SENSOR,
+DISABLED = int(
+    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    | mujoco.mjtDisableBit.mjDSBL_CONTACT
+    | mujoco.mjtDisableBit.mjDSBL_ACTUATION
+    | mujoco.mjtDisableBit.mjDSBL_SENSOR
 )
 
 
@@ -155,8 +155,7 @@ class Robot:
         dof = model.joint(joint).dofadr[0]
         for field in (model.dof_armature, model.dof_damping, model.dof_dampingpoly, model.dof_frictionloss):
             field[dof] = 0.0
-        for flag in DISABLED:
-            model.opt.disableflags |= int(flag)
+        model.opt.disableflags |= DISABLED
         return cls(model, joint, str(path), joints, notes)
 
     @property
@@ -420,9 +419,8 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
     every = (robot.model.joint(k).name for k in range(robot.model.njnt))
     recording = named(read_recording(path), list(filter(None, every)))
     own, load = rig.of_joint(robot.joint), rig.of_joint(robot.joint).load or Load()
-    if any(_holds(recording, name) for name in robot.units) and not (
-        _holds(recording, robot.joint) or own.trace.columns or own.trace.axis
-    ):
+    known = own.trace.columns or own.trace.axis or _holds(recording, robot.joint)
+    if not known and any(_holds(recording, name) for name in robot.units):
         allowed = f"allowed: a column '{robot.joint}.position [rad]' and so on, or [trace.columns] in a rig"
         raise InputError(f"{path}: joint '{robot.joint}'", "has no column of its own", allowed)
     trace, ratio = _joint_of(recording, robot.joint, own, robot), load.gear_ratio

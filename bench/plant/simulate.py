@@ -193,13 +193,11 @@ def motion_of(recording: Trace) -> Sampled:
         speed = np.gradient(recording["position_reference"], time)
     else:
         measured = recording["velocity"] if "velocity" in recording else np.gradient(recording["position"], time)
-        speed = gaussian_filter1d(np.interp(time, *_known(time, measured)), SMOOTHED / recording.sample_period)
-    return Sampled(*_known(time, speed))
-
-
-def _known(time: Array, values: Array) -> tuple[Array, Array]:
-    there = np.isfinite(values)
-    return time[there], values[there]
+        known = np.isfinite(measured)
+        every = np.interp(time, time[known], measured[known])
+        speed = gaussian_filter1d(every, SMOOTHED / recording.sample_period)
+    known = np.isfinite(speed)
+    return Sampled(time[known], speed[known])
 
 
 def followed(motion: Trace | ArrayLike, step: float, period: float) -> References:
