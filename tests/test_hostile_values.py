@@ -162,4 +162,4 @@ def test_periods_in_the_wrong_unit_are_reported(tmp_path, key, value, words):
 
 def test_motions_that_take_for_ever_are_reported():
     with cpu_seconds(4.0), pytest.raises(InputError, match=r"takes 1e\+12 periods of the drive"):
-        s_curve([1e9], [1.0], 1e-3)
+        s_curve([(1e9, 1.0)], 1e-3)

@@ -17,7 +17,7 @@ from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import SimulationError, UndeterminedError
 from bench.files import write_text
-from bench.plant.closed_loop import DIVERGED
+from bench.plant.plant import DIVERGED
 from bench.report.document import Chart
 from bench.structured import json_text
 

@@ -32,7 +32,7 @@ from bench.course.peak_torque import extrapolated_corner
 from bench.course.recordings import LabRecordings
 from bench.errors import BenchError, SimulationError
 from bench.plant.axis_model import AxisParameters, build_spec
-from bench.plant.closed_loop import DIVERGED
+from bench.plant.plant import DIVERGED
 from bench.rig.limits import COLD, HOT, Circuit
 from bench.rig.motor import TorqueConstant
 from bench.rig.rig import Rig

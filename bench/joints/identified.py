@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeVar
 
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import diagnose
@@ -16,7 +17,8 @@ from bench.fit.identify import identify
 from bench.fit.rows import Rows
 from bench.gate.check import Check
 from bench.gate.gate import passed, warnings_of
-from bench.jobs.process import Limits
+from bench.jobs.each import each
+from bench.jobs.process import Failure, Limits
 from bench.joints.motion import JointMotion, joint_motion
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
@@ -25,6 +27,7 @@ from bench.plant.robot import AddedBody, Robot, joint_rig, poses_along, read_log
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
+Told = TypeVar("Told")
 #: Of one joint: ten times what the longest log tried took (600 s at 500 Hz).
 LIMITS = Limits(deadline=1800.0, memory=8.0 * 1024**3)
 #: Key of a refusal that concerns no parameter: whether anything is missing.
@@ -116,9 +119,8 @@ class IdentifiedJoint:
         viscous, coulomb = (max(self.parameters[kind.parameter(term)].value, 0.0) for term in (VISCOUS, COULOMB))
         if inertia <= 0.0:
             return None
-        return StoredModel(
-            self.name, AxisModel(AxisParameters(inertia, viscous, coulomb, kind=kind)), mounting=mounting
-        )
+        axis = AxisModel(AxisParameters(inertia, viscous, coulomb, kind=kind))
+        return StoredModel(self.name, axis, mounting=mounting)
 
 
 def identified(asked: JointLogs) -> IdentifiedJoint:
@@ -147,6 +149,17 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
     refused = {**found.refused, **_behind(rig)}
     motion = joint_motion(found, traces[0], rig, poses_along(next(iter(used)), rig, robot, asked.stated))
     return IdentifiedJoint(asked.joint, rig, found, refused=refused, left_out=left_out, motion=motion)
+
+
+def of_each(
+    told: Callable[[JointLogs], Told], work: Sequence[JointLogs], progress: Callable[[float], None]
+) -> list[Told | Failure]:
+    """What a function tells of each joint by its logs, side by side on processes."""
+    found: dict[int, Told | Failure] = {}
+    for place, one in each(told, work, LIMITS):
+        found[place] = one
+        progress(len(found) / len(work))
+    return [found[place] for place in range(len(work))]
 
 
 def _behind(rig: Rig) -> dict[str, str]:

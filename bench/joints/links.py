@@ -14,7 +14,7 @@ Biometrika 73, 1986, 13-22). A link turns its own joint as an armature does: oth
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -27,13 +27,10 @@ from bench.effects.signals import Signals
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.layout import BASE, lay_out, plain
 from bench.fit.rows import Rows
-from bench.jobs.each import each
-from bench.jobs.process import Failure
-from bench.joints.identified import LIMITS, JointLogs
+from bench.joints.identified import JointLogs, of_each
 from bench.parameter import Parameter
 from bench.plant.robot import AddedBody, Robot, joint_rig, logs_of
 from bench.trace.filter import Column
-from bench.trace.read import read_recording
 
 #: Speeds over which friction may fall, as shares of the usual one; columns that every joint has of its own.
 SLOW = (0.1, 0.4)
@@ -83,14 +80,14 @@ class Common:
     """Strengths (k,) common to all joints.
 
     Attributes:
-        strengths, covariance: (k,) and (k, k).
+        strengths, deviations: those and their standard errors (k,).
         reach: of an interval of 95 % in standard errors.
         left: logarithms of what the joints leave, summed.
         open: which strengths no joint shows (k,).
     """
 
     strengths: Array
-    covariance: Array
+    deviations: Array
     reach: float
     left: float
     open: NDArray[np.bool_]
@@ -111,7 +108,7 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
         try:
             robot = Robot.of(asked.mjcf, asked.joint, asked.added)
             rig = joint_rig(asked.rig, robot)
-            trace, *changed = logs_of(read_recording(log), log, rig, robot, asked.stated, changes)
+            trace, *changed = logs_of(log, rig, robot, asked.stated, changes)
             rows = Rows.of(trace, rig)
             columns = [lay_out(rows, plain(rows)).columns[:, : len(BASE)], rows.table(_frictions)]
             columns += [rows.effort - Rows.of(one, rig, conditioning=rows.conditioning).effort for one in changed]
@@ -136,11 +133,7 @@ def of_joints(
     work: Sequence[JointLogs], changes: Sequence[AddedBody], progress: Callable[[float], None] = lambda share: None
 ) -> list[Array]:
     """Those products of all joints that the logs tell, each on a process."""
-    found: dict[int, Array | Failure | None] = {}
-    for place, one in each(partial(gathered, changes=tuple(changes)), work, LIMITS):
-        found[place] = one
-        progress(len(found) / len(work))
-    every = (found[place] for place in sorted(found))
+    every = of_each(partial(gathered, changes=tuple(changes)), work, progress)
     return [one for one in every if isinstance(one, np.ndarray)]
 
 
@@ -165,7 +158,8 @@ def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
     covariance = inverse @ (summed.T @ summed) @ inverse * stretches / degrees
     power = np.einsum("jkk->k", reduced[:, :-1, :-1])
     silent = power <= SILENT * power.max()
-    return Common(strengths, covariance, float(special.stdtrit(degrees, 0.975)), float(np.log(lefts).sum()), silent)
+    reach, left = float(special.stdtrit(degrees, 0.975)), float(np.log(lefts).sum())
+    return Common(strengths, np.sqrt(np.diag(covariance)), reach, left, silent)
 
 
 def _solved(reduced: Array, lefts: Sequence[float]) -> tuple[Array, Array, Array]:
@@ -206,7 +200,7 @@ def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float
     mix, found, mass, centre = _carried(products, body, np.zeros(3))
     for _ in range(ROUNDS - 1):
         mix, found, mass, centre = _carried(products, body, centre)
-    errors = np.where(found.open[1:], np.inf, np.sqrt(np.diag(found.covariance)[1:]) / mass.value)
+    errors = np.where(found.open[1:], np.inf, found.deviations[1:] / mass.value)
     moved = _without_each(products, mix, found.strengths) / np.array([1.0, *[mass.value] * 3])
     coordinates = zip(centre, errors, moved[1:], strict=True)
     x, y, z = (found.parameter(value, error, "m").widened(by) for value, error, by in coordinates)
@@ -217,7 +211,7 @@ def _carried(products: Sequence[Array], body: str, near: Array) -> tuple[Array, 
     """What a body carries, sought near a place (3,): how that is mixed of PLACES, strengths, mass and centre (3,)."""
     mix = _at(near)
     found = shared(products, mix)
-    mass = found.parameter(found.strengths[0], float(np.sqrt(found.covariance[0, 0])), "kg")
+    mass = found.parameter(found.strengths[0], found.deviations[0], "kg")
     if mass.ci95[0] <= 0.0:
         reason = f"its mass comes out as {mass.value:.3g} ± {mass.half_width:.2g} kg"
         raise UndeterminedError(f"the payload of '{body}'", reason, "a log in which the body is lifted and turned")
@@ -263,23 +257,23 @@ def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
     determined = [k for k in range(len(work)) if _tells(products, k)]
     chosen: list[int] = []
     left = sum(float(np.log(_scores(_only(one, []), np.zeros(0))[1])) for one in products)
-    while determined and len(chosen) < MOST:
+    while len(chosen) < MOST:
         tried = {k: shared(products, [*chosen, k]) for k in determined if k not in chosen}
         best = min(tried, key=lambda k: tried[k].left, default=None)
         if best is None or left - tried[best].left < TAKES:
             break
-        found, deviation = tried[best], np.sqrt(np.diag(tried[best].covariance))
-        if np.abs(found.strengths[-1]) < SURE * deviation[-1]:
+        found = tried[best]
+        if np.abs(found.strengths[-1]) < SURE * found.deviations[-1]:
             break
         chosen, left = [*chosen, best], found.left
-    return list(_doubted(work, shared(products, chosen), chosen)) if chosen else []
-
-
-def _doubted(work: Sequence[JointLogs], found: Common, chosen: Sequence[int]) -> Iterator[DoubtedLink]:
-    for k, more, deviation in zip(chosen, found.strengths, np.sqrt(np.diag(found.covariance)), strict=True):
+    if not chosen:
+        return []
+    found, links = shared(products, chosen), []
+    for k, more, deviation in zip(chosen, found.strengths, found.deviations, strict=True):
         own = Robot.of(work[k].mjcf, work[k].joint, work[k].added).link_inertia
         factor = found.parameter(1.0 + more / own, deviation / own, "dimensionless")
-        yield DoubtedLink(work[k].joint, factor, float(more))
+        links.append(DoubtedLink(work[k].joint, factor, float(more)))
+    return links
 
 
 def _only(product: Array, kept: Sequence[int]) -> Array:
@@ -290,11 +284,8 @@ def _only(product: Array, kept: Sequence[int]) -> Array:
 
 def _tells(products: Sequence[Array], k: int) -> bool:
     """Whether any joint shows a column apart from its own terms."""
-    for product in products:
-        whole = _only(product, [k]).sum(axis=0)
-        if whole[-2, -2] > 0.0 and _reduced(whole)[0, 0] > LEAST * whole[-2, -2]:
-            return True
-    return False
+    wholes = (_only(product, [k]).sum(axis=0) for product in products)
+    return any(whole[-2, -2] > 0.0 and _reduced(whole)[0, 0] > LEAST * whole[-2, -2] for whole in wholes)
 
 
 def carrying(work: Sequence[JointLogs], added: Sequence[AddedBody]) -> list[JointLogs]:

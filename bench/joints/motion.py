@@ -11,7 +11,7 @@ from bench.arrays import Array, rms
 from bench.diagnosis.let_free import BARE, HELD, otherwise, windows_of
 from bench.diagnosis.show import Diagnosis
 from bench.rig.rig import Rig
-from bench.trace.motion import stretches_of
+from bench.trace.motion import integrated, stretches_of
 from bench.trace.trace import Trace
 
 #: Instants at most of which a motion is kept, to be drawn.
@@ -47,11 +47,8 @@ def joint_motion(
 ) -> JointMotion | None:
     """The motion of a diagnosed joint; None where its model does not move, or runs away from the log.
 
-    Args:
-        found: its diagnosis, whose first recording begins with the trace.
-        trace: its log.
-        rig: of it.
-        poses: where the robot's joints were at times of the log - s, rad (m).
+    The trace begins the first recording of the diagnosis; `poses` are where the robot's joints were at times of the log
+    - s, rad (m).
     """
     course, count = found.courses[0], len(trace)
     held = {HELD: course.velocity_left[-1], BARE: course.velocity_left[0] if found.effects else None}
@@ -74,9 +71,7 @@ def _position(velocity: Array, trace: Trace) -> Array:
     """By a model's speed, from where each stretch without holes begins - rad (m) - (n,); nan where it is not known."""
     position = np.full(len(trace), np.nan)
     for part in stretches_of(trace):
-        speed, begin = velocity[part], trace["position"][part.start]
-        gone = np.cumsum(0.5 * (speed[1:] + speed[:-1])) * trace.sample_period
-        position[part] = begin + np.concatenate([[0.0], gone])
+        position[part] = trace["position"][part.start] + integrated(velocity[part], trace.sample_period)
     return position
 
 

@@ -9,9 +9,8 @@ from pathlib import Path
 from bench.axis_kind import ARMATURE
 from bench.errors import InputError, UndeterminedError
 from bench.export.mjcf import Armature, robot_with
-from bench.jobs.each import each
 from bench.jobs.process import Failure
-from bench.joints.identified import LIMITS, IdentifiedJoint, JointLogs, identified
+from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
 from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
 from bench.names import nearest
 from bench.plant.model_file import StoredModel
@@ -58,12 +57,11 @@ class IdentifiedRobot:
 
         InputError where MuJoCo cannot have it.
         """
-        armatures = {name: self.joints[name].parameters.get(ARMATURE) for name in self.models}
-        armature = {
-            name: None if one is None else Armature(max(one.value, 0.0), "all that moved but the links")
-            for name, one in armatures.items()
-        }
-        models = {name: (model, armature[name]) for name, model in self.models.items()}
+        models = {}
+        for name, model in self.models.items():
+            found = self.joints[name].parameters.get(ARMATURE)
+            armature = None if found is None else Armature(max(found.value, 0.0), "all that moved but the links")
+            models[name] = model, armature
         return robot_with(self.mjcf, models, out, self.added)
 
 
@@ -129,10 +127,7 @@ def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:
 
 
 def _identified(work: Sequence[JointLogs], progress: Callable[[float], None]) -> dict[str, IdentifiedJoint]:
-    """Every joint, side by side on processes."""
     found: dict[str, IdentifiedJoint] = {}
-    for count, (place, one) in enumerate(each(identified, work, LIMITS), 1):
-        name = work[place].joint
-        found[name] = IdentifiedJoint(name, failed=one.reason) if isinstance(one, Failure) else one
-        progress(count / len(work))
-    return {asked.joint: found[asked.joint] for asked in work}
+    for asked, one in zip(work, of_each(identified, work, progress), strict=True):
+        found[asked.joint] = IdentifiedJoint(asked.joint, failed=one.reason) if isinstance(one, Failure) else one
+    return found

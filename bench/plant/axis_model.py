@@ -42,7 +42,6 @@ from bench.effects.acting import (
     RaisesFriction,
     ScalesFriction,
 )
-from bench.effects.acting import DRIVE as DRIVE
 from bench.effects.effect import Coupling, Effect
 from bench.effects.present import Present
 from bench.effects.signals import Axis, Winding
@@ -170,25 +169,19 @@ def build_spec(parameters: AxisParameters, timestep: float, load: Load | None = 
     joint.frictionloss = parameters.coulomb_friction
     joint.solimp_friction, joint.solref_friction = STICKING_IMPEDANCE, [2.0 * timestep, 1.0]
     spec.actuator(LOAD_TORQUE).biasprm[0] = -parameters.load_torque
-    if load is not None and parameters.kind.turns:
-        _draw_disk(spec, load)
+    if load is not None and load.outer_diameter is not None and parameters.kind.turns:
+        radius = min(load.outer_diameter / 2.0, LARGEST_VISIBLE_RADIUS)
+        thickness = load.thickness or 0.1 * radius
+        spec.geom("disk").size = [radius, thickness / 2.0, 0.0]
+        mark = spec.geom("angle mark")
+        mark.size = [0.0008, 0.003, 0.34 * radius]
+        mark.pos = [thickness / 2.0, 0.0, 0.6 * radius]
     return spec
 
 
 def disk_inertia(inertia: float) -> list[float]:
     """Inertia about the shaft and about two diameters of a flat disk - kg*m**2 - whose shaft is x."""
     return [inertia, ACROSS * inertia, ACROSS * inertia]
-
-
-def _draw_disk(spec: mujoco.MjSpec, load: Load) -> None:
-    if load.outer_diameter is None:
-        return
-    radius = min(load.outer_diameter / 2.0, LARGEST_VISIBLE_RADIUS)
-    thickness = load.thickness or 0.1 * radius
-    spec.geom("disk").size = [radius, thickness / 2.0, 0.0]
-    mark = spec.geom("angle mark")
-    mark.size = [0.0008, 0.003, 0.34 * radius]
-    mark.pos = [thickness / 2.0, 0.0, 0.6 * radius]
 
 
 @dataclass(frozen=True)

@@ -12,16 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 
 import mujoco
 import numpy as np
 
 from bench.arrays import Array
 from bench.effects.acting import DRIVE, MisreadMotion
-from bench.effects.signals import Number
 from bench.errors import InputError
-from bench.plant.axis_model import AxisParameters
-from bench.plant.closed_loop import ClosedLoop, Controller, Tick
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.stepped_effects import on_axes, per_axis, stacked
 from bench.rig.rig import Rig
 from bench.structured import csv_text
@@ -70,11 +69,20 @@ def peak_torque(rig: Rig) -> float:
 class CascadeDrive:
     """The cascade ticked in software, for any number of axes at once. It starts at rest on its references.
 
-    References are signals of shape (ticks, axes). Where axes are `emulated` - their values numbers, or (axes,) -,
-    software makes their friction, for the inertia that they are taken to have.
+    Args:
+        cascade: of all axes.
+        references: signals of shape (ticks, axes).
+        emulated: axes whose friction software makes, for the inertia that they are taken to have.
+        axes: the models, whose encoders the drive sees; without them it sees the true motion.
     """
 
-    def __init__(self, cascade: Cascade, references: References, emulated: AxisParameters | None = None) -> None:
+    def __init__(
+        self,
+        cascade: Cascade,
+        references: References,
+        emulated: AxisParameters | None = None,
+        axes: Sequence[AxisModel] = (),
+    ) -> None:
         period = cascade.control_period
         self._position_gain = cascade.position_gain
         # The velocity error is integrated by the trapezoidal rule: half of this tick's error, all of those before.
@@ -87,13 +95,28 @@ class CascadeDrive:
         self._integral: Values = 0.0
         start = per_axis(references.velocity[0])
         self._friction = None if emulated is None else _EmulatedFriction(emulated, period, start)
+        self._encoders = on_axes(axes, MisreadMotion)
+
+    @classmethod
+    def of(cls, drives: Sequence[FollowReferences], axes: Sequence[AxisModel]) -> CascadeDrive:
+        """Drives of axes side by side, all of one control period."""
+        cascades, emulated = [drive.cascade for drive in drives], None
+        period = cascades[0].control_period
+        cascade = Cascade(**stacked(cascades, without="control_period"), control_period=period)
+        if any(drive.emulated for drive in drives):  # without friction on axes that have theirs in their mechanics
+            made = [drive.emulated or axis.parameters.frictionless for drive, axis in zip(drives, axes, strict=True)]
+            emulated = AxisParameters(**stacked(made, without="kind"))
+        return cls(cascade, side_by_side([drive.references for drive in drives]), emulated, axes)
 
     def tick(self, k: int, position: Values, velocity: Values) -> tuple[Values, Values]:
-        """Torque from tick k to the next of what is measured at it - N*m (N): set-point, and the motor's.
+        """Torque from tick k to the next - N*m (N) - of the true motion at it: set-point, and the motor's.
 
         They differ by the emulated friction. The set-point is what the drive reports as current: the torque that moves
         the axis against its friction, whether that sits in the mechanics or in the software.
         """
+        for some in self._encoders:
+            turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
+            position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
         error = self._speed_demand[k] - self._position_gain * position - velocity
         wanted = self._gain * error + self._integral + self._feedforward[k]
         setpoint = motor = _limited(wanted, self._lower, self._upper)
@@ -103,40 +126,6 @@ class CascadeDrive:
             setpoint = setpoint + (motor - asked)
         self._integral = self._integral + self._integral_step * error * (setpoint == wanted)
         return setpoint, motor
-
-
-@dataclass(frozen=True, eq=False)
-class FollowReferences(Controller):
-    """The drive of one axis along references (ticks,), which sees what the encoder does.
-
-    Where it is `emulated`, software makes the axis' friction.
-    """
-
-    cascade: Cascade
-    references: References
-    emulated: AxisParameters | None = None
-
-    @classmethod
-    def side_by_side(cls, loops: Sequence[ClosedLoop], setpoints: Array) -> Tick:
-        """See `Controller`."""
-        drives = [each.controller for each in loops if isinstance(each.controller, cls)]
-        cascades, emulated = [drive.cascade for drive in drives], None
-        period = cascades[0].control_period
-        cascade = Cascade(**stacked(cascades, without="control_period"), control_period=period)
-        if any(drive.emulated for drive in drives):  # without friction on axes that have theirs in their mechanics
-            null = (loop.axis.parameters.frictionless for loop in loops)
-            made = [drive.emulated or none for drive, none in zip(drives, null, strict=True)]
-            emulated = AxisParameters(**stacked(made, without="kind"))
-        together = CascadeDrive(cascade, side_by_side([drive.references for drive in drives]), emulated)
-        encoders = on_axes([loop.axis for loop in loops], MisreadMotion)
-
-        def tick(k: int, position: Number, velocity: Number) -> tuple[Number, Number, Number]:
-            for some in encoders:
-                turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
-                position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
-            return *together.tick(k, position, velocity), 0.0
-
-        return tick
 
 
 def _by_ticks(values: Array) -> Array:
@@ -206,10 +195,11 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
 
 
 def pid_inputs(cascade: Cascade, references: References) -> Array:
-    """Inputs pos, vel, ff of the actuator that `add_pid` makes, for one axis: (ticks, 3)."""
+    """Inputs pos, vel, ff of the actuator that `add_pid` makes, for one axis, and nothing known beside: (ticks, 4)."""
     lead = cascade.control_period / 2.0 * references.velocity
     feedforward = references.feedforward(cascade.inertia_feedforward)
-    return np.stack([references.position + lead, references.velocity, feedforward], axis=-1)
+    beside = np.zeros_like(feedforward)
+    return np.stack([references.position + lead, references.velocity, feedforward, beside], axis=-1)
 
 
 @dataclass(frozen=True)
@@ -234,6 +224,11 @@ class References:
         return accelerating if self.torque is None else accelerating + self.torque
 
     @property
+    def start(self) -> tuple[float, float]:
+        """Position and velocity of one axis at the first tick - rad (m), rad/s (m/s)."""
+        return float(self.position[0]), float(self.velocity[0])
+
+    @property
     def period(self) -> float:
         """Time between ticks - s."""
         return float(self.time[1] - self.time[0])
@@ -247,10 +242,7 @@ class References:
 
     def repeated(self, times: int) -> References:
         """This motion so many times, each from where the one before ends."""
-        again = self
-        for _ in range(times - 1):
-            again = again.then(self)
-        return again
+        return reduce(References.then, [self] * times)
 
     def csv(self, period: float, position: tuple[str, float], velocity: tuple[str, float]) -> str:
         """Table for a controller: time, position, velocity, acceleration.
@@ -264,6 +256,15 @@ class References:
         moved = self.position / per_length, self.velocity / per_speed, self.acceleration / per_speed
         head = "time [s]", f"position [{length}]", f"velocity [{speed}]", f"acceleration [{speed}/s]"
         return csv_text(head, np.stack([signal[rows] for signal in (self.time, *moved)], axis=-1).tolist())
+
+
+@dataclass(frozen=True, eq=False)
+class FollowReferences:
+    """The drive of one axis along references (ticks,); where the axis is `emulated`, software makes its friction."""
+
+    cascade: Cascade
+    references: References
+    emulated: AxisParameters | None = None
 
 
 def side_by_side(references: list[References]) -> References:

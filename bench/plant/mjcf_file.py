@@ -29,11 +29,10 @@ _NAN = re.compile(r"""\b(\w+)\s*=\s*["']([\s\d.eE+-]*\bnan\b[^"'<]*)["']""", re.
 FINITE = ("qpos0", "body_mass", "body_inertia", "dof_armature", "dof_damping", "dof_frictionloss", "jnt_stiffness")
 
 
-def require_compiles(path: Path) -> None:
-    """Register an MJCF and the files that it names as read.
+def read_mjcf(path: Path) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
+    """What an MJCF or URDF says that MuJoCo makes a model of, as `read_spec`; the files that it names are read with it.
 
-    Raises:
-        InputError: one of them is not a regular file, or MuJoCo does not make a model of it within LIMITS.
+    InputError where one of them is not a regular file, or MuJoCo does not make a model of it within LIMITS.
     """
     _read_all(path)
     fault = _outcome(str(path), path.stat().st_mtime_ns)
@@ -41,6 +40,8 @@ def require_compiles(path: Path) -> None:
         raise InputError(path, f"MuJoCo makes no model of it: {fault.reason}", "allowed: MJCF that it compiles")
     if fault:
         raise InputError(path, f"MuJoCo refuses it: {fault}", "allowed: MJCF")
+    with silenced():
+        return read_spec(str(path))
 
 
 @lru_cache(maxsize=1)
@@ -62,13 +63,6 @@ def _fault(path: str) -> str:
             return " ".join(str(error).split())
     wrong = [field for field in FINITE if not np.isfinite(getattr(model, field)).all()]
     return f"{wrong[0]} is not finite" if wrong else ""
-
-
-def read_mjcf(path: Path) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
-    """What an MJCF or URDF says that MuJoCo makes a model of, as `read_spec`; InputError as `require_compiles`."""
-    require_compiles(path)
-    with silenced():
-        return read_spec(str(path))
 
 
 def read_spec(path: str) -> tuple[mujoco.MjSpec, tuple[str, ...]]:

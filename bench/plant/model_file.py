@@ -62,11 +62,6 @@ class Mounting:
         load = rig.load or Load()
         return cls(float(load.gear_ratio), load.disk_mass, load.link_inertia or 0.0)
 
-    @property
-    def stated(self) -> dict[str, float]:
-        """Values other than those of an axis without gear and robot, by name - SI."""
-        return {f.name: getattr(self, f.name) for f in fields(self) if getattr(self, f.name) != f.default}
-
 
 @dataclass(frozen=True)
 class StoredModel:
@@ -103,19 +98,18 @@ def model_xml(stored: StoredModel) -> str:
 
 def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:
     """The whole model as TOML, every value with its unit; `further` are tables of the same file, by name."""
-    return tables_toml(stored.model.parameters.kind, {**_content(stored), **(further or {})})
+    return tomli_w.dumps({"schema": SCHEMA, **_content(stored), **(further or {})})
 
 
 def joints_toml(models: Mapping[str, StoredModel]) -> str:
     """The models of a robot's joints, by name, as one TOML."""
-    kinds = {name: stored.model.parameters.kind.name for name, stored in models.items()}
-    tables = {name: {"kind": kinds[name], **_content(stored)} for name, stored in models.items()}
-    return tomli_w.dumps({"schema": OF_JOINTS, "joints": tables})
+    return tomli_w.dumps({"schema": OF_JOINTS, "joints": {name: _content(stored) for name, stored in models.items()}})
 
 
 def _content(stored: StoredModel) -> dict[str, Any]:
-    model, kind, mounted = stored.model, stored.model.parameters.kind, stored.mounting.stated
-    content: dict[str, Any] = {"name": stored.name, **_texts({"misalignment": (stored.misalignment, "s")})}
+    model, kind, mounting = stored.model, stored.model.parameters.kind, stored.mounting
+    content: dict[str, Any] = {"kind": kind.name, "name": stored.name}
+    content |= _texts({"misalignment": (stored.misalignment, "s")})
     if math.isfinite(model.peak_effort):
         content |= _texts({"peak_effort": (model.peak_effort, kind.effort_unit)})
     content["parameters"] = _texts(model.parameters.values)
@@ -124,8 +118,9 @@ def _content(stored: StoredModel) -> dict[str, Any]:
         content["winding"] = _texts({key: (getattr(model.winding, key), unit) for key, unit in units.items()})
     if model.effects:
         content["effects"] = [{"name": one.name, **_texts(effect_values(one, kind))} for one in model.effects]
-    if mounted:
-        content["mounting"] = _texts({key: (value, MOUNTED[key]) for key, value in mounted.items()})
+    if mounting != Mounting():
+        own = {key: (getattr(mounting, key), unit) for key, unit in MOUNTED.items()}
+        content["mounting"] = _texts({key: pair for key, pair in own.items() if pair[0] != getattr(Mounting, key)})
     return content
 
 
@@ -182,9 +177,9 @@ def _model(table: Mapping[str, Any], path: str) -> StoredModel:
         winding = Winding(**_values(table["winding"], _winding_units(kind), f"{path}: winding"))
     peak = math.inf
     if "peak_effort" in table:
-        peak = _number(table["peak_effort"], kind.effort_unit, f"{path}: peak_effort")
+        peak = parse_value(str(table["peak_effort"]), kind.effort_unit, f"{path}: peak_effort")
     effects = _effects(table.get("effects", []), kind, f"{path}: effects")
-    misalignment = _number(table.get("misalignment", 0.0), "s", f"{path}: misalignment")
+    misalignment = parse_value(str(table.get("misalignment", 0.0)), "s", f"{path}: misalignment")
     model = AxisModel(parameters, effects, peak, winding)
     mounted = table.get("mounting", {})
     given = {key: unit for key, unit in MOUNTED.items() if not isinstance(mounted, dict) or key in mounted}
@@ -210,7 +205,7 @@ def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, fl
     for key in units:
         if key not in table:
             raise InputError(f"{where}.{key}", "missing", "this key is required")
-    return {key: _number(table[key], unit, f"{where}.{key}") for key, unit in units.items()}
+    return {key: parse_value(str(table[key]), unit, f"{where}.{key}") for key, unit in units.items()}
 
 
 def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]:
@@ -221,15 +216,12 @@ def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]
         if not isinstance(entry, dict) or "name" not in entry:
             raise InputError(where, f"found {entry!r}", "allowed: tables with a name")
         effect = named(str(entry["name"]), where)
-        given = {key: value for key, value in entry.items() if key != "name"}
-        units = {key: kind.unit(known_quantity(effect, key, where)) for key in given}
-        values = {key: _number(value, units[key], f"{where}: {effect.name}.{key}") for key, value in given.items()}
+        units = {key: kind.unit(known_quantity(effect, key, where)) for key in entry if key != "name"}
+        values = {
+            key: parse_value(str(entry[key]), unit, f"{where}: {effect.name}.{key}") for key, unit in units.items()
+        }
         found.append(Present.of(effect.name, values, where))
     return tuple(found)
-
-
-def _number(value: object, unit: str, where: str) -> float:
-    return parse_value(str(value), unit, where)
 
 
 def _winding_units(kind: AxisKind) -> dict[str, str]:

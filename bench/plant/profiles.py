@@ -65,15 +65,10 @@ class MotionLimits:
 
     @classmethod
     def from_rig(cls, rig: Rig, parameters: AxisParameters, period: float) -> MotionLimits:
-        """Limits from the motor's peak torque and speed, and the inertia and friction it has to overcome.
+        """Limits from a motor's peak torque and speed, and the inertia and friction, true or identified, it overcomes.
 
-        Args:
-            rig: motor, load and, on a linear axis, its stroke.
-            parameters: true or identified.
-            period: of the references - s.
-
-        Raises:
-            InputError: no peak current or torque, or too little torque for friction and load.
+        `period` is that of the references - s. InputError where there is no peak current or torque, or too little
+        torque for friction and load.
         """
         torque = peak_torque(rig)
         if not np.isfinite(torque):
@@ -114,7 +109,7 @@ def full_torque(limits: MotionLimits) -> References:
     """The lab's MaxAcc run: to top speed with all the motor's torque, stay there, and stop gently."""
     up = speed_change(limits.speed, OVERDEMAND * limits.full_acceleration, OVERDEMAND_RAMP * limits.period)
     down = speed_change(-limits.speed, limits.acceleration, limits.ramp_time)
-    return s_curve([*up[0], AT_TOP, *down[0]], [*up[1], 0.0, *down[1]], limits.period)
+    return s_curve([*up, (AT_TOP, 0.0), *down], limits.period)
 
 
 def speed_staircase(limits: MotionLimits) -> References:
@@ -183,7 +178,7 @@ def _fade(share: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray, np.nd
     return w, slope * du, bend * du**2
 
 
-def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: float) -> References:
+def s_curve(pieces: Sequence[tuple[float, float]], period: float) -> References:
     """Motion from rest whose acceleration passes from one knot to the next along half a cosine.
 
     Within a piece of duration T from acceleration a0 to a1, with p = pi*t/T and d = (a1 - a0)/2:
@@ -191,16 +186,14 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
         x = x0 + v0*t + a0*t**2/2 + d*(t**2/2 + (T/pi)**2*(cos(p) - 1)).
 
     Args:
-        durations: of the pieces, those of zero length are passed over - s - (m,).
-        accelerations: at the end of each piece, the first one starting at zero - rad/s**2 (m/s**2) - (m,).
+        pieces: duration - s -, of zero to be passed over, and acceleration at the end - rad/s**2 (m/s**2) - of each.
         period: of the ticks, which go from zero to the first at or after the end - s.
 
     Raises:
         InputError: it takes more than `MOST_TICKS`.
     """
-    length = np.asarray(durations, dtype=np.float64)
-    end = np.asarray(accelerations, dtype=np.float64)[length > 0.0]
-    length = np.append(length[length > 0.0], period)  # at rest, for the tick after the end
+    length, end = np.array([piece for piece in pieces if piece[0] > 0.0], dtype=np.float64).reshape(-1, 2).T
+    length = np.append(length, period)  # at rest, for the tick after the end
     start, end = np.append(0.0, end), np.append(end, end[-1])
     rise = (end - start) / 2.0
     gained = start * length + rise * length
@@ -226,19 +219,17 @@ def s_curve(durations: Sequence[float], accelerations: Sequence[float], period: 
 
 def through_speeds(limits: MotionLimits, speeds: Sequence[float], dwell: float) -> References:
     """Motion from rest within limits through speeds - rad/s (m/s) -, each held for `dwell` - s."""
-    durations, accelerations = [], []
+    pieces = []
     for change in np.diff([0.0, *speeds]):
-        lengths, knots = speed_change(float(change), limits.acceleration, limits.ramp_time)
-        durations += [*lengths, dwell]
-        accelerations += [*knots, 0.0]
-    return s_curve(durations, accelerations, limits.period)
+        pieces += [*speed_change(float(change), limits.acceleration, limits.ramp_time), (dwell, 0.0)]
+    return s_curve(pieces, limits.period)
 
 
-def speed_change(change: float, acceleration: float, ramp_time: float) -> tuple[list[float], list[float]]:
-    """Durations - s - and end accelerations of the pieces in which speed changes: build up, hold, fade.
+def speed_change(change: float, acceleration: float, ramp_time: float) -> list[tuple[float, float]]:
+    """Pieces as `s_curve` takes them in which speed changes: build up, hold, fade.
 
     A change too small to reach the acceleration within the ramp stays below it.
     """
     top = math.copysign(min(acceleration, abs(change) / ramp_time), change)
     hold = change / top - ramp_time if top else 0.0
-    return [ramp_time, hold, ramp_time], [top, top, 0.0]
+    return [(ramp_time, top), (hold, top), (ramp_time, 0.0)]

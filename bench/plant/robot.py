@@ -33,6 +33,7 @@ from bench.trace.channel import Channel, Recording
 from bench.trace.choose import GivenOptions, axes_of
 from bench.trace.inspect import time_unit
 from bench.trace.joints import named
+from bench.trace.motion import stretches_of
 from bench.trace.read import read_recording
 from bench.trace.signals import STANDING, STANDING_ASK, signal_of
 from bench.trace.time_base import interpolate
@@ -47,11 +48,11 @@ FAR = 1.0
 #: Joints of one coordinate, and its unit.
 UNITS = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
 #: What inverse dynamics leaves out: what is no property of the links.
-DISABLED = (
-    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT,
-    mujoco.mjtDisableBit.mjDSBL_CONTACT,
-    mujoco.mjtDisableBit.mjDSBL_ACTUATION,
-    mujoco.mjtDisableBit.mjDSBL_SENSOR,
+DISABLED = int(
+    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    | mujoco.mjtDisableBit.mjDSBL_CONTACT
+    | mujoco.mjtDisableBit.mjDSBL_ACTUATION
+    | mujoco.mjtDisableBit.mjDSBL_SENSOR
 )
 
 
@@ -154,24 +155,22 @@ class Robot:
         dof = model.joint(joint).dofadr[0]
         for field in (model.dof_armature, model.dof_damping, model.dof_dampingpoly, model.dof_frictionloss):
             field[dof] = 0.0
-        for flag in DISABLED:
-            model.opt.disableflags |= int(flag)
+        model.opt.disableflags |= DISABLED
         return cls(model, joint, str(path), joints, notes)
+
+    @property
+    def names(self) -> list[str]:
+        """Of `joints`."""
+        return [self.model.joint(k).name for k in self.joints]
 
     @property
     def units(self) -> dict[str, str]:
         """Names of the other joints with the units of their positions."""
-        names = [self.model.joint(k).name for k in self.joints]
-        return {name: self.unit(name) for name in names if name != self.joint}
+        return {name: self.unit(name) for name in self.names if name != self.joint}
 
     def unit(self, joint: str) -> str:
         """Of a joint's position."""
         return UNITS[int(self.model.joint(joint).type[0])]
-
-    @property
-    def turns(self) -> bool:
-        """Whether the joint turns rather than slides."""
-        return self.unit(self.joint) == "rad"
 
     @property
     def link_inertia(self) -> float:
@@ -185,23 +184,25 @@ class Robot:
     def inertia(self) -> float:
         """Of all that the joint carries, where the MJCF stands - kg*m**2 (kg)."""
         unit = np.zeros((1, self.model.nv))
-        unit[0, self.model.joint(self.joint).dofadr[0]] = 1.0
+        unit[0, self._dof] = 1.0
         return float(self._momentum(self.model.qpos0[None], unit)[0])
+
+    @property
+    def _dof(self) -> int:
+        return int(self.model.joint(self.joint).dofadr[0])
 
     def rest(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         """What the links ask of the joint beside its own inertia: r - N*m (N) - and p - N*m*s (N*s) -, (n,) each.
 
         Of positions and velocities of `joints` - rad (m), rad/s (m/s) - (n, joints).
         """
-        dof = int(self.model.joint(self.joint).dofadr[0])
-        torque, momentum = np.empty(len(position)), np.empty(len(position))
-        for start in range(0, len(position), TOGETHER):
-            part = slice(start, start + TOGETHER)
+        dof = self._dof
+        torque, momentum = np.empty((2, len(position)))
+        for part in _parts(len(position)):
             q, w = self._posed(position[part], velocity[part])
             step = ASIDE * velocity[part]
-            ahead, behind = (
-                self._momentum(self._posed(position[part] + side * step, step)[0], w) for side in (1.0, -1.0)
-            )
+            poses = (self._posed(position[part] + side * step, step)[0] for side in (1.0, -1.0))
+            ahead, behind = (self._momentum(pose, w) for pose in poses)
             turning = (ahead - behind) / (2.0 * ASIDE)
             bias, passive, matrix = self._evaluated(q, w, "qfrc_bias", "qfrc_passive", "M")
             torque[part] = bias[:, dof] - passive[:, dof] - turning
@@ -220,10 +221,9 @@ class Robot:
         if not added:
             return []
         found = [(np.empty(len(position)), np.empty(len(position))) for _ in added]
-        own, model = self.joints.index(self.model.joint(self.joint).id), self.model
+        own, model = self.names.index(self.joint), self.model
         standing = list(self._paths(added, model.qpos0[None, model.jnt_qposadr[list(self.joints)]]))
-        for first in range(0, len(position), TOGETHER):
-            part = slice(first, first + TOGETHER)
+        for part in _parts(len(position)):
             q, w = position[part], velocity[part]
             paths = zip(*(self._paths(added, q + side * ASIDE * w) for side in (0.0, 1.0, -1.0)), strict=True)
             for one, (here, ahead, behind), still, (r, p) in zip(added, paths, standing, found, strict=True):
@@ -277,9 +277,8 @@ class Robot:
 
     def _row(self, matrix: Array, velocity: Array) -> Array:
         """The joint's row of mass matrices (n, entries), of which MuJoCo has the lower half, times velocities (n,)."""
-        model, dof = self.model, int(self.model.joint(self.joint).dofadr[0])
-        row = np.repeat(np.arange(model.nv), model.M_rownnz)
-        column = model.M_colind
+        dof, column = self._dof, self.model.M_colind
+        row = np.repeat(np.arange(self.model.nv), self.model.M_rownnz)
         found = np.zeros(len(velocity))
         for k in np.flatnonzero((row == dof) | (column == dof)):
             found += matrix[:, k] * velocity[:, column[k] if row[k] == dof else row[k]]
@@ -292,6 +291,11 @@ class Robot:
         batch.bind("qpos")[:], batch.bind("qvel")[:] = position, velocity
         batch.forward()
         return [np.array(values) for values in bound]
+
+
+def _parts(poses: int) -> Iterator[slice]:
+    """Poses in turn, as many as are evaluated at once."""
+    return (slice(start, start + TOGETHER) for start in range(0, poses, TOGETHER))
 
 
 def link_about_centre(model: mujoco.MjModel, name: str) -> float:
@@ -309,15 +313,13 @@ def _bound(model: mujoco.MjModel, joint: int) -> Iterator[str]:
     of = {name: tied & (model.eq_type == int(getattr(mujoco.mjtEq, f"mjEQ_{name}"))) for name in ("JOINT", "TENDON")}
     if (ends[of["JOINT"]] == joint).any():
         yield "an equality that couples it with another joint"
-    moved = _moved_tendons(model, joint)
     driven = model.actuator_trnid[model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_TENDON), 0]
-    for k in moved:
+    for k in _moved_tendons(model, joint):
         if k in driven or model.tendon_frictionloss[k] > 0.0 or k in ends[of["TENDON"]]:
             yield f"the tendon '{model.tendon(k).name}' on it"
     carried = _carried(model, int(model.jnt_bodyid[joint]))
-    for k in np.flatnonzero(
-        tied & np.isin(model.eq_type, [int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD)])
-    ):
+    closing = [int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD)]
+    for k in np.flatnonzero(tied & np.isin(model.eq_type, closing)):
         sites = model.eq_objtype[k] == int(mujoco.mjtObj.mjOBJ_SITE)
         bodies = model.site_bodyid[ends[k]] if sites else ends[k]
         if carried[bodies[0]] != carried[bodies[1]]:
@@ -349,10 +351,11 @@ def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
 
     InputError where the rig is of another kind.
     """
-    alone = {"name": robot.joint, "kind": "rotary" if robot.turns else "linear"}
+    turns = robot.unit(robot.joint) == "rad"
+    alone = {"name": robot.joint, "kind": "rotary" if turns else "linear"}
     own = Rig.of(alone, robot.source) if rig is None else rig.of_joint(robot.joint)
-    if own.axis_kind.turns is not robot.turns:
-        found = f"found a joint that {'turns' if robot.turns else 'slides'}"
+    if own.axis_kind.turns is not turns:
+        found = f"found a joint that {'turns' if turns else 'slides'}"
         raise InputError(f"--joint {robot.joint}", found, f"allowed: a {own.kind} one, as {own.source} says")
     return rig_within(own, robot)
 
@@ -375,20 +378,15 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
         InputError: the log cannot be read, a joint is neither in it nor stated, stands beyond what the MJCF allows by
             the unit assumed, or its effort is in A or V, which the MJCF's links are not.
     """
-    return logs_of(read_recording(path), path, rig, robot, stated)[0]
+    return logs_of(path, rig, robot, stated)[0]
 
 
 def logs_of(
-    recording: Recording,
-    path: Path,
-    rig: Rig,
-    robot: Robot,
-    stated: Mapping[str, float],
-    changes: Sequence[AddedBody] = (),
+    path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], changes: Sequence[AddedBody] = ()
 ) -> list[Trace]:
-    """The same of what a file holds, and then of the robot with each of some changes."""
+    """The same, and then of the robot with each of some changes."""
     own = rig.of_joint(robot.joint)
-    trace, position, velocity, stand = moved(recording, path, rig, robot, stated)
+    trace, position, velocity, stand = _moved(path, rig, robot, stated)
     torque, momentum = robot.rest(position, velocity)
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
@@ -404,7 +402,7 @@ def _standing(
     """Where other joints were stated to stand, in words, and what one that moved would ask of the motor - N*m (N)."""
     if not stand:
         return {}
-    names, asked = [robot.model.joint(k).name for k in robot.joints], 0.0
+    names, asked = robot.names, 0.0
     for name in stand:
         aside = position.copy()
         aside[:, names.index(name)] += FAR
@@ -413,56 +411,49 @@ def _standing(
     return {STANDING: ", ".join(places), STANDING_ASK: repr(asked)}
 
 
-def moved(
-    recording: Recording, path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]
-) -> tuple[Trace, Array, Array, tuple[str, ...]]:
+def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Trace, Array, Array, list[str]]:
     """A joint's own signals, how the robot's `joints` moved - rad (m), rad/s (m/s) - (n, joints), and which are stated.
 
     InputError as `read_log`.
     """
-    recording = named(recording, list(filter(None, (robot.model.joint(k).name for k in range(robot.model.njnt)))))
-    own, names = rig.of_joint(robot.joint), [robot.model.joint(k).name for k in robot.joints]
-    if any(_holds(recording, name) for name in robot.units) and not (
-        _holds(recording, robot.joint) or own.trace.columns or own.trace.axis
-    ):
+    every = (robot.model.joint(k).name for k in range(robot.model.njnt))
+    recording = named(read_recording(path), list(filter(None, every)))
+    own, load = rig.of_joint(robot.joint), rig.of_joint(robot.joint).load or Load()
+    known = own.trace.columns or own.trace.axis or _holds(recording, robot.joint)
+    if not known and any(_holds(recording, name) for name in robot.units):
         allowed = f"allowed: a column '{robot.joint}.position [rad]' and so on, or [trace.columns] in a rig"
         raise InputError(f"{path}: joint '{robot.joint}'", "has no column of its own", allowed)
-    load = own.load or Load()
     trace, ratio = _joint_of(recording, robot.joint, own, robot), load.gear_ratio
     if load.behind_rotor and own.axis_kind.effort in trace:
         trace = trace.with_signals({own.axis_kind.effort: trace[own.axis_kind.effort] / ratio}, {})
     position, velocity = _motion(trace, trace)
-    motion = {robot.joint: (position / ratio, velocity / ratio)}
+    motion, stand = {robot.joint: (position / ratio, velocity / ratio)}, list[str]()
     for name in robot.units:
         if name in rig.joints or _holds(recording, name):
             motion[name] = _motion(_joint_of(recording, name, rig, robot), trace)
         elif name in stated:
             motion[name] = np.full(len(trace), stated[name]), np.zeros(len(trace))
-    for name in names:
-        followed = None if name in motion else robot.follows(name, motion)
-        if followed is not None:
-            motion[name] = followed
-        elif name not in motion:
+            stand.append(name)
+    for name in robot.names:
+        found = motion.get(name) or robot.follows(name, motion)
+        if found is None:
             allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0, or which one of the log it is "
             allowed += f'({", ".join(axes_of(recording.channels))}): axis = "..." under [joints.{name}] in a rig'
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
-        _require_within(motion[name][0], name, robot, path)
-    if own.effort(trace)[1] != own.effort_unit:
+        motion[name] = found
+        _require_within(found[0], name, robot, path)
+    unit = own.effort(trace)[1]
+    if unit != own.effort_unit:
         allowed = f"allowed: {own.effort_unit}, or its torque_constant under [joints.{robot.joint}] in a rig"
-        found = f"found an effort in {own.effort(trace)[1]}, beside links in kg"
-        raise InputError(f"{path}: joint '{robot.joint}'", found, allowed)
-    position, velocity = (np.column_stack([motion[name][k] for name in names]) for k in (0, 1))
-    standing = [
-        name for name in robot.units if name in stated and name not in rig.joints and not _holds(recording, name)
-    ]
-    return trace, position, velocity, tuple(standing)
+        raise InputError(f"{path}: joint '{robot.joint}'", f"found an effort in {unit}, beside links in kg", allowed)
+    position, velocity = (np.column_stack([motion[name][k] for name in robot.names]) for k in (0, 1))
+    return trace, position, velocity, stand
 
 
 def poses_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Array, dict[str, Array]]:
     """Times of a log - s (n,) -, and where a robot's joints were, by name - rad (m) (n,); raises as `read_log`."""
-    trace, position, _, _ = moved(read_recording(path), path, rig, robot, stated)
-    names = (robot.model.joint(k).name for k in robot.joints)
-    return trace.time, dict(zip(names, position.T, strict=True))
+    trace, position, _, _ = _moved(path, rig, robot, stated)
+    return trace.time, dict(zip(robot.names, position.T, strict=True))
 
 
 #: What a joint that slides has where messages tell all joints as if they turned.
@@ -471,11 +462,10 @@ _SLIDES = {"rad": "m", "rad/s": "m/s", "N*m": "N"}
 
 def _joint_of(recording: Recording, name: str, rig: Rig, robot: Robot) -> Trace:
     """The log of one of a robot's joints, counted as the robot's model does."""
-    notes = rig.joints.get(name, JointNotes())
-    how = rig.trace if name == robot.joint else GivenOptions(notes.columns, rig.trace.sample_period, axis=notes.axis)
+    notes, angle = rig.joints.get(name, JointNotes()), robot.unit(name)
+    how, period = (rig.trace, rig.trace.position_period) if name == robot.joint else (notes, None)
     axis = how.axis or (name if _holds(recording, name) else None)
-    how = GivenOptions(how.columns, how.sample_period, how.position_period, axis)
-    angle = robot.unit(name)
+    how = GivenOptions(how.columns, rig.trace.sample_period, period, axis)
     if angle == "m":
         recording = replace(recording, channels=tuple(map(_sliding, recording.channels)))
     units = {"position": angle, "velocity": f"{angle}/s", "torque": "N*m", "force": "N", "current": "A", "time": "s"}
@@ -515,12 +505,12 @@ def _holds(recording: Recording, name: str) -> bool:
 def _motion(trace: Trace, at: Trace) -> tuple[Array, Array]:
     """Position and speed of a joint - rad (m), rad/s (m/s) - at the times of another trace (n,)."""
     position = trace["position"]
-    velocity = np.empty_like(position)
-    for part in trace.segments:
-        alone = part.stop - part.start < 2
-        velocity[part] = 0.0 if alone else np.gradient(position[part], trace.sample_period)
     if "velocity" in trace:
         velocity = trace["velocity"]
+    else:
+        velocity = np.zeros_like(position)
+        for part in stretches_of(trace):
+            velocity[part] = np.gradient(position[part], trace.sample_period)
     if np.array_equal(trace.time, at.time):
         return position, velocity
     return interpolate(at.time, trace.time, position), interpolate(at.time, trace.time, velocity)

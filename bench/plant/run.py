@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -14,16 +15,18 @@ from mujoco import rollout
 from mujoco.batch import MODEL_FIELDS, Batch
 from numpy.typing import NDArray
 
+from bench.arrays import Array
 from bench.effects.acting import AXIS, DRIVE
 from bench.effects.signals import Number
 from bench.errors import InputError, SimulationError
-from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs, States, blocks
-from bench.plant.drive import TORQUE, References
-from bench.plant.plant import Plant
+from bench.plant.drive import TORQUE, CascadeDrive, FollowReferences, References
+from bench.plant.plant import DIVERGED, ClosedLoop, Plant, States
 from bench.plant.stepped_effects import Joints, SteppedEffects, per_axis
 
 Progress = Callable[[float], None]
 
+#: Bytes of inputs and states that a simulation holds at once, however long it is.
+BLOCK_BYTES = 8 * 2**20
 #: Axes from which it pays to share a step between threads: calling them costs some 10 to 50 us, an axis 2 to 4.
 SHARED_FROM = 64
 #: Ticks between two reports of progress.
@@ -48,12 +51,11 @@ def run(plants: Sequence[Plant], references: Sequence[References], progress: Pro
             raise InputError("references", f"found a period of {reference.period:g} s", f"allowed: {period:g} s")
     same = {plant: plant for plant in plants}
     pairs = [(same[plant], motion) for plant, motion in zip(plants, references, strict=True)]
-    native = [k for k, (plant, _) in enumerate(pairs) if plant.native]
-    found = dict(zip(native, run_loops([pairs[k][0].native_loop(pairs[k][1]) for k in native]), strict=True))
-    limited = {k for k in native if (np.abs(found[k].torque) >= pairs[k][0].cascade.torque_limit).any()}
-    ticked = [k for k in range(len(pairs)) if k not in found or k in limited]
-    loops = [pairs[k][0].ticked_loop(pairs[k][1]) for k in ticked]
-    found |= zip(ticked, run_loops(loops, progress), strict=True)
+    native = {k: plant.native_loop(motion) for k, (plant, motion) in enumerate(pairs) if plant.native}
+    found = dict(zip(native, run_loops([*native.values()]), strict=True))
+    limited = {k for k in found if (np.abs(found[k].torque) >= pairs[k][0].cascade.torque_limit).any()}
+    ticked = {k: pairs[k][0].ticked_loop(pairs[k][1]) for k in range(len(pairs)) if k not in found or k in limited}
+    found |= zip(ticked, run_loops([*ticked.values()], progress), strict=True)
     if any(states.diverged for states in found.values()):
         raise SimulationError(DIVERGED)
     if progress is not None:
@@ -67,15 +69,13 @@ def run_loops(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> 
 
     Native ones run on all cores, the others side by side with those that are alike, which costs hardly more than one.
     """
-    found: dict[int, States] = {}
-    alike: dict[tuple[object, ...], list[int]] = {}
+    alike = defaultdict[object, list[int]](list)
     for k, loop in enumerate(loops):
-        if not loop.native:
-            alike.setdefault(loop.alike, []).append(k)
-    native = [k for k, loop in enumerate(loops) if loop.native]
+        alike["native" if loop.native else loop.alike].append(k)
+    native = alike.pop("native", [])
     with silenced():
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            found |= zip(native, pool.map(run_native, (loops[k] for k in native)), strict=True)
+            found = dict(zip(native, pool.map(run_native, (loops[k] for k in native)), strict=True))
         for group in alike.values():
             together = run_ticked([loops[k] for k in group], progress)
             for column, k in enumerate(group):
@@ -102,7 +102,7 @@ def run_native(loop: ClosedLoop) -> States:
     It runs in blocks, the same to the last bit as in one rollout: each takes up the state of the one before. MuJoCo's
     warnings are the caller's to silence, once for all threads.
     """
-    assert isinstance(loop.controller, PlannedInputs)
+    assert not isinstance(loop.controller, FollowReferences)
     model, data, every = loop.compiled, mujoco.MjData(loop.compiled), loop.every
     half, joint, first = model.opt.timestep / 2.0, model.joint(AXIS), model.actuator_ctrladr[model.actuator(DRIVE).id]
     data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]] = loop.position + half * loop.velocity, loop.velocity
@@ -111,8 +111,8 @@ def run_native(loop: ClosedLoop) -> States:
     qpos, qvel, torque = 1 + joint.qposadr[0], 1 + model.nq + joint.dofadr[0], model.sensor(TORQUE).adr[0]
     time = loop.time[::every]
     found = np.full((3, time.size, 1), np.nan)
-    for start, stop in blocks(loop.ticks, 8 * (model.nu + state.size + model.nsensordata)):
-        *held, effort, known = loop.controller.between(start, stop).T
+    for start, stop in _blocks(loop.ticks, 8 * (model.nu + state.size + model.nsensordata)):
+        *held, effort, known = loop.controller(start, stop).T
         planned, inputs = np.column_stack([*held, effort - known]), np.zeros((1, stop - start, model.nu))
         inputs[0, :, first : first + planned.shape[1]] = planned
         # where the solver starts its search is no part of the state, but of the last bits of the result
@@ -137,12 +137,10 @@ def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) ->
     time = max((loop.time for loop in loops), key=len)
     recorded = States(time[::every], *np.zeros((4, -(-time.size // every), len(loops))))
     for k in range(time.size):
-        position, velocity = axes.state()
-        reported, made = axes.advance(time[k], *axes.tick(k, position, velocity))
+        found = axes.tick(k, time[k])
         if k % every == 0:
-            row = k // every
-            recorded.position[row], recorded.velocity[row] = position, velocity
-            recorded.torque[row], recorded.motor_torque[row] = reported, made
+            for signal, values in zip(recorded.signals, found, strict=True):
+                signal[k // every] = values
         if progress is not None and k % REPORT_EVERY == 0:
             progress(k / time.size)
     recorded.velocity[:, axes.diverged] = np.nan
@@ -153,9 +151,9 @@ class _SideBySide:
     """Axes on a batch."""
 
     def __init__(self, loops: Sequence[ClosedLoop]) -> None:
-        batch, first = batch_of([loop.compiled for loop in loops]), loops[0]
+        batch, axes = batch_of([loop.compiled for loop in loops]), [loop.axis for loop in loops]
         joint, actuator = batch.model.joint(AXIS), batch.model.actuator(DRIVE).id
-        self._batch, self._step, self._substeps = batch, batch.model.opt.timestep, first.substeps
+        self._batch, self._step, self._substeps = batch, batch.model.opt.timestep, loops[0].substeps
         self._position = batch.bind("qpos")[:, joint.qposadr[0]]
         self._velocity = batch.bind("qvel")[:, joint.dofadr[0]]
         self._velocity[:] = [loop.velocity for loop in loops]
@@ -163,48 +161,57 @@ class _SideBySide:
         self._position[:] = np.array([loop.position for loop in loops]) + self._step / 2.0 * self._velocity
         at = batch.model.actuator_ctrladr[actuator]
         inputs = batch.bind("ctrl")[:, at : at + batch.model.actuator_ctrlnum[actuator]]
-        self._effort = inputs[:, -1]
-        self.tick = type(first.controller).side_by_side(loops, inputs[:, :-1])
+        self._setpoints, self._effort = inputs[:, :-1], inputs[:, -1]
+        drives = [loop.controller for loop in loops if isinstance(loop.controller, FollowReferences)]
+        self._drive = CascadeDrive.of(drives, axes) if drives else None
+        self._planned = _planned(loops, inputs.shape[1] + 1)
         self._since, self._began = (per_axis([getattr(loop, name) for loop in loops]) for name in ("since", "began"))
         self._effects = None
-        if not all(loop.axis.all_native for loop in loops):
-            axes = [loop.axis for loop in loops]
+        if not all(axis.all_native for axis in axes):
             self._joints = Joints.of(batch)
             self._effects = SteppedEffects(axes, self._step, bool(self._joints.bristled.any()))
             self._memory = self._effects.start(per_axis(self._velocity))
 
-    def state(self) -> tuple[Number, Number]:
-        """True position and velocity as they are now - rad (m), rad/s (m/s) - (axes,), or numbers of a lone axis."""
-        if self._lone:
-            self._here, self._now = self._position[0], self._velocity[0]
-        else:
-            self._here, self._now = self._position.copy(), self._velocity.copy()
-        return self._here - self._step / 2.0 * self._now, self._now
+    def tick(self, k: int, time: float) -> tuple[Number, Number, Number, Number]:
+        """Go on by a tick, the next one, which starts at a time - s.
 
-    def advance(self, time: float, setpoint: Number, motor: Number, known: Number) -> tuple[Number, Number]:
-        """Go on by a tick from the state that was read; returns reported effort and motor torque, means over its steps.
-
-        Args:
-            time: at its start - s.
-            setpoint, motor, known: effort that is reported, asked of the motor, and known to resist beside - N*m (N).
+        Returns position and velocity at it - rad (m), rad/s (m/s) - and efforts to the next - N*m (N): that is reported
+        and that the motor makes, means over its steps. (axes,) each, or numbers of a lone axis.
         """
+        here, velocity = self._state()
+        position = here - self._step / 2.0 * velocity
+        setpoint, motor, known = self._asked(k, position, velocity)
         if self._effects is None:
             self._effort[:] = motor - known
             self._batch.step(nstep=self._substeps)
-            return setpoint, motor
-        flowing, acting = self._step_on(time, motor, known)
-        if self._substeps > 1:
-            for substep in range(1, self._substeps):
-                self.state()
-                flows, acts = self._step_on(time + substep * self._step, motor, known)
-                flowing, acting = flowing + flows, acting + acts
-            flowing, acting = flowing / self._substeps, acting / self._substeps
-        return setpoint + (flowing - motor), acting
+            return position, velocity, setpoint, motor
+        flowing, acting = self._step_on(time, here, velocity, motor, known)
+        for substep in range(1, self._substeps):
+            flows, acts = self._step_on(time + substep * self._step, *self._state(), motor, known)
+            flowing, acting = flowing + flows, acting + acts
+        return position, velocity, setpoint + (flowing / self._substeps - motor), acting / self._substeps
 
-    def _step_on(self, time: float, motor: Number, known: Number) -> tuple[Number, Number]:
-        """One step from the state that was read: effort that flows, and acts - N*m (N) - (axes,)."""
+    def _state(self) -> tuple[Number, Number]:
+        """MuJoCo's position and velocity as they are now."""
+        if self._lone:
+            return self._position[0], self._velocity[0]
+        return self._position.copy(), self._velocity.copy()
+
+    def _asked(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number, Number]:
+        """Effort from a tick to the next that is reported, asked of the motor, and known to resist beside."""
+        if self._drive is not None:
+            return *self._drive.tick(k, position, velocity), 0.0
+        inputs = next(self._planned)
+        self._setpoints[:] = inputs[:, :-2]
+        effort = per_axis(inputs[:, -2])
+        return effort, effort, per_axis(inputs[:, -1])
+
+    def _step_on(
+        self, time: float, position: Number, velocity: Number, motor: Number, known: Number
+    ) -> tuple[Number, Number]:
+        """One step from a state: effort that flows, and acts."""
         assert self._effects is not None
-        acts = self._effects.act(self._memory, self._since + time, self._here, self._now, motor, self._began)
+        acts = self._effects.act(self._memory, self._since + time, position, velocity, motor, self._began)
         self._memory, self._effort[:] = acts.memory, acts.motor - known
         self._joints.take(acts)
         self._batch.step()
@@ -214,6 +221,24 @@ class _SideBySide:
     def diverged(self) -> NDArray[np.bool_]:
         """Of which axes MuJoCo warned - (axes,)."""
         return np.any(np.reshape(self._batch.warning, (self._batch.nsim, -1)), axis=1)
+
+
+def _blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
+    """First tick of each block and the one after its last."""
+    size = max(1, BLOCK_BYTES // bytes_per_tick)
+    return ((start, min(start + size, ticks)) for start in range(0, ticks, size))
+
+
+def _planned(loops: Sequence[ClosedLoop], inputs: int) -> Iterator[Array]:
+    """Planned inputs at each tick of the longest loop - (axes, inputs); after the end of a loop its last are held."""
+    for start, stop in _blocks(max(loop.ticks for loop in loops), 8 * inputs * len(loops)):
+        held = []
+        for loop in loops:
+            assert not isinstance(loop.controller, FollowReferences)
+            first = min(start, loop.ticks - 1)
+            known = loop.controller(first, min(stop, loop.ticks))
+            held.append(known[np.minimum(np.arange(start, stop), loop.ticks - 1) - first])
+        yield from np.stack(held, axis=1)
 
 
 def batch_of(models: Sequence[mujoco.MjModel]) -> Batch:

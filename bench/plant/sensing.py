@@ -11,8 +11,8 @@ from bench.axis_kind import ROTARY, AxisKind
 from bench.effects.acting import FilteredSignal, MisreadEffort, MisreadMotion
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
-from bench.plant.closed_loop import States
 from bench.plant.drive import References
+from bench.plant.plant import States
 from bench.rig.motor import TorqueConstant
 from bench.rig.rig import Rig
 from bench.trace.signals import unit_on
@@ -23,19 +23,19 @@ def reported(model: AxisModel, position: Array, velocity: Array, step: float) ->
     """What sensors report of one axis' true motion, (n,) each at a constant step - s."""
     for effect, values in model.acting(MisreadMotion):
         position, velocity = effect.seen(values, position, velocity)
-    for effect, values in _filters(model, "velocity"):
+    for effect, values in filters(model, "velocity"):
         velocity = effect.recorded(values, velocity, step)
     return position, velocity
 
 
-def filters(model: AxisModel) -> bool:
-    """Whether the velocity that is recorded depends on what came before."""
-    return bool(_filters(model, "velocity"))
+def filters(model: AxisModel, signal: str) -> list[tuple[FilteredSignal, dict[str, float]]]:
+    """Effects with their values that filter a signal, `velocity` or `current`, before it is recorded."""
+    return [(effect, values) for effect, values in model.acting(FilteredSignal) if effect.signal == signal]
 
 
 def true_velocity(model: AxisModel, velocity: Array, step: float) -> Array:
     """Velocity that the encoder saw, from the reported one, (n,): filters undone."""
-    for effect, values in reversed(_filters(model, "velocity")):
+    for effect, values in reversed(filters(model, "velocity")):
         velocity = effect.unrecorded(values, velocity, step)
     return velocity
 
@@ -47,15 +47,10 @@ def true_motion(model: AxisModel, position: Array, velocity: Array) -> tuple[Arr
     return position, velocity
 
 
-def misreads_effort(model: AxisModel) -> bool:
-    """Whether the effort that is recorded is not the one that acts."""
-    return bool(model.of_kind(MisreadEffort) or _filters(model, "current"))
-
-
 def true_effort(model: AxisModel, effort: Array, since: float, step: float) -> Array:
     """Effort of one axis that acted, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
     time = since + step * np.arange(effort.size, dtype=np.float64)
-    for effect, values in reversed(_filters(model, "current")):
+    for effect, values in reversed(filters(model, "current")):
         effort = effect.unrecorded(values, effort, step)
     for effect, values in model.acting(MisreadEffort):
         effort = effect.acted(values, model.axis, effort, time)
@@ -67,13 +62,9 @@ def reported_states(model: AxisModel, states: States) -> States:
     step = float(states.time[1] - states.time[0])
     position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
     torque = states.torque[:, 0]
-    for effect, values in _filters(model, "current"):
+    for effect, values in filters(model, "current"):
         torque = effect.recorded(values, torque, step)
     return replace(states, position=position[:, None], velocity=velocity[:, None], torque=torque[:, None])
-
-
-def _filters(model: AxisModel, signal: str) -> list[tuple[FilteredSignal, dict[str, float]]]:
-    return [(effect, values) for effect, values in model.acting(FilteredSignal) if effect.signal == signal]
 
 
 @dataclass(frozen=True)
@@ -118,27 +109,24 @@ class Sensors:
         over each tick; the current of a row is interpolated between the middles of the ticks around it, by a cubic
         that keeps their shape (Fritsch, Carlson, SIAM J. Numer. Anal. 17, 1980, 238-246), so it never exceeds the peak.
         """
+        from scipy.interpolate import PchipInterpolator  # 0.1 s, which only a simulated recording has to pay
+
         rows = slice(None, None, self.stride(references.period))
         time, position, velocity = states.time[rows], states.position[rows, 0], states.velocity[rows, 0]
         noise = random.standard_normal((2, len(time)))
         if self.encoder_resolution > 0.0:
             position = np.round(position / self.encoder_resolution) * self.encoder_resolution
-        effort = "current" if self.torque_constant is not None else self.kind.effort
+        effort, held = self.kind.effort, states.torque[:, 0]
+        if self.torque_constant is not None:
+            effort, held = "current", self.torque_constant.current(held)
+        middles = states.time + (states.time[1] - states.time[0]) / 2.0
+        held = PchipInterpolator(middles, held)(np.maximum(time, middles[0]))
         signals = {
             "position": position,
             "velocity": velocity + self.velocity_noise * noise[0],
-            effort: self._effort(states, time) + self.current_noise * noise[1],
+            effort: held + self.current_noise * noise[1],
             "position_reference": references.position[rows],
             "velocity_reference": references.velocity[rows],
         }
         units = {name: unit_on(self.kind, name) for name in signals}
         return Trace(time, signals, units, origin)
-
-    def _effort(self, states: States, time: Array) -> Array:
-        """Current (torque) of one axis at some times - (n,)."""
-        from scipy.interpolate import PchipInterpolator  # 0.1 s, which only a simulated recording has to pay
-
-        torque = states.torque[:, 0]
-        held = torque if self.torque_constant is None else self.torque_constant.current(torque)
-        middles = states.time + (states.time[1] - states.time[0]) / 2.0
-        return PchipInterpolator(middles, held)(np.maximum(time, middles[0]))

@@ -17,9 +17,8 @@ from bench.effects.present import Present, parse_effect
 from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisParameters, effect_values
-from bench.plant.closed_loop import States
 from bench.plant.drive import References
-from bench.plant.plant import Plant
+from bench.plant.plant import Plant, States
 from bench.plant.profile_names import DEFAULT
 from bench.plant.profiles import MOST_TICKS, MotionLimits, plan
 from bench.plant.run import Progress, run
@@ -194,34 +193,25 @@ def motion_of(recording: Trace) -> Sampled:
         speed = np.gradient(recording["position_reference"], time)
     else:
         measured = recording["velocity"] if "velocity" in recording else np.gradient(recording["position"], time)
-        speed = gaussian_filter1d(np.interp(time, *_known(time, measured)), SMOOTHED / recording.sample_period)
-    return Sampled(*_known(time, speed))
-
-
-def _known(time: Array, values: Array) -> tuple[Array, Array]:
-    there = np.isfinite(values)
-    return time[there], values[there]
+        known = np.isfinite(measured)
+        every = np.interp(time, time[known], measured[known])
+        speed = gaussian_filter1d(every, SMOOTHED / recording.sample_period)
+    known = np.isfinite(speed)
+    return Sampled(time[known], speed[known])
 
 
 def followed(motion: Trace | ArrayLike, step: float, period: float) -> References:
-    """What a drive is commanded to follow along a recording, or along speeds - rad/s (m/s) - (n,).
+    """What a drive of a period - s - follows along a recording, or speeds (n,) a step - s - apart - rad/s (m/s).
 
-    Args:
-        motion: the recording, or speeds.
-        step: between speeds - s.
-        period: of the drive's ticks - s.
-
-    Raises:
-        InputError: speeds that are not some numbers in a row.
+    InputError where speeds are not some numbers in a row.
     """
     if isinstance(motion, Trace):
         sampled = motion_of(motion)
     else:
         speed = np.asarray(motion, dtype=np.float64)
         if speed.ndim != 1 or speed.size < 2 or not np.isfinite(speed).all():
-            raise InputError(
-                "profile", f"found an array of shape {speed.shape}", "allowed: two or more finite speeds, (n,)"
-            )
+            found = f"found an array of shape {speed.shape}"
+            raise InputError("profile", found, "allowed: two or more finite speeds, (n,)")
         sampled = Sampled(step * np.arange(speed.size, dtype=np.float64), speed)
     time = period * np.arange(int(sampled.duration / period + 1e-9) + 1, dtype=np.float64)
     return References(time, *sampled.at(time))

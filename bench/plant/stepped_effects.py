@@ -105,12 +105,16 @@ class SteppedEffects:
 
     def __init__(self, models: Sequence[AxisModel], step: float, bristled: Number = False, made: Made = numpys) -> None:
         self._step, self._none = step, made(per_axis([0.0] * len(models)))
+        self._coulomb = made(per_axis([model.parameters.coulomb_friction for model in models]))
+        self._bristled = made(np.squeeze(bristled)) if np.any(bristled) else None
         self._flowing = on_axes(models, DriveLimit, made)
         self._acting = on_axes(models, TorqueLag, made)
         self._delivered = on_axes(models, TorqueLoss, made)
         self._acted = on_axes(models, MisreadEffort, made)
-        self._drives = self._flowing or self._acting or self._delivered or self._acted
-        self._friction = _FrictionLevels(models, bristled, made)
+        self._excesses = on_axes(models, RaisesFriction, made, ticked=True)
+        self._scales = on_axes(models, ScalesFriction, made, ticked=True)
+        self._differences = on_axes(models, DirectedFriction, made, ticked=True)
+        self._loads = on_axes(models, LoadTorque, made) if on_axes(models, FollowsLoad) else []
         self._inertia = on_axes(models, VaryingInertia, made, ticked=True)
         self._resisting = on_axes(models, ResistingTorque, made, ticked=True)
         self._factors = on_axes(models, ScalesTorque, made, ticked=True)
@@ -144,18 +148,15 @@ class SteppedEffects:
             demand: effort that the drive asks for - N*m (N) - (..., axes).
             began: the recording, as `Moment` has it - s - one for all axes, or (axes,).
         """
-        middle = 1.5 * velocity - 0.5 * memory.velocity
-        time, kept = time + 0.5 * self._step, memory.kept
-        reported, torque = demand, demand
-        if self._drives:
-            reported, torque, kept = self._driven(kept, time, middle, demand)
+        middle, time = 1.5 * velocity - 0.5 * memory.velocity, time + 0.5 * self._step
+        reported, torque, kept = self._driven(memory.kept, time, middle, demand)
         at = Moment(time, position, middle, torque, began)
         if self._factors:
             for some in self._factors:
                 factor = some.effect.torque_factor(some.values, some.axis, some.moment(at))
                 torque = some.with_these(torque, some.of(torque) * factor)
             at = Moment(time, position, middle, torque, began)
-        friction, offset = self._friction.at(at)
+        friction, offset = self._friction(at)
         applied = self._none - offset
         for some in self._resisting:
             resisting = some.effect.resisting_torque(some.values, some.axis, some.moment(at))
@@ -191,22 +192,9 @@ class SteppedEffects:
             torque = some.with_these(torque, some.effect.delivered(some.values, some.axis, some.of(torque)))
         return reported, torque, tuple(kept)
 
-
-class _FrictionLevels:
-    """The level of dry friction, where effects change it in every step."""
-
-    def __init__(self, models: Sequence[AxisModel], bristled: Number, made: Made) -> None:
-        self._coulomb = made(per_axis([model.parameters.coulomb_friction for model in models]))
-        self._none = made(per_axis([0.0] * len(models)))
-        self._excesses = on_axes(models, RaisesFriction, made, ticked=True)
-        self._factors = on_axes(models, ScalesFriction, made, ticked=True)
-        self._differences = on_axes(models, DirectedFriction, made, ticked=True)
-        self._loads = on_axes(models, LoadTorque, made) if on_axes(models, FollowsLoad) else []
-        self._bristled = made(np.squeeze(bristled)) if np.any(bristled) else None
-
-    def at(self, at: Moment) -> tuple[Number | None, Number]:
-        """Its mean over both directions, None where no effect changes it, and half their difference - N*m (N)."""
-        if not (self._excesses or self._factors or self._differences):
+    def _friction(self, at: Moment) -> tuple[Number | None, Number]:
+        """Mean level of dry friction over both directions, None where no effect changes it, and half the difference."""
+        if not (self._excesses or self._scales or self._differences):
             return None, 0.0
         level = self._coulomb
         if self._loads:
@@ -221,7 +209,7 @@ class _FrictionLevels:
         for some in self._differences:
             difference = some.effect.friction_difference(some.values, some.axis)
             half = some.with_these(half, some.of(half) + 0.5 * difference)
-        for some in self._factors:
+        for some in self._scales:
             factor = some.effect.friction_factor(some.values, some.axis, some.moment(at))
             level, half = (some.with_these(each, some.of(each) * factor) for each in (level, half))
         xp = namespace(level)
@@ -369,7 +357,12 @@ class Joints:
             armature, bare = self._armatures
             armature[:, self._columns] = bare + self._on_rows(acts.inertia)
         if acts.friction is not None:
-            self._set_friction(self._on_rows(acts.friction))
+            level = self._on_rows(acts.friction)
+            if self._dry:
+                self._field("dof_frictionloss")[:, self._columns] = level
+            for k in self._bending:
+                own = level[:, k : k + 1] if np.ndim(level) else level
+                self._field("actuator_biasprm")[:, self._bristles[k], BRISTLE_LEVELS] = own
 
     def apply(self, torque: Number) -> None:
         """Apply a torque beside those of actuators - N*m (N)."""
@@ -380,14 +373,6 @@ class Joints:
         if "_armatures" in self.__dict__:
             armature, bare = self._armatures
             armature[:, self._columns] = bare
-
-    def _set_friction(self, level: Number) -> None:
-        if self._dry:
-            loss = self._field("dof_frictionloss")
-            loss[:, self._columns] = level
-        for k in self._bending:
-            parameters = self._field("actuator_biasprm")
-            parameters[:, self._bristles[k], BRISTLE_LEVELS] = level[:, k : k + 1] if np.ndim(level) else level
 
     def _on_rows(self, values: Number) -> Number:
         return values.reshape(-1, self._count) if np.ndim(values) else values

@@ -18,28 +18,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.acting import Mechanism, TorqueLag, TorqueLoss
+from bench.effects.acting import Mechanism, MisreadEffort, TorqueLag, TorqueLoss
 from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
-from bench.plant.closed_loop import DIVERGED, ClosedLoop, PlannedInputs
 from bench.plant.drive import Cascade, References, add_pid
-from bench.plant.plant import Plant
+from bench.plant.plant import DIVERGED, ClosedLoop, PlannedInputs, Plant, States
 from bench.plant.run import run, run_loops
-from bench.plant.sensing import (
-    filters,
-    misreads_effort,
-    reported,
-    reported_states,
-    true_effort,
-    true_motion,
-    true_velocity,
-)
+from bench.plant.sensing import filters, reported, reported_states, true_effort, true_motion, true_velocity
 from bench.rig.rig import Rig
 from bench.trace.motion import integrated, measured_velocity, stretches_of
 from bench.trace.trace import Trace
@@ -107,12 +97,10 @@ def track_all(held: Sequence[SoftTracking], bandwidth: float = BANDWIDTH) -> lis
     stretches = [(row, *stretch) for row, one in enumerate(held) for stretch in _loops(one, bandwidth)]
     motions = run_loops([loop for _, _, loop, _ in stretches])
     found: list[Tracked | None] = [Tracked(*np.full((2, len(one.trace)), np.nan)) for one in held]
-    for (row, part, loop, substeps), states in zip(stretches, motions, strict=True):
+    for (row, part, loop, skip), states in zip(stretches, motions, strict=True):
         tracked = found[row] = None if states.diverged else found[row]
         if tracked is not None:
-            step, skip = loop.compiled.opt.timestep, substeps // loop.every
-            position, velocity = reported(held[row].model, states.position[:, 0], states.velocity[:, 0], step)
-            tracked.position[part], tracked.velocity[part] = position[::skip], velocity[::skip]
+            tracked.position[part], tracked.velocity[part] = _at_samples(held[row].model, loop, states, skip)
     return found
 
 
@@ -122,14 +110,18 @@ def run_free(held: SoftTracking, windows: Sequence[slice]) -> list[Tracked]:
     SimulationError where the model diverged.
     """
     loops = [*_loops(held, FREE, windows)]
-    motions, found = run_loops([loop for _, loop, _ in loops]), []
-    for (_, loop, substeps), states in zip(loops, motions, strict=True):
-        if states.diverged:
-            raise SimulationError(DIVERGED)
-        step, skip = loop.compiled.opt.timestep, substeps // loop.every
-        motion = reported(held.model, states.position[:, 0], states.velocity[:, 0], step)
-        found.append(Tracked(*(signal[::skip] for signal in motion)))
-    return found
+    motions = run_loops([loop for _, loop, _ in loops])
+    if any(states.diverged for states in motions):
+        raise SimulationError(DIVERGED)
+    of_each = zip(loops, motions, strict=True)
+    return [Tracked(*_at_samples(held.model, loop, states, skip)) for (_, loop, skip), states in of_each]
+
+
+def _at_samples(model: AxisModel, loop: ClosedLoop, states: States, skip: int) -> tuple[Array, Array]:
+    """Position and velocity that sensors report of a loop's motion, at the recording's samples."""
+    step = loop.compiled.opt.timestep
+    position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
+    return position[::skip], velocity[::skip]
 
 
 def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDTH) -> Cascade:
@@ -143,7 +135,7 @@ def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDT
 def _loops(
     held: SoftTracking, bandwidth: float, parts: Sequence[slice] | None = None
 ) -> Iterator[tuple[slice, ClosedLoop, int]]:
-    """Samples of parts of a recording, the loop that holds the model along each, and steps per sample.
+    """Samples of parts of a recording, the loop that holds the model along each, and recorded ticks per sample.
 
     The parts are all stretches without holes unless others are given.
     """
@@ -157,20 +149,18 @@ def _loops(
         compiled = spec.compile()
     except ValueError as error:
         raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
+    every = 1 if filters(model, "velocity") else substeps  # a filter needs every step, and nothing else does
     for part in stretches_of(trace) if parts is None else parts:
-        inputs = _HoldingInputs(held, part, velocity[part], timestep, substeps)
-        start = trace.start_of(part)
+        ticks, start = (part.stop - part.start - 1) * substeps + 1, trace.start_of(part)
         loop = ClosedLoop(
             mechanics,
             compiled,
-            inputs,
-            timestep * np.arange(inputs.ticks, dtype=np.float64),
-            *inputs.start,
-            every=1 if filters(model) else substeps,  # a filter needs every step, and nothing else does
+            *_holding_inputs(held, part, velocity[part], timestep, ticks),
+            every=every,
             since=float(trace.time[part.start]) - start,
             began=start - float(trace.time[0]),
         )
-        yield part, loop, substeps
+        yield part, loop, substeps // every
 
 
 def _longest_step(spec: mujoco.MjSpec) -> float:
@@ -180,75 +170,47 @@ def _longest_step(spec: mujoco.MjSpec) -> float:
     return min([LONGEST_STEP, *(CONTACT_STEP / rate for rate in rates)])
 
 
-class _HoldingInputs(PlannedInputs):
-    """Position, velocity and effort that the cascade of a held model gets along one stretch.
+def _holding_inputs(
+    held: SoftTracking, part: slice, velocity: Array, timestep: float, count: int
+) -> tuple[PlannedInputs, Array, float, float]:
+    """Position, velocity and effort that the cascade of a held model gets along one stretch, and where that starts.
 
-    Of velocities reported in it - rad/s (m/s) - (n,), at timesteps - s -, `substeps` of which make a sample period.
+    Of velocities reported in it - rad/s (m/s) - (n,), at so many ticks, which are timed from zero - s - (ticks,).
     """
+    model, trace, time, known = held.model, held.trace, held.trace.time[part], held.known
+    velocity = true_velocity(model, velocity, trace.sample_period)
+    position = trace["position"][part] if "position" in trace else integrated(velocity, trace.sample_period)
+    position, velocity = true_motion(model, position, velocity)
 
-    def __init__(self, held: SoftTracking, part: slice, velocity: Array, timestep: float, substeps: int) -> None:
-        model, trace = held.model, held.trace
-        velocity = true_velocity(model, velocity, trace.sample_period)
-        position = trace["position"][part] if "position" in trace else integrated(velocity, trace.sample_period)
-        self._position, self._velocity = true_motion(model, position, velocity)
-        self._time, self._effort, self._held = trace.time[part], held.effort[part], held
-        self._since, self._timestep = float(trace.time[part.start]) - trace.start_of(part), timestep
-        self._known, self._losses = None if held.known is None else held.known[part], model.acting(TorqueLoss)
-        self.ticks = (velocity.size - 1) * substeps + 1
-        self.start = float(self._position[0]), float(self._velocity[0])
+    def recorded(ticks: Array) -> Array:
+        return np.interp(ticks + timestep / 2.0 + held.misalignment, time, held.effort[part])
 
-    def between(self, start: int, stop: int) -> Array:
-        """See `PlannedInputs`: read between samples."""
-        ticks = self._ticks(start, stop)
-        wanted = np.interp(ticks, self._time, self._velocity)
+    elapsed = timestep * np.arange(count, dtype=np.float64)
+    acting = None  # at all ticks, where faults of its sensor and lags are undone
+    if model.of_kind((MisreadEffort, TorqueLag)) or filters(model, "current"):
+        acting = true_effort(model, recorded(time[0] + elapsed), float(time[0]) - trace.start_of(part), timestep)
+        for effect, values in model.acting(TorqueLag):
+            acting = effect.acting_along(values, acting, timestep)
+
+    def between(start: int, stop: int) -> Array:
+        """Read between samples."""
+        ticks = time[0] + elapsed[start:stop]
+        wanted = np.interp(ticks, time, velocity)
         # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts
-        lead = np.interp(ticks, self._time, self._position) + self._timestep / 2.0 * wanted
-        effort = self._recorded(start, stop) if self._acting is None else self._acting[start:stop]
-        for effect, values in self._losses:
-            effort = effect.delivered(values, self._held.model.axis, effort)
-        known = np.zeros_like(effort) if self._known is None else np.interp(ticks, self._time, self._known)
-        return np.stack([lead, wanted, effort, known], axis=-1)
+        lead = np.interp(ticks, time, position) + timestep / 2.0 * wanted
+        effort = recorded(ticks) if acting is None else acting[start:stop]
+        for effect, values in model.acting(TorqueLoss):
+            effort = effect.delivered(values, model.axis, effort)
+        beside = np.zeros_like(effort) if known is None else np.interp(ticks, time, known[part])
+        return np.stack([lead, wanted, effort, beside], axis=-1)
 
-    def _ticks(self, start: int, stop: int) -> Array:
-        return self._time[0] + np.arange(start, stop) * self._timestep
-
-    def _recorded(self, start: int, stop: int) -> Array:
-        """Effort as it is recorded - N*m (N) - (ticks,)."""
-        at = self._ticks(start, stop) + self._timestep / 2.0 + self._held.misalignment
-        return np.interp(at, self._time, self._effort)
-
-    @cached_property
-    def _acting(self) -> Array | None:
-        """Effort at all ticks, faults of its sensor and lags undone - N*m (N); None without any."""
-        model = self._held.model
-        lags = model.acting(TorqueLag)
-        if not misreads_effort(model) and not lags:
-            return None
-        effort = true_effort(model, self._recorded(0, self.ticks), self._since, self._timestep)
-        for effect, values in lags:
-            effort = effect.acting_along(values, effort, self._timestep)
-        return effort
+    return between, elapsed, float(position[0]), float(velocity[0])
 
 
-@dataclass(frozen=True)
-class Followed:
-    """What a model under its drive reports at the samples of a recording - rad (m), rad/s (m/s), N*m (N) - (n,) each.
+def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> States:
+    """What a model reports under the drive of a rig, along the references of a recording that starts at rest.
 
-    The effort is that of the tick which begins with the sample.
-    """
-
-    position: Array
-    velocity: Array
-    effort: Array
-
-
-def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
-    """Run a model along the references of a recording without holes.
-
-    Args:
-        model: with effects.
-        trace: with `velocity_reference` or `position_reference`, at rest at its start.
-        rig: with `[drive]`.
+    At the samples of the recording; the effort of one is that of the tick which begins with it.
 
     Raises:
         InputError: no references, holes, a rig without drive, or samples that are no multiple of its ticks.
@@ -264,8 +226,7 @@ def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> Followed:
         raise InputError(trace.origin, f"found samples every {sampled:g} s", allowed)
     plant = Plant(model, cascade, period)
     states = reported_states(plant.model, run([plant], [references_of(trace, period, stride)]))
-    rows = slice(None, None, stride)
-    return Followed(states.position[rows, 0], states.velocity[rows, 0], states.torque[rows, 0])
+    return States(states.time[::stride], *(signal[::stride] for signal in states.signals))
 
 
 def references_of(trace: Trace, period: float, stride: int) -> References:

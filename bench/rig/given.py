@@ -49,16 +49,10 @@ def recordings_of(given: Given | Sequence[Given], rig: Rig) -> list[Trace]:
     return [trace_of(one, rig) for one in every]
 
 
-_EFFORTS = ("torque", "force", "current", "voltage")
-
-
 def draft(inspection: Inspection, motor: str | None = None, axis: str | None = None) -> str:
-    """Text of a rig file; InputError where the catalogue has no such motor.
+    """Text of a rig file for the recording, with a motor by its name in the catalogue, and the axis picked of several.
 
-    Args:
-        inspection: of the recording.
-        motor: name in the motor catalogue.
-        axis: picked of several.
+    InputError where the catalogue has no such motor.
     """
     if motor is not None:
         catalogue_motor(motor, "--motor")
@@ -77,14 +71,9 @@ def draft(inspection: Inspection, motor: str | None = None, axis: str | None = N
 
 
 def drafted(path: Path, axis: str | None = None) -> tuple[Rig, str, str]:
-    """The rig that a recording drafts, where none is given: its text too, and what it assumes, in a line.
+    """The rig that a recording, or one axis of several in it, drafts: its text too, and what it assumes, in a line.
 
-    Args:
-        path: of the recording.
-        axis: to read where it holds several.
-
-    Raises:
-        InputError: the file leaves open what only the user knows.
+    InputError where the file leaves open what only the user knows.
     """
     recording = read_recording(path)
     found = inspect_recording(recording, GivenOptions(axis=axis))
@@ -115,7 +104,7 @@ def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]
         lines.append('# current = "effective"     # where the datasheet tells its values for Arms')
     if any("%" in text or "permille" in text for text in units):
         lines.append('# rated_torque = "? N*m"     # what 100 % of the recorded torque means, datasheet')
-    if not efforts & set(_EFFORTS):
+    if not efforts & {"torque", "force", "current", "voltage"}:
         lines.append("# no torque, force or current was found in the file: identification needs one of them")
     return lines
 

@@ -25,6 +25,11 @@ from bench.rig.values import RigTable, times, tolerance_of
 USUAL_TOLERANCE = 0.1
 #: kT over Ke in one unit: with the values of an equivalent DC machine, of one phase, between lines.
 CONVENTIONS = (1.0, 1.5, math.sqrt(3.0))
+#: Values for peak currents over those for effective ones, by which a datasheet may state them.
+PEAK_FACTORS: dict[str, float] = {
+    **dict.fromkeys(("torque_constant", "force_constant"), 1.0 / math.sqrt(2.0)),
+    **dict.fromkeys(("continuous_stall_current", "peak_current"), math.sqrt(2.0)),
+}
 DATASHEET = ("continuous_stall_torque", "continuous_stall_current", "peak_torque", "peak_current")
 
 
@@ -160,13 +165,10 @@ class Motor(RigTable):
 
     @model_validator(mode="after")
     def _as_peak_values(self) -> Motor:
-        """Values stated for effective currents, as values for peaks, which are sqrt(2) times as high."""
         if self.current == "peak":
             return self
-        factors = {1.0 / math.sqrt(2.0): ("torque_constant", "force_constant")}
-        factors[math.sqrt(2.0)] = ("continuous_stall_current", "peak_current")
-        stated = [(name, getattr(self, name), factor) for factor, names in factors.items() for name in names]
-        converted = {name: times(value, factor) for name, value, factor in stated if value is not None}
+        stated = {name: getattr(self, name) for name in PEAK_FACTORS}
+        converted = {name: times(value, PEAK_FACTORS[name]) for name, value in stated.items() if value is not None}
         return self.model_copy(update={**converted, "current": "peak"})
 
     @property

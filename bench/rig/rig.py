@@ -268,18 +268,16 @@ class Rig(RigTable):
 
     def of_joint(self, name: str) -> Rig:
         """The same rig with what `[joints.NAME]` says of a joint in place of what is said of all."""
-        own = self.joints.get(name, JointNotes())
+        own = self.joints.get(name)
+        if own is None:
+            return self
         motor, load, trace = self.motor, self.load or Load(), self.trace
         if own.torque_constant is not None:
             motor = motor.model_copy(update={"torque_constant": own.torque_constant})
-        load = load.model_copy(
-            update={"gear_ratio": own.gear_ratio or load.gear_ratio, "behind_rotor": own.torque == "joint side"}
-        )
+        gear = {"gear_ratio": own.gear_ratio or load.gear_ratio, "behind_rotor": own.torque == "joint side"}
         columns = {**trace.columns, **own.columns}
         trace = trace.model_copy(update={"columns": columns, "axis": own.axis or trace.axis})
-        return self.model_copy(
-            update={"motor": motor, "load": load if name in self.joints else self.load, "trace": trace}
-        )
+        return self.model_copy(update={"motor": motor, "load": load.model_copy(update=gear), "trace": trace})
 
     def effort(self, trace: Trace) -> tuple[Array, str]:
         """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.
@@ -355,10 +353,8 @@ class Rig(RigTable):
         if self.motor.of_back_emf is not None:
             constant = "force_constant" if self.motor.force_constant is not None else "torque_constant"
             yield self.model_copy(update={"motor": self.motor.model_copy(update={constant: self.motor.of_back_emf})})
-        tables = {"motor": self.motor} | ({} if self.load is None else {"load": self.load})
-        for name, table in tables.items():
-            for field in type(table).model_fields:
-                value = getattr(table, field)
+        for name, table in (("motor", self.motor), ("load", self.load or Load())):
+            for field, value in table:
                 if tolerance_of(value) > 0.0:
                     moved = table.model_copy(update={field: value + tolerance_of(value)})
                     yield self.model_copy(update={name: moved})
@@ -375,11 +371,7 @@ def shipped() -> dict[str, Path]:
 
 
 def rig_file(given: str | Path) -> Path:
-    """The file of a rig: as given, or of a shipped one by its name.
-
-    Raises:
-        InputError: neither a file nor a name.
-    """
+    """The file of a rig: as given, or of a shipped one by its name; InputError where it is neither."""
     path, known = Path(given), shipped()
     try:
         if path.suffix or path.name != str(given) or path.exists():
@@ -393,14 +385,10 @@ def rig_file(given: str | Path) -> Path:
 
 
 def load_rig(path: str | Path, defaults: Mapping[str, Any] | None = None) -> Rig:
-    """Read and check a rig file.
+    """Read and check a rig file, or a shipped one by its name.
 
-    Args:
-        path: of the file, or the name of a shipped rig.
-        defaults: keys and whole tables for those that the file leaves out, as TOML gives them.
-
-    Raises:
-        InputError: no such file, no TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
+    `defaults` are keys and whole tables for those that it leaves out, as TOML gives them. InputError: no such file, no
+    TOML, an unknown or missing key, a value of the wrong dimension or out of bounds.
     """
     path = rig_file(path)
     return Rig.of({**(defaults or {}), **read_toml(path, "a rig file")}, str(path))

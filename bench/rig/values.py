@@ -57,10 +57,8 @@ def times(value: float, factor: float) -> float:
 def si(unit: str, translated: bool = False) -> WrapValidator:
     """Validator that turns `"22.4 kg*cm**2"`, or `"22.4 +/- 0.5 kg*cm**2"`, into a number in an SI unit.
 
-    Args:
-        unit: of the value on a rotary axis.
-        translated: whether a linear axis has the value in metres and newtons; the kind of axis comes as `kind` in the
-            validation context.
+    That is the unit on a rotary axis; `translated`, a linear one has the value in metres and newtons. The kind of axis
+    comes as `kind` in the validation context.
     """
 
     def read(text: object, check: ValidatorFunctionWrapHandler, info: ValidationInfo) -> float:

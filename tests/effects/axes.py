@@ -10,9 +10,8 @@ from scipy.signal import lsim
 from bench.effects.present import Present
 from bench.effects.signals import Winding
 from bench.plant.axis_model import AxisModel, AxisParameters
-from bench.plant.closed_loop import States
 from bench.plant.drive import Cascade, References
-from bench.plant.plant import Plant
+from bench.plant.plant import Plant, States
 from bench.plant.run import run
 from bench.validation.independent.effects import KINDS, Effect
 from bench.validation.independent.sensors import Sensors

@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 
 from bench.plant.axis_model import AxisModel, AxisParameters
-from bench.plant.closed_loop import ClosedLoop, Listed, States
 from bench.plant.drive import sense_torque
+from bench.plant.plant import ClosedLoop, States
 from bench.plant.run import run_native
 
 
@@ -15,4 +15,5 @@ def open_loop(spec: mujoco.MjSpec, efforts: np.ndarray, position: float = 0.0, v
     model = spec.compile()
     time = np.arange(efforts.size) * model.opt.timestep
     nothing = AxisModel(AxisParameters(1.0))
-    return run_native(ClosedLoop(nothing, model, Listed(efforts[:, None]), time, position, velocity))
+    inputs = np.column_stack([efforts, np.zeros_like(efforts)])
+    return run_native(ClosedLoop(nothing, model, lambda start, stop: inputs[start:stop], time, position, velocity))

@@ -68,7 +68,7 @@ def test_stays_within_the_travel(name):
 
 def test_s_curve_by_hand():
     """1 s up to 2 rad/s**2, 1 s at it, 1 s back to zero: 4 rad/s, and as far as a symmetric rise goes, 6 rad."""
-    r = s_curve([1.0, 1.0, 1.0], [2.0, 2.0, 0.0], 0.25)
+    r = s_curve([(1.0, 2.0), (1.0, 2.0), (1.0, 0.0)], 0.25)
     assert r.velocity[-1] == pytest.approx(4.0)
     assert r.position[-1] == pytest.approx(6.0)
     assert r.acceleration[[0, 2, 4, 6, 8, 10, 12]] == pytest.approx([0.0, 1.0, 2.0, 2.0, 2.0, 1.0, 0.0])

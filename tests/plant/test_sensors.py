@@ -6,7 +6,7 @@ import pytest
 from bench.axis_kind import LINEAR
 from bench.errors import InputError
 from bench.plant.axis_model import AxisParameters, build_spec
-from bench.plant.closed_loop import States
+from bench.plant.plant import States
 from bench.plant.sensing import Sensors
 from bench.rig.motor import TorqueConstant
 from tests.plant.open_loop import open_loop

@@ -118,7 +118,7 @@ def test_blocks_move_as_the_whole(effects, monkeypatch):
     signals = {"position": 0.3 * np.sin(20.0 * time), "velocity": 6.0 * np.cos(20.0 * time)}
     swinging = Trace(time, signals, {"position": "rad", "velocity": "rad/s"}, "")
     whole = moving(swinging, *effects, friction=0.02)
-    monkeypatch.setattr("bench.plant.closed_loop.BLOCK_BYTES", 777)
+    monkeypatch.setattr("bench.plant.run.BLOCK_BYTES", 777)
     np.testing.assert_array_equal(moving(swinging, *effects, friction=0.02), whole)
 
 
