@@ -179,12 +179,8 @@ def _of_quantities(
 ) -> Iterator[Comparison]:
     """Comparisons of parameters and gaps.
 
-    Args:
-        baseline, now: the states.
-        under: now with the effects of the baseline; None where they are the same.
-        both_sets: the same where a change has to show with both sets of effects.
-        allowed: margins and spreads.
-        motion: whether motion or sampling differ.
+    `under` is now with the effects of the baseline, None where they are the same; `both_sets` is that where a change
+    has to show with both sets of effects.
     """
     for name, own in now.quantities.items():
         if name not in baseline.quantities or (name == VELOCITY_GAP and under is not None):
