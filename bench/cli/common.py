@@ -102,7 +102,7 @@ STDOUT = Path("-")
 def _everywhere(
     *,
     max_size: Annotated[
-        str | None, typer.Option("--max-size", help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")
+        str | None, typer.Option(help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")
     ] = None,
     debug: Annotated[bool, typer.Option("--debug", help="Print the whole traceback of a failure.")] = False,
 ) -> None:
@@ -262,6 +262,7 @@ class Subject:
 
     Attributes:
         rig: of it.
+        files: of the rig and of the robot, where they are given.
         read: how its recordings are read whole.
         joint: the robot's; None of an axis.
         along: the robot along a log; None of an axis.
@@ -269,10 +270,20 @@ class Subject:
     """
 
     rig: bench.Rig
+    files: tuple[Path | None, Path | None]
     read: Callable[[Path], bench.Trace]
     joint: str | None = None
     along: Callable[[Path], RobotAlong] | None = None
     options: dict[str, object] = field(default_factory=dict)
+
+    def provenance(
+        self, traces: Sequence[Path], options: Mapping[str, object], holdout: Path | None = None
+    ) -> dict[str, Any]:
+        """What a result of recordings rests on, with the options that change it."""
+        from bench.report.parts import provenance
+
+        rig, mjcf = self.files
+        return provenance(rig, traces, {**options, **self.options}, holdout, mjcf)
 
 
 def subject(
@@ -301,7 +312,7 @@ def subject(
         if rig is not None and draft is not None:
             raise InputError("--draft", "found with --rig", "allowed: without, for the rig that is drafted then")
         known = _drafted(trace, axis, draft) if rig is None else bench.load_rig(rig).on_axis(axis)
-        return Subject(known, lambda path: bench.read(path, known.trace))
+        return Subject(known, (rig, None), lambda path: bench.read(path, known.trace))
     from bench.plant.robot import Robot, joint_rig, poses_along, read_log
 
     robot = Robot.of(mjcf, joint)
@@ -321,7 +332,7 @@ def subject(
         ratio = within.load.gear_ratio if within.load is not None else 1.0
         return RobotAlong(mjcf, robot.joint, ratio, *poses_along(path, within, robot, stands))
 
-    return Subject(within, read, joint, along, {"joint": joint, "at": at or []})
+    return Subject(within, (rig, mjcf), read, joint, along, {"joint": joint, "at": at or []})
 
 
 def _one_joint(joints: Sequence[str] | None) -> str | None:

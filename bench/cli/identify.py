@@ -26,13 +26,11 @@ def identify(
     traces: common.TracesArgument,
     rig: common.BesideRigOption = None,
     json: common.JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder for figures and JSON.")] = None,
-    estimator: Annotated[Estimator, typer.Option("--estimator", help="lab: as in courses.")] = "regression",
+    out: Annotated[Path | None, typer.Option(help="Folder for figures and JSON.")] = None,
+    estimator: Annotated[Estimator, typer.Option(help="lab: as in courses.")] = "regression",
     refine: Annotated[bool, typer.Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
     offset: Annotated[bool, typer.Option("--offset", help="Fit a constant torque (force) too.")] = False,
-    cutoff: Annotated[
-        float | None, typer.Option("--cutoff", help="Filter's half-power frequency in Hz.", min=1e-6)
-    ] = None,
+    cutoff: Annotated[float | None, typer.Option(help="Filter's half-power frequency in Hz.", min=1e-6)] = None,
     axis_name: common.AxisOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,
@@ -43,21 +41,20 @@ def identify(
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
     from bench.fit.estimate import RefusedEstimateError
     from bench.report.identification import SCHEMA, identification, identification_json, moved
-    from bench.report.parts import provenance
 
     of = common.subject(rig, axis_name, mjcf, joint, at, traces[0], draft)
     axis = of.rig.model_copy(update={"offset": of.rig.offset or offset})
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
-    options = {"estimator": estimator, "refine": refine, "offset": axis.offset, "cutoff": cutoff, **of.options}
+    options = {"estimator": estimator, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
     try:
         with common.refusal_as_json(json, SCHEMA):
             estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
     except RefusedEstimateError as error:
-        known, why, basis = error.estimate, str(error), provenance(rig, traces, options, None, mjcf)
+        known, why, basis = error.estimate, str(error), of.provenance(traces, options)
         common.write_json(json, lambda: identification_json(known, None, why, basis))
         common.warn(known.warnings)
         raise
-    basis = provenance(rig, traces, options, None, mjcf)
+    basis = of.provenance(traces, options)
     motions = [] if out is None else moved(traces, axis, estimate, None if of.joint is None else of.read)
     found = identification(f"{axis.name}: {in_a_row(traces)}", axis.axis_kind, estimate, refinement, motions, basis)
     common.deliver(found, lambda: identification_json(estimate, refinement, None, basis), json, out, f".{figures}")
@@ -101,12 +98,10 @@ def _estimate(
 def diagnose(
     traces: common.TracesArgument,
     rig: common.BesideRigOption = None,
-    holdout: Annotated[
-        Path | None, typer.Option("--holdout", help="Another recording of the axis, not fitted.")
-    ] = None,
+    holdout: Annotated[Path | None, typer.Option(help="Another recording of the axis, not fitted.")] = None,
     json: common.JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder for model, figures and JSON.")] = None,
-    without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for model, figures and JSON.")] = None,
+    without: Annotated[list[str] | None, typer.Option(help="Effect not to try. Repeatable.")] = None,
     axis_name: common.AxisOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,
@@ -117,7 +112,6 @@ def diagnose(
     """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
     from bench.effects.present import named
     from bench.report.diagnosis import SCHEMA, diagnosis, diagnosis_json
-    from bench.report.parts import provenance
     from bench.report.terminal import progress
 
     of = common.subject(rig, axis_name, mjcf, joint, at, traces[0], draft)
@@ -128,7 +122,7 @@ def diagnose(
     with common.refusal_as_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
         recordings = [read(trace) for trace in traces]
         found = bench.diagnose(recordings, axis, other, excluded, done)
-    basis = provenance(rig, traces, {"without": sorted(excluded), **of.options}, holdout, mjcf)
+    basis = of.provenance(traces, {"without": sorted(excluded)}, holdout)
     moving = [] if out is None else _moving(found, of, traces[0], recordings[0])
     document = diagnosis(found, f"{axis.name}: {names}", basis, moving)
     common.deliver(document, lambda: diagnosis_json(found, basis), json, out, f".{figures}")
@@ -136,17 +130,17 @@ def diagnose(
 
 def robot(
     logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs of the robot, of any known format.")],
-    mjcf: Annotated[Path, typer.Option("--mjcf", help="MJCF of the robot.")],
-    out: Annotated[Path, typer.Option("--out", help="Folder for MJCF, models, page and JSON.")],
-    holdout: Annotated[Path | None, typer.Option("--holdout", help="Another log of it, not fitted.")] = None,
+    mjcf: Annotated[Path, typer.Option(help="MJCF of the robot.")],
+    out: Annotated[Path, typer.Option(help="Folder for MJCF, models, page and JSON.")],
+    holdout: Annotated[Path | None, typer.Option(help="Another log of it, not fitted.")] = None,
     rig: common.OptionalRigOption = None,
-    joint: Annotated[list[str] | None, typer.Option("--joint", help="Only this joint. Repeatable.")] = None,
+    joint: Annotated[list[str] | None, typer.Option(help="Only this joint. Repeatable.")] = None,
     at: common.AtOption = None,
     payload: Annotated[
         str | None,
-        typer.Option("--payload", help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
+        typer.Option(help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
     ] = None,
-    without: Annotated[list[str] | None, typer.Option("--without", help="Effect not to try. Repeatable.")] = None,
+    without: Annotated[list[str] | None, typer.Option(help="Effect not to try. Repeatable.")] = None,
     json: common.JsonOption = None,
 ) -> None:
     """Identify every joint of a robot from its logs, find what each is missing, and write its MJCF with all of it."""

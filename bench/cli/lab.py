@@ -11,21 +11,21 @@ from bench.cli.common import list_files, printed, say
 
 
 def lab(
-    data: Annotated[Path | None, typer.Option("--data", help="Folder of your recordings; else synthetic ones.")] = None,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the report, or the grades.")] = Path("bench_lab"),
+    data: Annotated[Path | None, typer.Option(help="Folder of your recordings; else synthetic ones.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the report, or the grades.")] = Path("bench_lab"),
     synthetic: Annotated[
         Path | None, typer.Option("--record", help="Only simulate the course's recordings, into this folder.")
     ] = None,
     students: Annotated[
-        int | None, typer.Option("--students", help="With --record: a folder and an axis of its own for each.")
+        int | None, typer.Option(help="With --record: a folder and an axis of its own for each.")
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="With --record: of everything drawn.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="With --record: of everything drawn.")] = 0,
     submissions: Annotated[
         Path | None, typer.Option("--grade", help="Grade the filled forms in this folder; with --truth.")
     ] = None,
-    truth: Annotated[Path | None, typer.Option("--truth", help="Sealed truth that --students wrote.")] = None,
+    truth: Annotated[Path | None, typer.Option(help="Sealed truth that --students wrote.")] = None,
     notebooks: Annotated[
-        Path | None, typer.Option("--notebooks", help="Only write a notebook for each task, into this folder.")
+        Path | None, typer.Option(help="Only write a notebook for each task, into this folder.")
     ] = None,
     folders: Annotated[
         Path | None, typer.Option("--questions", help="Three questions for each student of this class' folder.")

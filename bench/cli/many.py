@@ -35,8 +35,8 @@ Scheduler = Annotated[str | None, typer.Option("--scheduler", help="Dask cluster
 
 
 def validate(
-    rigs: Annotated[int, typer.Option("--rigs", help="Runs: an axis, a motion and noise each.", min=1)] = 64,
-    seed: Annotated[int, typer.Option("--seed", help="Of all that is drawn.", min=0)] = 0,
+    rigs: Annotated[int, typer.Option(help="Runs: an axis, a motion and noise each.", min=1)] = 64,
+    seed: Annotated[int, typer.Option(help="Of all that is drawn.", min=0)] = 0,
     effects: Effects = "0",
     diagnose: Annotated[
         bool, typer.Option("--diagnose", help="Name what is missing too, a second or two a run.")
@@ -46,10 +46,10 @@ def validate(
     into: Into = None,
     effect: EffectOption = None,
     strength: Strength = None,
-    workers: Annotated[int | None, typer.Option("--workers", help="Processes on this machine.", min=1)] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes on this machine.", min=1)] = None,
     scheduler: Scheduler = None,
     json: JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder for page, tables, figures and JSON.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
     """How far off numbers are, how often intervals and names hold: by Monte Carlo, or of effects in your recording."""
     from bench.report.parts import provenance
@@ -124,15 +124,15 @@ def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis,
 
 def fleet(
     manifest: Annotated[Path, typer.Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
-    out: Annotated[Path, typer.Option("--out", help="Folder for results, table, summary and page.")],
+    out: Annotated[Path, typer.Option(help="Folder for results, table, summary and page.")],
     diagnose: Annotated[bool, typer.Option("--diagnose", help="Name missing effects too.")] = False,
     retry: Annotated[bool, typer.Option("--retry", help="Do again what failed or timed out.")] = False,
-    deadline: Annotated[float, typer.Option("--deadline", help="Of one recording, in s.", min=0.1)] = 120.0,
-    memory: Annotated[float, typer.Option("--memory", help="Of one recording, in GB.", min=0.25)] = 4.0,
-    workers: Annotated[int | None, typer.Option("--workers", help="Processes (preset: one a core).", min=1)] = None,
-    scheduler: Annotated[str | None, typer.Option("--scheduler", help="Dask's, e.g. tcp://host:8786.")] = None,
+    deadline: Annotated[float, typer.Option(help="Of one recording, in s.", min=0.1)] = 120.0,
+    memory: Annotated[float, typer.Option(help="Of one recording, in GB.", min=0.25)] = 4.0,
+    workers: Annotated[int | None, typer.Option(help="Processes (preset: one a core).", min=1)] = None,
+    scheduler: Annotated[str | None, typer.Option(help="Dask's, e.g. tcp://host:8786.")] = None,
     storage: Annotated[
-        list[str] | None, typer.Option("--storage", help="fsspec's name of one that the manifest may name. Repeatable.")
+        list[str] | None, typer.Option(help="fsspec's name of one that the manifest may name. Repeatable.")
     ] = None,
     json: JsonOption = None,
 ) -> None:

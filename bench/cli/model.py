@@ -35,7 +35,7 @@ def replay(
     trace: Annotated[Path, typer.Argument(help="Recording to run it along.")],
     out: Annotated[
         Path,
-        typer.Option("--out", help="File to write: CSV, or joint states for Foxglove and Rerun where it is .mcap."),
+        typer.Option(help="File to write: CSV, or joint states for Foxglove and Rerun where it is .mcap."),
     ],
     rig: BesideRigOption = None,
     axis_name: AxisOption = None,
@@ -78,15 +78,15 @@ def view(
     trace: Annotated[
         Path | None, typer.Argument(help="Recording to run it along; without, it follows a profile.")
     ] = None,
-    out: Annotated[Path, typer.Option("--out", help="Page to write, for any browser: .html, all in one file.")] = Path(
+    out: Annotated[Path, typer.Option(help="Page to write, for any browser: .html, all in one file.")] = Path(
         "view.html"
     ),
     rig: BesideRigOption = None,
     profile: Annotated[str, common.profile_option("Without a recording:")] = DEFAULT,
     start: Annotated[float | None, typer.Option("--from", help="Show it from this time on, in s.")] = None,
     stop: Annotated[float | None, typer.Option("--to", help="Show it up to this time, in s.")] = None,
-    video: Annotated[Path | None, typer.Option("--video", help="Video to write: .mp4, rendered by MuJoCo.")] = None,
-    slowed: Annotated[float, typer.Option("--slowed", help="How many times slower the video plays.", min=1.0)] = 1.0,
+    video: Annotated[Path | None, typer.Option(help="Video to write: .mp4, rendered by MuJoCo.")] = None,
+    slowed: Annotated[float, typer.Option(help="How many times slower the video plays.", min=1.0)] = 1.0,
     axis_name: AxisOption = None,
     mjcf: MjcfOption = None,
     joint: JointOption = None,
@@ -146,23 +146,21 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
 
 def export(
     model: ModelArgument,
-    out: Annotated[Path, typer.Option("--out", help="File to write.")],
-    mjcf: Annotated[Path | None, typer.Option("--mjcf", help="MJCF of the robot that has the joint.")] = None,
+    out: Annotated[Path, typer.Option(help="File to write.")],
+    mjcf: Annotated[Path | None, typer.Option(help="MJCF of the robot that has the joint.")] = None,
     joint: Annotated[
-        list[str] | None, typer.Option("--joint", help="Joint that the model goes onto; of several, repeatable.")
+        list[str] | None, typer.Option(help="Joint that the model goes onto; of several, repeatable.")
     ] = None,
     to: Annotated[
-        str, typer.Option("--to", help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
+        str, typer.Option(help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
     ] = "mjcf",
-    actuator: Annotated[
-        str | None, typer.Option("--actuator", help="With --to bam: BAM's name of the actuator.")
-    ] = None,
+    actuator: Annotated[str | None, typer.Option(help="With --to bam: BAM's name of the actuator.")] = None,
     snippet: Annotated[bool, typer.Option("--snippet", help="A default class and a body on this joint alone.")] = False,
     ranges: Annotated[
-        Path | None, typer.Option("--ranges", help="JSON of identify or diagnose: ranges for domain randomisation.")
+        Path | None, typer.Option(help="JSON of identify or diagnose: ranges for domain randomisation.")
     ] = None,
     armature: Annotated[
-        str | None, typer.Option("--armature", help="Inertia that becomes the joint's armature: motor, or all.")
+        str | None, typer.Option(help="Inertia that becomes the joint's armature: motor, or all.")
     ] = None,
 ) -> None:
     """Put a diagnosed model into a robot's MJCF, or write it as another simulator takes it, or ranges of its values."""
@@ -213,7 +211,7 @@ def _mjcf(
 def compensate(
     model: ModelArgument,
     rig: RigOption,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the tables.")],
+    out: Annotated[Path, typer.Option(help="Folder for the tables.")],
     profile: Annotated[str, common.profile_option("Motion to track:")] = DEFAULT,
 ) -> None:
     """Make of a diagnosed model what its drive feeds forward; say how much better it tracks with it, by simulation."""

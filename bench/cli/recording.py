@@ -17,9 +17,9 @@ def inspect(
     file: Annotated[Path, typer.Argument(metavar="TRACE", help="Recording of any known format.")],
     rig: OptionalRigOption = None,
     json: JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Picture of every signal: .png, .pdf or .svg.")] = None,
-    draft: Annotated[Path | None, typer.Option("--draft", help="Rig file to write, as far as the file tells.")] = None,
-    motor: Annotated[str | None, typer.Option("--motor", help="For --draft: a motor of the catalogue.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Picture of every signal: .png, .pdf or .svg.")] = None,
+    draft: Annotated[Path | None, typer.Option(help="Rig file to write, as far as the file tells.")] = None,
+    motor: Annotated[str | None, typer.Option(help="For --draft: a motor of the catalogue.")] = None,
     axis_name: AxisOption = None,
     report: ReportOption = None,
 ) -> None:
@@ -54,7 +54,7 @@ def friction(
     traces: Annotated[list[Path], typer.Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
     rig: RigOption,
     json: JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Figure to write: .png, .pdf or .svg.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Figure to write: .png, .pdf or .svg.")] = None,
     axis_name: AxisOption = None,
     report: ReportOption = None,
 ) -> None:
@@ -76,7 +76,7 @@ def friction(
 def limits(
     trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
     rig: RigOption,
-    out: Annotated[Path, typer.Option("--out", help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
+    out: Annotated[Path, typer.Option(help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
     axis_name: AxisOption = None,
 ) -> None:
     """Draw a recording into its motor's speed-torque diagram; say how much reserve it leaves."""

@@ -20,8 +20,8 @@ SHOWN = 12
 
 
 def demo(
-    out: Annotated[Path, typer.Option("--out", help="Folder for trace, truth, model and page.")] = Path("bench_demo"),
-    seed: Annotated[int, typer.Option("--seed", help="Draws the effect that is hidden.", min=0)] = SHOWN,
+    out: Annotated[Path, typer.Option(help="Folder for trace, truth, model and page.")] = Path("bench_demo"),
+    seed: Annotated[int, typer.Option(help="Draws the effect that is hidden.", min=0)] = SHOWN,
 ) -> None:
     """Hide an effect in a simulated axis, find it, add it to the model, and set truth beside what was found."""
     from bench.demo import demo as run_demo
@@ -35,9 +35,9 @@ def demo(
 
 def simulate(
     rig: RigArgument,
-    out: Annotated[Path, typer.Option("--out", help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
+    out: Annotated[Path, typer.Option(help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
     profile: Annotated[str, common.profile_option("Motion:")] = DEFAULT,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of the sensors' noise.", min=0)] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the sensors' noise.", min=0)] = 0,
     effect: Annotated[list[str] | None, common.effect_option("NAME:key=value,... to add; see bench effects.")] = None,
     report: ReportOption = None,
 ) -> None:
@@ -65,11 +65,11 @@ def simulate(
 
 def plan(
     rig: RigOption,
-    out: Annotated[Path, typer.Option("--out", help="CSV of the motion, for a controller.")],
+    out: Annotated[Path, typer.Option(help="CSV of the motion, for a controller.")],
     wanted: Annotated[
         str | None, typer.Option("--for", help="NAME:key=value,... of an effect to determine; see bench effects.")
     ] = None,
-    period: Annotated[float, typer.Option("--period", help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
+    period: Annotated[float, typer.Option(help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
 ) -> None:
     """Plan the motion to record inside the rig's limits: the one that tells best, and how well it will."""
     from bench.effects.present import parse_effect
@@ -95,7 +95,7 @@ def plan(
 
 def rigs(
     name: Annotated[str | None, typer.Argument(help="A shipped rig, or a rig file of your own; all without.")] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Copy of the rig file to write.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Copy of the rig file to write.")] = None,
 ) -> None:
     """List the rigs that are shipped, copy one, or say which commands a rig suffices for and all that is missing."""
     from bench.rig.rig import lacking, rig_file, shipped, without_constant
@@ -136,7 +136,7 @@ def effects(
 def report(
     folders: Annotated[list[Path], typer.Argument(metavar="DIR...", help="Folders that --out of a command wrote.")],
     script: Annotated[
-        Path | None, typer.Option("--script", help="Script file to write that the pages share, for many of them.")
+        Path | None, typer.Option(help="Script file to write that the pages share, for many of them.")
     ] = None,
     opened: Annotated[bool, typer.Option("--open", help="Open the pages in the browser.")] = False,
 ) -> None:
