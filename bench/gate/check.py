@@ -245,16 +245,19 @@ class Seen:
         return effort, direct if direct in trace else next(name for name in names if name not in ("torque", "force"))
 
     def balance(self, lengths: Iterable[int] = LENGTHS) -> Balanced | None:
-        """The torque balance over windows of the length that explains most; None without effort, or if too short.
-
-        Args:
-            lengths: of windows to try, LENGTHS or some of them - samples.
-        """
+        """The torque balance over windows of the length that explains most, of these - samples -; None without any."""
         for length in lengths:
             if length not in self._balances:
                 self._balances[length] = balanced(self._sums, length)
         found = [one for length in lengths if (one := self._balances[length]) is not None]
-        return max(found, key=lambda one: one.by_position) if found else None
+        return max(found, key=lambda one: one.by_position, default=None)
+
+    @property
+    def unbalanced(self) -> str:
+        """Why there is no balance."""
+        if self.effort is None or not self.tells_motion:
+            return "not both effort and motion are recorded"
+        return f"too few samples, or {self.effort[1]} never changes"
 
     @cached_property
     def _sums(self) -> list[Sums]:

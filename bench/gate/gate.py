@@ -108,14 +108,13 @@ def joined(parts: Sequence[Sequence[Check]]) -> tuple[Check, ...]:
 
     A part in which the axis stands still is no evidence against the others. The first part has every check.
     """
-    names = [check.name for check in parts[0]]
-    return tuple(_worst([one for part in parts for one in part if one.name == name]) for name in names)
-
-
-def _worst(same: Sequence[Check]) -> Check:
-    silent = [one for one in same if one.status == "not_applicable" or (one.status == "fail" and one.unanswerable)]
-    answered = [one for one in same if one not in silent] or silent
-    return min(answered, key=lambda one: STATUSES.index(one.status))
+    worst = []
+    for check in parts[0]:
+        same = [one for part in parts for one in part if one.name == check.name]
+        silent = [one for one in same if one.status == "not_applicable" or (one.status == "fail" and one.unanswerable)]
+        answered = [one for one in same if one not in silent] or silent
+        worst.append(min(answered, key=lambda one: STATUSES.index(one.status)))
+    return tuple(worst)
 
 
 def warnings_of(checks: Sequence[Check]) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -189,9 +188,9 @@ def resolution(seen: Seen) -> Check:
         return absent(RESOLUTION, f"only {len(trace)} samples", ALLOWED_STEPS)
     steps = {}
     for what, names in (("motion", MOTION), ("effort", EFFORTS)):
-        fine = [_steps(trace, name) for name in names if name in trace and np.ptp(trace[name]) > 0.0]
-        if fine:
-            steps[what] = max(fine)
+        changing = [trace[name] for name in names if name in trace and np.ptp(trace[name]) > 0.0]
+        if changing:
+            steps[what] = max(float(np.std(values)) / resolution_of(values) for values in changing)
     if not steps:
         return absent(RESOLUTION, "nothing moves", ALLOWED_STEPS)
     found = ", ".join(f"{count:.3g} steps within the spread of the {what}" for what, count in steps.items())
@@ -200,9 +199,3 @@ def resolution(seen: Seen) -> Check:
     if worst < COARSE:
         return Check(RESOLUTION, "fail", found, ALLOWED_STEPS, advice, unanswerable=True)
     return Check(RESOLUTION, "warn" if worst < FINE else "pass", found, ALLOWED_STEPS, advice * (worst < FINE))
-
-
-def _steps(trace: Trace, name: str) -> float:
-    """Standard deviation of a signal in its smallest steps."""
-    step = resolution_of(trace[name])
-    return float(np.std(trace[name])) / step if step > 0.0 else math.inf

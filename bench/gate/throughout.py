@@ -41,11 +41,10 @@ ALLOWED = "one balance of effort and motion, from beginning to end"
 
 def holds(seen: Seen) -> Check:
     """Whether one balance holds throughout, and the likeliest fault where none does."""
-    if seen.effort is None or not seen.tells_motion:
-        return absent(NAME, "not both effort and motion are recorded", ALLOWED)
-    fitted, (_, name) = seen.balance(), seen.effort
-    if fitted is None:
-        return absent(NAME, f"too few samples, or {name} never changes", ALLOWED)
+    fitted = seen.balance()
+    if seen.effort is None or fitted is None:
+        return absent(NAME, seen.unbalanced, ALLOWED)
+    _, name = seen.effort
     for found, advice in _in_blocks(fitted, name, seen.trace):
         return Check(NAME, "fail", found, ALLOWED, advice)
     for found, advice, left in _delayed(fitted, name, seen.trace):
