@@ -59,16 +59,11 @@ class AxisKind:
         return words(self.parameter(term))
 
     def base_parameters(self, effort_unit: str | None = None) -> dict[str, str]:
-        """Names of J, K_w and K_0 with their units; `effort_unit` as of `parameter_unit`."""
+        """Names of J, K_w and K_0 with their units; `effort_unit` as of `unit`."""
         return {self.parameter(term): self.parameter_unit(term, effort_unit) for term in (INERTIA, VISCOUS, COULOMB)}
 
     def parameter_unit(self, term: str, effort_unit: str | None = None) -> str:
-        """Unit of the coefficient of a term, e.g. kg*m**2 of INERTIA, or A*s**2/rad where the effort stands in A.
-
-        Args:
-            term: of the equation of motion.
-            effort_unit: that recordings give, where the rig cannot turn it into torque or force.
-        """
+        """Unit of the coefficient of a term, e.g. kg*m**2 of INERTIA; `effort_unit` as of `unit`."""
         effort = effort_unit or self.effort_unit
         if term == INERTIA and effort == self.effort_unit:
             return self.inertia_unit

@@ -49,8 +49,7 @@ def marker(path: Path) -> Path:
 def read_bytes(path: str | Path, kind: str, replaced: bool = False) -> bytes:
     """Content of a regular file; `kind` is what it should be, for messages, e.g. `a trace`.
 
-    Raises:
-        InputError: not there, not a regular file, not readable, or beyond the bound on size.
+    InputError: not there, not a regular file, not readable, or beyond the bound on size.
     """
     with opened(Path(path), kind, replaced) as file:
         require_size(path, size := os.fstat(file.fileno()).st_size)
@@ -118,7 +117,9 @@ def keeping(inputs: Iterable[Path]) -> Iterator[None]:
     """Until the outermost such block ends no output replaces one of these files, nor any read within, by any link."""
     outer = _TOUCHED.get()
     touched = outer or _Touched()
-    touched.read.update(_identity(state) for path in inputs if (state := _state(path)))
+    for path in inputs:
+        with suppress(OSError, ValueError):  # there is none, which reading it will report
+            touched.read.add(_identity(path.stat()))
     token = _TOUCHED.set(touched)
     try:
         yield
@@ -126,24 +127,12 @@ def keeping(inputs: Iterable[Path]) -> Iterator[None]:
         _TOUCHED.reset(token)
 
 
-def _state(path: Path) -> os.stat_result | None:
-    """Of a file; None if there is none, which reading it will report."""
-    try:
-        return path.stat()
-    except (OSError, ValueError):
-        return None
-
-
 def _identity(state: os.stat_result) -> Identity:
     return state.st_dev, state.st_ino
 
 
 def require_writable(path: str | Path) -> Path:
-    """The file of an output, links resolved.
-
-    Raises:
-        InputError: it is an input, a folder, a pipe or a device, or a loop of links leads to it.
-    """
+    """The file of an output, links resolved; InputError if it is an input, a folder, a pipe, a device or a loop."""
     path = Path(path)
     try:
         target = path.resolve()
@@ -167,10 +156,7 @@ def whole(path: str | Path, lasting: bool = True) -> Iterator[Path]:
 
     The file is on the disk before it takes the name, unless it is one of many that can be made again (not `lasting`).
     Links are followed; permissions are those of the file that is replaced, else what the umask leaves. Its folder is
-    made; what a run that was killed has left in it is removed.
-
-    Raises:
-        InputError: the place cannot be written to, or is an input.
+    made; what a run that was killed has left in it is removed. InputError: it cannot be written to, or is an input.
     """
     target = require_writable(path)
     try:

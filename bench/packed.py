@@ -30,11 +30,9 @@ _SERIES = {kind.__name__: kind for kind in (tuple, list, frozenset)}
 
 
 def pack(path: Path, result: object) -> None:
-    """Write a dataclass of the bench whole into a file.
+    """Write a dataclass of the bench whole into a file; InputError where that cannot be written.
 
-    Raises:
-        InputError: the file cannot be written.
-        TypeError: a part of it is neither a dataclass, an effect, an array, a number nor a text, nor made of those.
+    TypeError: a part of it is neither a dataclass, an effect, an array, a number nor a text, nor made of those.
     """
     arrays: dict[str, Array] = {}
     parts = json.dumps(_pack(result, arrays))
@@ -44,11 +42,7 @@ def pack(path: Path, result: object) -> None:
 
 
 def unpack(path: Path, kind: type) -> Any:  # noqa: ANN401 - of this kind
-    """What `pack` wrote of a result of this kind.
-
-    Raises:
-        InputError: no such file, or one that another version of the bench or somebody else wrote.
-    """
+    """What `pack` wrote of a result of this kind; InputError: no such file, or of another version or somebody else."""
     content = read_bytes(path, "a packed result")
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as stored:

@@ -119,11 +119,7 @@ def _leave_output() -> None:
 
 
 def _add_offered() -> None:
-    """Add the commands of other packages.
-
-    Raises:
-        InputError: what one offers is no function, or has the name of a command of the bench.
-    """
+    """Add the commands of other packages; InputError if one is no function, or has the name of one of the bench."""
     own = {command.__name__ for command in COMMANDS}
     for entry in entry_points(group=GROUP):
         offered: Callable[..., None] = entry.load()

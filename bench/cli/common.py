@@ -112,8 +112,7 @@ def _everywhere(
 def guarded(verb: Callable[..., None]) -> Callable[..., None]:
     """A command that takes `--debug` and `--max-size` too, and whose outputs replace none of its inputs.
 
-    Raises:
-        InputError: before any work, where an output is an input or `--json` names a folder that is not there.
+    InputError: before any work, where an output is an input or `--json` names a folder that is not there.
     """
     signatures = (inspect.signature(each, eval_str=True) for each in (verb, _everywhere))
     taken = [one.replace(kind=one.KEYWORD_ONLY) for each in signatures for one in each.parameters.values()]
@@ -148,11 +147,7 @@ def _require_places(given: Mapping[str, object]) -> None:
 
 
 def write_json(path: Path | None, text: Callable[[], str]) -> None:
-    """Write JSON to a file in an existing folder, or to standard output, where it is asked for: only then it is made.
-
-    Raises:
-        InputError: a place that cannot be written to.
-    """
+    """Write JSON to a file, or to standard output, where it is asked for: only then it is made."""
     if path == STDOUT:
         typer.echo(text())
     elif path is not None:
@@ -160,11 +155,7 @@ def write_json(path: Path | None, text: Callable[[], str]) -> None:
 
 
 def write_page(path: Path | None, document: Document) -> None:
-    """Write the page of a result to a file, where one is asked for.
-
-    Raises:
-        InputError: another ending than .html, or a place that cannot be written to.
-    """
+    """Write the page of a result to a file, where one is asked for; InputError for another ending than .html."""
     if path is not None:
         from bench.report.publish import write_html
 
@@ -172,11 +163,7 @@ def write_page(path: Path | None, document: Document) -> None:
 
 
 def write_picture(path: Path | None, picture: Picture) -> None:
-    """Write a picture to a file, where one is asked for; the ending decides the format.
-
-    Raises:
-        InputError: an ending that is no picture's, or a place that cannot be written to.
-    """
+    """Write a picture to a file, where one is asked for; InputError for an ending that is no picture's."""
     if path is not None:
         from bench.report.figures import drawn, save  # matplotlib: 0.35 s
 
@@ -295,15 +282,9 @@ def subject(
     trace: Path | None,
     draft: Path | None = None,
 ) -> Subject:
-    """The axis of a rig file, or of one drafted from a recording, or the joint of an MJCF with or without a rig.
+    """The axis of a rig file, or of one drafted from the first recording, or the joint of an MJCF; by these options.
 
-    Args:
-        rig, axis, mjcf, joints, at: as the options of these names have them.
-        trace: the first recording.
-        draft: where a drafted rig is written.
-
-    Raises:
-        InputError: neither is given, options that do not go together, or a file that cannot be read.
+    InputError: neither is given, options that do not go together, or a file that cannot be read.
     """
     joint = _one_joint(joints)
     if mjcf is None:

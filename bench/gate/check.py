@@ -152,14 +152,7 @@ class Sums:
 
     @classmethod
     def of(cls, trace: Trace, speed: Array, effort: Array, part: slice) -> Sums:
-        """The sums of a stretch.
-
-        Args:
-            trace: the recording.
-            speed: over the stretch - rad/s (m/s) - (n,).
-            effort: over the recording.
-            part: the stretch.
-        """
+        """The sums of a stretch, from the speed over it - rad/s (m/s) - (n,) - and the effort over the recording."""
         period = trace.sample_period
         position = trace["position"][part] if "position" in trace else integrated(speed, period)
         known = (speed, np.sign(speed), position - position.mean(), np.sin(position), np.cos(position), effort[part])

@@ -65,8 +65,7 @@ class Gated:
 def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -> Gated:
     """Run checks on a recording, or on a part of one.
 
-    Raises:
-        InputError: rig and recording do not fit together, or a value that no axis can have.
+    InputError: rig and recording do not fit together, or a value that no axis can have.
     """
     require_plausible(trace)
     seen, checks = Seen(trace, rig), list[Check]()
@@ -80,11 +79,7 @@ def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -
 
 
 def passed(trace: Trace, rig: Rig, looks: Sequence[Look] = CHECKS) -> Gated:
-    """The gated recording.
-
-    Raises:
-        InputError, UnanswerableError: the first check that fails.
-    """
+    """The gated recording; the first check that fails is an InputError or UnanswerableError."""
     gated = gate(trace, rig, looks)
     require(gated.checks, trace)
     return gated

@@ -68,7 +68,8 @@ def compared(seen: Seen) -> SpeedAgainstPosition | None:
     if not spans:
         return None
     moved, claimed, change = (np.concatenate(column) for column in zip(*spans, strict=True))
-    if max(rms(moved), rms(claimed)) <= STEPS * _step(trace):
+    step = max(resolution_of(trace["velocity"]), white_noise(trace["velocity"])) * trace.sample_period * math.sqrt(SPAN)
+    if max(rms(moved), rms(claimed)) <= STEPS * max(resolution_of(trace["position"]), step):
         return None
     columns = np.column_stack([moved, change, np.full(moved.size, SPAN * trace.sample_period)])
     scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
@@ -104,9 +105,3 @@ def _spans(trace: Trace, part: slice) -> tuple[Array, ...]:
     position, velocity = trace["position"][part], trace["velocity"][part]
     columns = position, integrated(velocity, period), velocity
     return tuple(values[SPAN:] - values[:-SPAN] for values in columns)
-
-
-def _step(trace: Trace) -> float:
-    """By how much the resolution of both signals, or noise of the speed, moves a span - rad (m)."""
-    velocity = max(resolution_of(trace["velocity"]), white_noise(trace["velocity"]))
-    return max(resolution_of(trace["position"]), velocity * trace.sample_period * math.sqrt(SPAN))

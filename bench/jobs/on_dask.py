@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from functools import partial
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 from uuid import uuid4
 
 from distributed import Client, Future, KilledWorker, Security, Worker, WorkerPlugin, as_completed, get_worker
@@ -20,10 +20,7 @@ from distributed.comm.core import connect
 
 from bench import __version__
 from bench.errors import InputError
-from bench.jobs.process import Failure, Limits, WorkerProcess, raised
-
-Item = TypeVar("Item")
-Result = TypeVar("Result")
+from bench.jobs.process import Failure, Item, Limits, Result, WorkerProcess, raised
 
 #: Seconds within which a scheduler has to answer.
 ANSWERS = 15
