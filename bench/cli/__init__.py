@@ -90,7 +90,10 @@ LONGEST = 6000
 def main() -> None:
     """Entry point of `bench`: errors become one line on standard error and an exit status."""
     try:
-        _encode_everything()
+        if sys.stdout is None:
+            raise InputError("standard output", "is closed", "send it to a file, or to /dev/null")
+        if isinstance(sys.stdout, io.TextIOWrapper):
+            sys.stdout.reconfigure(errors="backslashreplace")  # as standard error is
         _add_offered()
         status = app(standalone_mode=False)
         sys.stdout.flush()
@@ -128,14 +131,6 @@ def _add_offered() -> None:
             raise InputError(f"{GROUP}: {entry.value}", found, "allowed: a function under a name of its own")
         if entry.name not in {known.name for known in app.registered_commands}:
             app.command(entry.name)(guarded(offered))
-
-
-def _encode_everything() -> None:
-    """Have characters that standard output cannot encode written out, as standard error does; InputError if closed."""
-    if sys.stdout is None:
-        raise InputError("standard output", "is closed", "send it to a file, or to /dev/null")
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _fault(fault: Exception) -> str:

@@ -120,7 +120,12 @@ def guarded(verb: Callable[..., None]) -> Callable[..., None]:
     @functools.wraps(verb)
     def command(max_size: str | None, debug: bool, **given: object) -> None:  # `debug` is `bench.cli.main`'s
         with bounded(max_size), keeping(path for _, path in _paths(given, read=True)):
-            _require_places(given)
+            for name, path in _paths(given, read=False):
+                if path != STDOUT and not (name in FOLDERS and path.is_dir()):
+                    require_writable(path)
+            json, out = given.get("json"), given.get("out")
+            if isinstance(json, Path) and json != STDOUT and not json.parent.is_dir() and json.parent != out:
+                raise InputError(json, f"found no folder '{json.parent}'", "allowed: a file in a folder that is there")
             verb(**given)
 
     vars(command)["__signature__"] = inspect.Signature(taken)
@@ -135,15 +140,6 @@ def _paths(given: Mapping[str, object], read: bool) -> Iterator[tuple[str, Path]
         if (name in written) is not read:
             paths = value if isinstance(value, list) else [value]
             yield from ((name, path) for path in paths if isinstance(path, Path))
-
-
-def _require_places(given: Mapping[str, object]) -> None:
-    for name, path in _paths(given, read=False):
-        if path != STDOUT and not (name in FOLDERS and path.is_dir()):
-            require_writable(path)
-    json, out = given.get("json"), given.get("out")
-    if isinstance(json, Path) and json != STDOUT and not json.parent.is_dir() and json.parent != out:
-        raise InputError(json, f"found no folder '{json.parent}'", "allowed: a file in a folder that is there")
 
 
 def write_json(path: Path | None, text: Callable[[], str]) -> None:
@@ -286,7 +282,12 @@ def subject(
 
     InputError: neither is given, options that do not go together, or a file that cannot be read.
     """
-    joint = _one_joint(joints)
+    named = [*dict.fromkeys(joints or [])]
+    if len(named) > 1:
+        every = " ".join(f"--joint {name}" for name in named)
+        allowed = f"allowed: one here; several together: bench robot LOG --mjcf ROBOT {every} --out DIR"
+        raise InputError("--joint", f"found {', '.join(named)}", allowed)
+    joint = next(iter(named), None)
     if mjcf is None:
         if joint is not None or at:
             raise InputError("--joint" if joint is not None else "--at", "found without --mjcf", "allowed: with --mjcf")
@@ -314,16 +315,6 @@ def subject(
         return RobotAlong(mjcf, robot.joint, ratio, *poses_along(path, within, robot, stands))
 
     return Subject(within, (rig, mjcf), read, joint, along, {"joint": joint, "at": at or []})
-
-
-def _one_joint(joints: Sequence[str] | None) -> str | None:
-    """The joint that a command for one is given; None without. InputError where several are, as `bench robot` takes."""
-    named = [*dict.fromkeys(joints or [])]
-    if len(named) > 1:
-        every = " ".join(f"--joint {name}" for name in named)
-        allowed = f"allowed: one here; several together: bench robot LOG --mjcf ROBOT {every} --out DIR"
-        raise InputError("--joint", f"found {', '.join(named)}", allowed)
-    return named[0] if named else None
 
 
 def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.Rig:

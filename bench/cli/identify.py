@@ -161,7 +161,12 @@ def robot(
     folder = out if found.answered else None
     document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder)
     common.deliver(document, lambda: robot_json(found, basis), json, folder)
-    _require_answers(found)
+    if not found.answered:  # the first reason
+        first = next(iter(found.joints.values()))
+        if first.failed:
+            raise InputError("none of the joints could be answered", f"{first.name}: {first.failed}", "see the table")
+        reason = f"{first.name}: {next(iter(first.refused.values()))}"
+        raise UndeterminedError("any joint", reason, first.record)
 
 
 def _carried(text: str | None) -> AddedBody | str | None:
@@ -178,17 +183,6 @@ def _carried(text: str | None) -> AddedBody | str | None:
     if len(centre) != 3:
         raise InputError(where, f"found {len(centre)} coordinates", "allowed: BODY=2.8kg@x,y,z, in m")
     return AddedBody(body, parse_value(mass, "kg", where), (centre[0], centre[1], centre[2]))
-
-
-def _require_answers(found: bench.IdentifiedRobot) -> None:
-    """Raise why no joint could be answered, where none could: the first reason."""
-    if found.answered:
-        return
-    first = next(iter(found.joints.values()))
-    if first.failed:
-        raise InputError("none of the joints could be answered", f"{first.name}: {first.failed}", "see the table")
-    reason = f"{first.name}: {next(iter(first.refused.values()))}"
-    raise UndeterminedError("any joint", reason, first.record)
 
 
 def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) -> list[Section]:

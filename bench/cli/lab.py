@@ -33,7 +33,12 @@ def lab(
 ) -> None:
     """Do all tasks of the lab course; write one report as HTML, PDF and JSON. Or prepare and grade a class."""
     if synthetic is not None:
-        _record(synthetic, students, seed)
+        from bench.course.record import record, record_class
+        from bench.report.terminal import progress
+
+        with progress("recording") as done:
+            made = record(synthetic, seed, done) if students is None else record_class(synthetic, students, seed, done)
+        list_files(made)
     elif submissions is not None:
         _grade(submissions, truth, out)
     elif folders is not None:
@@ -46,14 +51,6 @@ def lab(
         raise typer.BadParameter("--students goes with --record, --truth with --grade")
     else:
         _report(data, out)
-
-
-def _record(folder: Path, students: int | None, seed: int) -> None:
-    from bench.course.record import record, record_class
-    from bench.report.terminal import progress
-
-    with progress("recording") as done:
-        list_files(record(folder, seed, done) if students is None else record_class(folder, students, seed, done))
 
 
 def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
