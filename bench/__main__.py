@@ -35,14 +35,6 @@ def _stop(number: int, _frame: FrameType | None) -> None:
     raise Stopped
 
 
-def _memory() -> float:
-    """Bytes of addresses that this process may have."""
-    import resource
-
-    most = resource.getrlimit(resource.RLIMIT_AS)[0]
-    return float("inf") if most == resource.RLIM_INFINITY else most
-
-
 def _threads() -> bool:
     """Whether as many threads as libraries need may run beside one another (1 ms)."""
     ended = Event()
@@ -58,7 +50,10 @@ def _threads() -> bool:
 
 def _lacking() -> str | None:
     """What libraries wait for without end, or abort the process for; None where there is enough of it."""
-    if _memory() < LEAST_MEMORY:
+    import resource
+
+    most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if most != resource.RLIM_INFINITY and most < LEAST_MEMORY:
         return "ulimit -v: found less than 1 GB, for which NumPy's OpenBLAS waits for ever; allow 1 GB"
     return None if _threads() else f"ulimit -u: found room for fewer than {LEAST_THREADS} threads; allow more"
 

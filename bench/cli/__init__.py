@@ -27,11 +27,10 @@ from typer.exceptions import TyperException
 from bench import __version__
 from bench.cli.check import check
 from bench.cli.common import guarded, say
-from bench.cli.identify import diagnose, identify, robot
 from bench.cli.lab import lab
 from bench.cli.many import fleet, validate
 from bench.cli.model import compensate, export, replay, view
-from bench.cli.recording import friction, inspect, limits
+from bench.cli.recording import diagnose, friction, identify, inspect, limits, robot
 from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate
 from bench.errors import BenchError, InputError
 from bench.names import plain, short

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -119,27 +117,24 @@ def _stands(seen: Seen, name: str, side: float) -> Check | None:
     standing = None if name == "velocity" and not side else _standing(trace, seen.rig, name, side)  # an axis may rest
     if standing is None:
         return None
-    lost = name != "velocity" and _more_demanded(seen, name, standing.samples, side)
+    where, samples, ends = standing
+    lost = name != "velocity" and _more_demanded(seen, name, samples, side)
     if not side and not lost:
         return None  # a motor that coasts has no current
-    begin, end = (trace.time[k] - trace.time[0] for k in (standing.first, standing.last))
-    found = f"{standing.where}, between {begin:.4g} and {end:.4g} s"
+    begin, end = (trace.time[k] - trace.time[0] for k in ends)
+    found = f"{where}, between {begin:.4g} and {end:.4g} s"
     advice = "the end of its range? What lies beyond is lost: record with a wider range, or move more gently"
     advice = advice if side else "the signal dropped out? The motion takes effort meanwhile: cut the recording there"
     return Check(CLIPS, "fail" if lost else "warn", found, ALLOWED_CLIPS, advice, unanswerable=True)
 
 
-class _Standing(NamedTuple):
-    """Samples at which a signal stands (n,), the first and the last in long rows of them, and how many in words."""
+def _standing(
+    trace: Trace, rig: Rig | None, name: str, side: float
+) -> tuple[str, NDArray[np.bool_], tuple[int, int]] | None:
+    """Where a signal stands at an end of its range, as of `_stands`; None where hardly, or at the drive's own limit.
 
-    samples: NDArray[np.bool_]
-    first: int
-    last: int
-    where: str
-
-
-def _standing(trace: Trace, rig: Rig | None, name: str, side: float) -> _Standing | None:
-    """Where a signal stands at an end of its range, as of `_stands`; None where hardly, or at the drive's own limit."""
+    In words, the samples at which it does (n,), and the first and the last in long rows of them.
+    """
     values = side * trace[name]
     top = float(values.max())
     peak = rig.motor.peak_current if rig is not None and name == "current" else None
@@ -152,14 +147,14 @@ def _standing(trace: Trace, rig: Rig | None, name: str, side: float) -> _Standin
     if share <= CLIPPED:
         return None
     where = f"{share:.1%} of {name} stand at exactly {side * top + 0.0:.4g} {trace.units[name]}"
-    return _Standing(samples, int(starts[0]), int(starts[-1] + lengths[-1] - 1), where)
+    return where, samples, (int(starts[0]), int(starts[-1] + lengths[-1] - 1))
 
 
 def clipped(trace: Trace, rig: Rig) -> list[str]:
     """A warning of each end of its range at which a signal of the effort stands."""
     names = [name for name in ("current", "torque", "force") if name in trace]
     ends = (_standing(trace, rig, name, side) for name in names for side in (1.0, -1.0))
-    return [f"{end.where}: the end of its range? What lies beyond is lost" for end in ends if end is not None]
+    return [f"{end[0]}: the end of its range? What lies beyond is lost" for end in ends if end is not None]
 
 
 def _more_demanded(seen: Seen, name: str, standing: NDArray[np.bool_], side: float) -> bool:
