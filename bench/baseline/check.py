@@ -316,7 +316,8 @@ def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, motion: Le
     if torque is None or baseline.shows is None:
         why = "shown by its signals alone, which do not say from when on the baseline would have shown it"
         return _undetermined(after.label, why, effect="appeared")
-    least = motion.factor * baseline.shows.named_from(max(len(after.quantities), 1))
+    significant = baseline.shows.torque * math.sqrt(max(len(after.quantities), 1))
+    least = motion.factor * max(significant, baseline.shows.left)
     nothing = Measured(0.0, torque.unit, torque.std_error)
     difference = Difference.of(nothing, torque, allowed.between_of(after.name, torque))
     found = Comparison(after.label, torque.unit, None, torque.value, (difference,), least, "appeared", motion.unlike)

@@ -136,10 +136,6 @@ class DetectionLimits:
     torque: float
     left: float
 
-    def named_from(self, numbers: int) -> float:
-        """RMS torque of an effect with so many parameters that the recording would have shown - N*m (N)."""
-        return max(self.torque * float(np.sqrt(numbers)), self.left)
-
 
 @dataclass(frozen=True)
 class Response:

@@ -112,12 +112,12 @@ def balanced(sums: Sequence[Sums], length: int) -> Balanced | None:
 
     Motion alone and motion with position are solved from one triangle of their columns.
     """
-    windows = [found for part in sums if (found := part.windows(length)) is not None]
-    if not windows:
+    if not sums:
         return None
-    columns, mean, starts = (np.concatenate(column) for column in zip(*windows, strict=True))
-    varies = float(np.var(mean))
-    if mean.size < LEAST or varies == 0.0:
+    windows = zip(*(part.windows(length) for part in sums), strict=True)
+    columns, mean, starts = (np.concatenate(column) for column in windows)
+    varies = float(np.var(mean)) if mean.size >= LEAST else 0.0
+    if varies == 0.0:
         return None
     scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0.0] = 1.0
@@ -168,11 +168,9 @@ class Sums:
         last = size - length - reach if size >= 3 * length else 0
         return np.arange(reach, last, max(length // 2, 1))
 
-    def windows(self, length: int) -> tuple[Array, Array, NDArray[np.intp]] | None:
-        """Columns (windows, 7), mean effort and first samples (windows,); None where there are none."""
+    def windows(self, length: int) -> tuple[Array, Array, NDArray[np.intp]]:
+        """Columns (windows, 7), mean effort and first samples (windows,)."""
         at, reach = self.windows_of(length), length // 4
-        if not at.size:
-            return None
         change = (_smooth(self.gone, at + length, reach) - _smooth(self.gone, at, reach)) / (length * self.period)
         v, sign, place, sine, cosine, torque = (self.sums[:, at + length] - self.sums[:, at]) / length
         columns = np.column_stack([change, v, sign, np.ones(at.size), place, sine, cosine])

@@ -111,12 +111,11 @@ def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, s
     length, shifts = fitted.length, np.arange(-most, most + 1, max(1, most // 50))
     columns, efforts = [], []
     for part in fitted.sums:
-        found, at = part.windows(length), part.windows_of(length)
-        if found is not None:
-            inside = (at >= most) & (at + length + most < part.sums.shape[1])
-            ends = at[inside][:, None] + shifts
-            columns.append(found[0][inside])
-            efforts.append((part.sums[-1][ends + length] - part.sums[-1][ends]) / length)
+        at = part.windows_of(length)
+        inside = (at >= most) & (at + length + most < part.sums.shape[1])
+        ends = at[inside][:, None] + shifts
+        columns.append(part.windows(length)[0][inside])
+        efforts.append((part.sums[-1][ends + length] - part.sums[-1][ends]) / length)
     if sum(map(len, columns)) < BLOCKS * WINDOWS // 3:
         return
     basis, effort = _basis(np.concatenate(columns)), np.concatenate(efforts)
