@@ -32,8 +32,7 @@ from bench.trace.motion import measured_velocity
 from bench.trace.trace import Trace, join
 
 Progress = Callable[[float], None]
-#: Effects of another state, each with its match in this one.
-Others = Sequence[tuple[NamedHere, NamedHere | None]]
+
 #: Factor within which conditions count as equal.
 ALIKE = 1.1
 #: Recorded but not compared: a changed axis needs another effort, and the cut-off follows the noise.
@@ -66,8 +65,8 @@ class Observed:
     state: State
     fitted: Fit | None = None
 
-    def under(self, others: Others) -> Refitted:
-        """The recording fitted with the effects of another state instead of its own.
+    def under(self, others: Sequence[tuple[NamedHere, NamedHere | None]]) -> Refitted:
+        """The recording fitted with the effects of another state, each with its match in this one, instead of its own.
 
         An effect that comes or goes changes J, K_w and K_0 with it: an unchanged axis agrees under both sets. Effects
         without a match here start from the shape they had there; those outside the torque balance are left out.

@@ -28,10 +28,9 @@ from bench import __version__
 from bench.cli.check import check
 from bench.cli.common import guarded, say
 from bench.cli.lab import lab
-from bench.cli.many import fleet, validate
 from bench.cli.model import compensate, export, replay, view
-from bench.cli.recording import diagnose, friction, identify, inspect, limits, robot
-from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate
+from bench.cli.recording import diagnose, fleet, friction, identify, inspect, limits, robot
+from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate, validate
 from bench.errors import BenchError, InputError
 from bench.names import plain, short
 

@@ -1,8 +1,9 @@
-"""`bench inspect`, `identify`, `diagnose`, `robot`, `friction` and `limits`: what recordings tell."""
+"""`bench inspect`, `identify`, `diagnose`, `robot`, `friction`, `limits` and `fleet`: what recordings tell."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -11,7 +12,7 @@ import typer
 import bench
 from bench.cli import common
 from bench.errors import InputError, UndeterminedError
-from bench.files import write_text
+from bench.files import sha256, write_text
 from bench.names import in_a_row, readable
 
 if TYPE_CHECKING:
@@ -271,3 +272,38 @@ def limits(
     document = document_of(bench.read(trace, axis.trace), axis)
     common.write_picture(out, document.pictures[0])
     common.tell(document, [out])
+
+
+def fleet(
+    manifest: Annotated[Path, typer.Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
+    out: Annotated[Path, typer.Option(help="Folder for results, table, summary and page.")],
+    diagnose: Annotated[bool, typer.Option("--diagnose", help="Name missing effects too.")] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="Do again what failed or timed out.")] = False,
+    deadline: Annotated[float, typer.Option(help="Of one recording, in s.", min=0.1)] = 120.0,
+    memory: Annotated[float, typer.Option(help="Of one recording, in GB.", min=0.25)] = 4.0,
+    workers: Annotated[int | None, typer.Option(help="Processes (preset: one a core).", min=1)] = None,
+    scheduler: Annotated[str | None, typer.Option(help="Dask's, e.g. tcp://host:8786.")] = None,
+    storage: Annotated[
+        list[str] | None, typer.Option(help="fsspec's name of one that the manifest may name. Repeatable.")
+    ] = None,
+    json: common.JsonOption = None,
+) -> None:
+    """Evaluate many recordings of many axes: one row each, which axes changed since when, and which need a person."""
+    from bench.fleet.fleet import TABLE
+    from bench.fleet.fleet import fleet as run_fleet
+    from bench.jobs.process import Limits
+    from bench.report.fleet import FLEET, SUMMARY, fleet_document, fleet_json, write_fleet
+    from bench.report.terminal import progress
+
+    limits = Limits(deadline, memory * 1024**3)
+    basis = {"version": bench.__version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
+    publish = partial(write_fleet, out, provenance=basis)
+    with progress(f"evaluating {manifest.name}") as done:
+        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, publish, storage or ())
+    common.write_json(json, lambda: fleet_json(found, basis))
+    common.tell(fleet_document(found, basis), (out / TABLE, out / SUMMARY, out / FLEET), json)
+    if json != common.STDOUT:
+        common.say(f"{found.evaluated} evaluated now")
+    if not found.summary.counts["done"]:
+        reason = f"none of {len(found.manifest)} recordings gave a result"
+        raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")

@@ -1,19 +1,23 @@
-"""`bench demo`, `simulate`, `plan`, `rigs`, `effects` and `report`: commands that need no recording."""
+"""`bench demo`, `simulate`, `plan`, `rigs`, `effects`, `report` and `validate`: commands that need no recording."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 import bench
 from bench.cli import common
-from bench.cli.common import ReportOption, RigArgument, RigOption
+from bench.cli.common import JsonOption, OptionalRigOption, ReportOption, RigArgument, RigOption
 from bench.errors import InputError
 from bench.files import held, read_text, write_text
 from bench.names import readable
-from bench.plant.profile_names import DEFAULT
+from bench.plant.profile_names import DEFAULT, NAMES
+
+if TYPE_CHECKING:
+    from bench.validation.plan import OwnAxis
 
 #: Seed of the demo that is run unless another is given: one that hides what a person sees in the picture, too.
 SHOWN = 12
@@ -148,3 +152,96 @@ def report(
     for page in written if opened else ():
         if page != script:
             typer.launch(page.resolve().as_uri())
+
+
+def validate(
+    rigs: Annotated[int, typer.Option(help="Runs: an axis, a motion and noise each.", min=1)] = 64,
+    seed: Annotated[int, typer.Option(help="Of all that is drawn.", min=0)] = 0,
+    effects: Annotated[
+        str, typer.Option(help="Hidden in each run: a count as 0-3; or names, or all, each in turn.")
+    ] = "0",
+    diagnose: Annotated[
+        bool, typer.Option("--diagnose", help="Name what is missing too, a second or two a run.")
+    ] = False,
+    rig: OptionalRigOption = None,
+    profile: Annotated[Path, common.profile_option("With --rig, its motion: a recording's file, or")] = Path(DEFAULT),
+    into: Annotated[Path | None, typer.Option(help="Instead: your recording, to put known effects into.")] = None,
+    effect: Annotated[list[str] | None, common.effect_option("With --into, instead of all.")] = None,
+    strength: Annotated[
+        list[float] | None,
+        typer.Option(help="With --into, over what it leaves; else the least named is sought. Repeatable."),
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes on this machine.", min=1)] = None,
+    scheduler: Annotated[str | None, typer.Option(help="Dask cluster to work on, e.g. tcp://host:8786.")] = None,
+    json: JsonOption = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for page, tables, figures and JSON.")] = None,
+) -> None:
+    """How far off numbers are, how often intervals and names hold: by Monte Carlo, or of effects in your recording."""
+    from bench.report.parts import provenance
+    from bench.report.terminal import progress
+    from bench.report.validation import validation, validation_json, write_validation
+    from bench.validation.plan import Hiding, Plan, any_axis
+    from bench.validation.validate import validate as run_validation
+
+    if into is not None:
+        _into(into, rig, effect or [], strength or [], seed, workers, json, out)
+        return
+    if effect or strength:
+        raise InputError("--effect or --strength", "found without --into", "allowed: with a recording to put them into")
+    if rig is None and str(profile) != DEFAULT:
+        raise InputError("--profile", "found without --rig", "allowed: with the rig whose motion it is")
+    hiding = Hiding.parse(effects)
+    named = diagnose or (rig is not None and hiding.anything)  # what is hidden in one's own axis is to be named
+    options = {"rigs": rigs, "seed": seed, "effects": effects, "diagnose": named, "profile": str(profile)}
+    population, basis = (any_axis, provenance(None, [], options)) if rig is None else _own(rig, profile, options)
+    plan = Plan(seed, hiding, named, population)
+    with progress(f"validating on {rigs} runs") as done:
+        found = run_validation(plan, rigs, workers, scheduler, done)
+    command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}{' --diagnose' * named}"
+    command += "" if rig is None else f" --rig {rig} --profile {profile}"
+    document = validation(found, basis, command, rig is not None)
+    written = [] if out is None else write_validation(out, found, document)
+    common.write_json(json, lambda: validation_json(found, basis))
+    common.tell(document, written, json)
+
+
+def _into(
+    into: Path,
+    rig: Path | None,
+    effects: list[str],
+    strengths: list[float],
+    seed: int,
+    workers: int | None,
+    json: Path | None,
+    out: Path | None,
+) -> None:
+    """Known effects in one's own recording."""
+    from bench.report.injection import injections, injections_json
+    from bench.report.parts import provenance
+    from bench.report.terminal import progress
+    from bench.validation.into import inject
+
+    if rig is None:
+        raise InputError("--into", "found without --rig", "allowed: with the rig of the recording's axis")
+    if not all(0.0 < one < math.inf for one in strengths):
+        raise InputError("--strength", f"found {min(strengths):g}", "allowed: positive numbers, as 2 or 5")
+    known = bench.load_rig(rig)
+    options = {"effect": effects, "strength": strengths, "seed": seed}
+    with progress(f"putting effects into {into.name}") as done:
+        found = inject(bench.read(into, known.trace), known, effects, strengths, seed, workers, done)
+    basis = provenance(rig, [into], options)
+    document = injections(found, basis, readable(into.name))
+    common.deliver(document, lambda: injections_json(found, basis), json, out)
+
+
+def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:
+    """The axis of a rig along a named motion, or the one of a file, and what it rests on."""
+    from bench.report.parts import provenance
+    from bench.validation.plan import own_axis
+
+    known = bench.load_rig(rig)
+    if str(profile) in NAMES:
+        return own_axis(known, str(profile), None), provenance(rig, [], options)
+    if not profile.exists():
+        raise InputError("--profile", f"found '{profile}'", f"allowed: the file of a recording, or {', '.join(NAMES)}")
+    return own_axis(known, profile.name, bench.read(profile, known.trace)), provenance(rig, [profile], options)

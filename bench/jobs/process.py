@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, Generic, Literal, TypeVar
+from typing import Generic, Literal, TypeVar
 
 import psutil
 
@@ -167,17 +167,12 @@ def serve(handle: int) -> None:
             while True:
                 item = calls.recv()
                 faulthandler.dump_traceback_later(deadline + GRACE, exit=True, file=nowhere)
-                answer = _answer(work, item)
+                try:
+                    answer = pickle.dumps(work(item))
+                except Exception as error:  # of a result that cannot be pickled, too
+                    answer = pickle.dumps(raised(error))
                 faulthandler.cancel_dump_traceback_later()
                 calls.send_bytes(answer)
-
-
-def _answer(work: Callable[[Any], Any], item: object) -> bytes:
-    """Result or failure, pickled; a result that cannot be pickled is a failure too."""
-    try:
-        return pickle.dumps(work(item))
-    except Exception as error:
-        return pickle.dumps(raised(error))
 
 
 def raised(error: Exception) -> Failure:
