@@ -14,17 +14,7 @@ INERTIA, VISCOUS, COULOMB, OFFSET, MISALIGNMENT = "inertia", "viscous", "coulomb
 
 @dataclass(frozen=True)
 class AxisKind:
-    """How an axis moves, with the names and units that depend on it.
-
-    Attributes:
-        name: in rig files, truths and models.
-        turns: whether its position is an angle.
-        length_unit: of its position.
-        effort: name of what drives it.
-        effort_unit: its unit.
-        inertia: name of its inertia in results.
-        inertia_unit: its unit.
-    """
+    """How an axis moves, with the names and units that depend on it; `turns`: whether its position is an angle."""
 
     name: str
     turns: bool

@@ -46,11 +46,9 @@ BESIDE = {"name", "simulation", "check", "drive", "source"}
 
 @dataclass(frozen=True)
 class Refitted:
-    """Recordings fitted with the effects of another state.
+    """Recordings fitted with the effects of another state: the torques of those in the torque balance by their labels.
 
-    Attributes:
-        quantities, torques: by name, and of those effects that are in the torque balance by their labels.
-        noise_floor: of the torque gap - N*m (N).
+    The noise floor is that of the torque gap - N*m (N).
     """
 
     quantities: Mapping[str, Measured]

@@ -241,15 +241,13 @@ def warn(warnings: Iterable[str]) -> None:
 
 @dataclass(frozen=True)
 class Subject:
-    """What a recording is of: an axis or a robot's joint.
+    """What a recording is of: an axis, or a robot's joint, which alone has the last three.
 
     Attributes:
-        rig: of it.
         files: of the rig and of the robot, where they are given.
         read: how its recordings are read whole.
-        joint: the robot's; None of an axis.
-        along: the robot along a log; None of an axis.
-        options: of the command that say which joint it is; {} of an axis.
+        along: the robot along a log.
+        options: of the command that say which joint it is.
     """
 
     rig: bench.Rig

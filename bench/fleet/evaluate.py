@@ -187,13 +187,9 @@ def _errors_as_input(url: str) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class PlannedRecording:
-    """One recording of the manifest.
+    """One recording of the manifest: the key of its result and the job, or why it cannot be begun, as a result.
 
-    Attributes:
-        key: of its result; empty where it cannot be begun.
-        job: to be done for it; None where it cannot be begun.
-        refusal: why not, as a result; None where it can.
-        basis: what its result rests on, for the table.
+    `basis` is what its result rests on, for the table.
     """
 
     key: str

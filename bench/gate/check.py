@@ -24,6 +24,7 @@ from bench.trace.motion import integrated, raw_speed
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace, less_known
 
+#: `fail` ends an identification, `warn` is printed.
 Status = Literal["pass", "warn", "fail", "not_applicable"]
 #: From worst to best.
 STATUSES: tuple[Status, ...] = ("fail", "warn", "pass", "not_applicable")
@@ -31,16 +32,7 @@ STATUSES: tuple[Status, ...] = ("fail", "warn", "pass", "not_applicable")
 
 @dataclass(frozen=True)
 class Check:
-    """Result of a check.
-
-    Attributes:
-        name: of the check.
-        status: `fail` ends an identification, `warn` is printed.
-        found: in the recording.
-        allowed: what would pass.
-        advice: what to do; empty if nothing.
-        unanswerable: whether a failed recording is sound, and only insufficient.
-    """
+    """Result of a check; `unanswerable`: whether a failed recording is sound, and only insufficient."""
 
     name: str
     status: Status

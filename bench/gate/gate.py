@@ -40,23 +40,14 @@ PARTS = tuple(look for look in CHECKS if look not in WHOLE)
 
 
 class UnanswerableError(UndeterminedError):
-    """A sound recording that does not allow the identification.
-
-    Attributes:
-        checks: all of them.
-    """
+    """A sound recording that does not allow the identification, with all checks of it."""
 
     checks: tuple[Check, ...] = ()
 
 
 @dataclass(frozen=True)
 class Gated:
-    """A recording that went through the gate.
-
-    Attributes:
-        trace: repaired where possible.
-        checks: in the order of CHECKS.
-    """
+    """A recording that went through the gate, repaired where possible, with its checks in their order."""
 
     trace: Trace
     checks: tuple[Check, ...]

@@ -52,11 +52,9 @@ class Limits:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a piece of work gave no result.
+    """Why a piece of work gave no result: it was stopped at its deadline, or it raised, or its process died.
 
-    Attributes:
-        status: `timed_out` where it was stopped at its deadline, `failed` where it raised, or its process died.
-        reason: for a person; the same whenever the same happens.
+    The reason is for a person, and the same whenever the same happens.
     """
 
     status: Literal["failed", "timed_out"]
