@@ -251,24 +251,17 @@ def _lasting(state: State) -> list[NamedHere]:
 
 def matched(baseline: State, now: State) -> Matched:
     """Pairs of the same effect, then pairs that are `ambiguous_with` each other, then the rest."""
-    before, after = _lasting(baseline), _lasting(now)
-    both = _paired(before, after, NamedHere.same)
-    renamed = _paired(before, after, NamedHere.indistinguishable_from)
-    return Matched(tuple(both), tuple(renamed), tuple(before), tuple(after))
-
-
-def _paired(
-    before: list[NamedHere], after: list[NamedHere], alike: Callable[[NamedHere, NamedHere], bool]
-) -> list[tuple[NamedHere, NamedHere]]:
-    """Pairs that are alike, removed from both lists."""
-    pairs = []
-    for one in list(before):
-        other = next((candidate for candidate in after if alike(one, candidate)), None)
-        if other is not None:
-            before.remove(one)
-            after.remove(other)
-            pairs.append((one, other))
-    return pairs
+    before, after, pairs = _lasting(baseline), _lasting(now), []
+    for alike in (NamedHere.same, NamedHere.indistinguishable_from):
+        pairs.append([])
+        for one in list(before):
+            other = next((candidate for candidate in after if alike(one, candidate)), None)
+            if other is not None:
+                before.remove(one)
+                after.remove(other)
+                pairs[-1].append((one, other))
+    both, renamed = map(tuple, pairs)
+    return Matched(both, renamed, tuple(before), tuple(after))
 
 
 def _of_both(

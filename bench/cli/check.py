@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
+from typer import Argument, Option
 
 import bench
 from bench.cli import common
@@ -30,23 +31,23 @@ Format = Literal["text", "github", "gitlab"]
 
 
 def check(
-    baseline: Annotated[Path, typer.Option(help="TOML file of what the axis was.")],
+    baseline: Annotated[Path, Option(help="TOML file of what the axis was.")],
     traces: Annotated[
-        list[Path] | None, typer.Argument(metavar="TRACE...", help="Recordings of the axis now, of any known format.")
+        list[Path] | None, Argument(metavar="TRACE...", help="Recordings of the axis now, of any known format.")
     ] = None,
     rig: common.OptionalRigOption = None,
-    simulated: Annotated[Path | None, typer.Option(help="model.toml to check in the place of recordings.")] = None,
-    update: Annotated[bool, typer.Option("--update", help="Accept the present state: write the baseline.")] = False,
+    simulated: Annotated[Path | None, Option(help="model.toml to check in the place of recordings.")] = None,
+    update: Annotated[bool, Option("--update", help="Accept the present state: write the baseline.")] = False,
     without_names: Annotated[
-        bool, typer.Option("--without-names", help="With --update: compare parameters alone, in a tenth of the time.")
+        bool, Option("--without-names", help="With --update: compare parameters alone, in a tenth of the time.")
     ] = False,
-    junit: Annotated[Path | None, typer.Option(help="JUnit XML to write.")] = None,
+    junit: Annotated[Path | None, Option(help="JUnit XML to write.")] = None,
     json: common.JsonOption = None,
     report: common.ReportOption = None,
     form: Annotated[
-        Format, typer.Option("--format", help="github: annotations. gitlab: a code quality report on standard output.")
+        Format, Option("--format", help="github: annotations. gitlab: a code quality report on standard output.")
     ] = "text",
-    false_alarm_rate: Annotated[float, typer.Option(help="Of all comparisons together.", min=1e-6, max=0.5)] = 0.01,
+    false_alarm_rate: Annotated[float, Option(help="Of all comparisons together.", min=1e-6, max=0.5)] = 0.01,
     axis_name: common.AxisOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,

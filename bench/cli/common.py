@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
+from typer import Argument, Option
 
 import bench
 from bench.bounds import bounded
@@ -36,7 +37,7 @@ FOLDERS = frozenset({"out", "synthetic", "notebooks"})
 REPLACED = frozenset({"baseline"})
 
 TracesArgument = Annotated[
-    list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
+    list[Path], Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
 ]
 
 
@@ -54,12 +55,12 @@ def _shipped_rigs() -> list[str]:
 
 def profile_option(about: str) -> Any:  # noqa: ANN401 - typer's
     """`--profile`, which a shell completes."""
-    return typer.Option("--profile", help=f"{about} {', '.join(NAMES)}.", autocompletion=lambda: [*NAMES])
+    return Option("--profile", help=f"{about} {', '.join(NAMES)}.", autocompletion=lambda: [*NAMES])
 
 
 def effect_option(about: str) -> Any:  # noqa: ANN401 - typer's
     """`--effect`, which a shell completes."""
-    return typer.Option("--effect", help=f"{about} Repeatable.", autocompletion=_effects)
+    return Option("--effect", help=f"{about} Repeatable.", autocompletion=_effects)
 
 
 def _effects() -> list[str]:
@@ -72,39 +73,37 @@ def _effects() -> list[str]:
 _RIG: dict[str, Any] = {"parser": _rig_file, "metavar": "RIG", "autocompletion": _shipped_rigs}
 BesideRigOption = Annotated[
     Path | None,
-    typer.Option("--rig", help="Rig file (TOML), or a shipped rig's name; without, one is drafted.", **_RIG),
+    Option("--rig", help="Rig file (TOML), or a shipped rig's name; without, one is drafted.", **_RIG),
 ]
 DraftOption = Annotated[
-    Path | None, typer.Option("--draft", help="Without --rig: file to write the rig to that was drafted.")
+    Path | None, Option("--draft", help="Without --rig: file to write the rig to that was drafted.")
 ]
 MjcfOption = Annotated[
-    Path | None, typer.Option("--mjcf", help="MJCF of the robot whose other dynamics are known, gravity among them.")
+    Path | None, Option("--mjcf", help="MJCF of the robot whose other dynamics are known, gravity among them.")
 ]
-JointOption = Annotated[list[str] | None, typer.Option("--joint", help="Joint of the MJCF that the log is of.")]
+JointOption = Annotated[list[str] | None, Option("--joint", help="Joint of the MJCF that the log is of.")]
 AtOption = Annotated[
     list[str] | None,
-    typer.Option("--at", help="NAME=ANGLE of a joint that stands and that the log does not hold. Repeatable."),
+    Option("--at", help="NAME=ANGLE of a joint that stands and that the log does not hold. Repeatable."),
 ]
 RIG_HELP = "Rig file (TOML), or a shipped rig's name: what is known about the axis."
-RigOption = Annotated[Path, typer.Option("--rig", help=RIG_HELP, **_RIG)]
-OptionalRigOption = Annotated[Path | None, typer.Option("--rig", help=RIG_HELP, **_RIG)]
-RigArgument = Annotated[Path, typer.Argument(help="Rig file with [drive] and [simulation], or a shipped rig.", **_RIG)]
-AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
+RigOption = Annotated[Path, Option("--rig", help=RIG_HELP, **_RIG)]
+OptionalRigOption = Annotated[Path | None, Option("--rig", help=RIG_HELP, **_RIG)]
+RigArgument = Annotated[Path, Argument(help="Rig file with [drive] and [simulation], or a shipped rig.", **_RIG)]
+AxisOption = Annotated[str | None, Option("--axis", help="Axis to read where a recording holds several.")]
 FiguresOption = Annotated[
-    Literal["png", "pdf", "svg"], typer.Option("--figures", help="Format of the figures that --out writes.")
+    Literal["png", "pdf", "svg"], Option("--figures", help="Format of the figures that --out writes.")
 ]
-ReportOption = Annotated[Path | None, typer.Option("--report", help="Page to write: .html, all in one file.")]
-JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
+ReportOption = Annotated[Path | None, Option("--report", help="Page to write: .html, all in one file.")]
+JsonOption = Annotated[Path | None, Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 #: Standard output, as `--json` names it.
 STDOUT = Path("-")
 
 
 def _everywhere(
     *,
-    max_size: Annotated[
-        str | None, typer.Option(help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")
-    ] = None,
-    debug: Annotated[bool, typer.Option("--debug", help="Print the whole traceback of a failure.")] = False,
+    max_size: Annotated[str | None, Option(help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")] = None,
+    debug: Annotated[bool, Option("--debug", help="Print the whole traceback of a failure.")] = False,
 ) -> None:
     """What every command takes."""
 

@@ -6,29 +6,26 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer import Option
 
 from bench.cli.common import list_files, printed, say
 
 
 def lab(
-    data: Annotated[Path | None, typer.Option(help="Folder of your recordings; else synthetic ones.")] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the report, or the grades.")] = Path("bench_lab"),
+    data: Annotated[Path | None, Option(help="Folder of your recordings; else synthetic ones.")] = None,
+    out: Annotated[Path, Option(help="Folder for the report, or the grades.")] = Path("bench_lab"),
     synthetic: Annotated[
-        Path | None, typer.Option("--record", help="Only simulate the course's recordings, into this folder.")
+        Path | None, Option("--record", help="Only simulate the course's recordings, into this folder.")
     ] = None,
-    students: Annotated[
-        int | None, typer.Option(help="With --record: a folder and an axis of its own for each.")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="With --record: of everything drawn.")] = 0,
+    students: Annotated[int | None, Option(help="With --record: a folder and an axis of its own for each.")] = None,
+    seed: Annotated[int, Option(min=0, help="With --record: of everything drawn.")] = 0,
     submissions: Annotated[
-        Path | None, typer.Option("--grade", help="Grade the filled forms in this folder; with --truth.")
+        Path | None, Option("--grade", help="Grade the filled forms in this folder; with --truth.")
     ] = None,
-    truth: Annotated[Path | None, typer.Option(help="Sealed truth that --students wrote.")] = None,
-    notebooks: Annotated[
-        Path | None, typer.Option(help="Only write a notebook for each task, into this folder.")
-    ] = None,
+    truth: Annotated[Path | None, Option(help="Sealed truth that --students wrote.")] = None,
+    notebooks: Annotated[Path | None, Option(help="Only write a notebook for each task, into this folder.")] = None,
     folders: Annotated[
-        Path | None, typer.Option("--questions", help="Three questions for each student of this class' folder.")
+        Path | None, Option("--questions", help="Three questions for each student of this class' folder.")
     ] = None,
 ) -> None:
     """Do all tasks of the lab course; write one report as HTML, PDF and JSON. Or prepare and grade a class."""

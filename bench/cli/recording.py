@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
+from typer import Argument, Option
 
 import bench
 from bench.cli import common
@@ -25,12 +25,12 @@ Estimator = Literal["regression", "lab"]
 
 
 def inspect(
-    file: Annotated[Path, typer.Argument(metavar="TRACE", help="Recording of any known format.")],
+    file: Annotated[Path, Argument(metavar="TRACE", help="Recording of any known format.")],
     rig: common.OptionalRigOption = None,
     json: common.JsonOption = None,
-    out: Annotated[Path | None, typer.Option(help="Picture of every signal: .png, .pdf or .svg.")] = None,
-    draft: Annotated[Path | None, typer.Option(help="Rig file to write, as far as the file tells.")] = None,
-    motor: Annotated[str | None, typer.Option(help="For --draft: a motor of the catalogue.")] = None,
+    out: Annotated[Path | None, Option(help="Picture of every signal: .png, .pdf or .svg.")] = None,
+    draft: Annotated[Path | None, Option(help="Rig file to write, as far as the file tells.")] = None,
+    motor: Annotated[str | None, Option(help="For --draft: a motor of the catalogue.")] = None,
     axis_name: common.AxisOption = None,
     report: common.ReportOption = None,
 ) -> None:
@@ -65,11 +65,11 @@ def identify(
     traces: common.TracesArgument,
     rig: common.BesideRigOption = None,
     json: common.JsonOption = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for figures and JSON.")] = None,
-    estimator: Annotated[Estimator, typer.Option(help="lab: as in courses.")] = "regression",
-    refine: Annotated[bool, typer.Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
-    offset: Annotated[bool, typer.Option("--offset", help="Fit a constant torque (force) too.")] = False,
-    cutoff: Annotated[float | None, typer.Option(help="Filter's half-power frequency in Hz.", min=1e-6)] = None,
+    out: Annotated[Path | None, Option(help="Folder for figures and JSON.")] = None,
+    estimator: Annotated[Estimator, Option(help="lab: as in courses.")] = "regression",
+    refine: Annotated[bool, Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
+    offset: Annotated[bool, Option("--offset", help="Fit a constant torque (force) too.")] = False,
+    cutoff: Annotated[float | None, Option(help="Filter's half-power frequency in Hz.", min=1e-6)] = None,
     axis_name: common.AxisOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,
@@ -137,10 +137,10 @@ def _estimate(
 def diagnose(
     traces: common.TracesArgument,
     rig: common.BesideRigOption = None,
-    holdout: Annotated[Path | None, typer.Option(help="Another recording of the axis, not fitted.")] = None,
+    holdout: Annotated[Path | None, Option(help="Another recording of the axis, not fitted.")] = None,
     json: common.JsonOption = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for model, figures and JSON.")] = None,
-    without: Annotated[list[str] | None, typer.Option(help="Effect not to try. Repeatable.")] = None,
+    out: Annotated[Path | None, Option(help="Folder for model, figures and JSON.")] = None,
+    without: Annotated[list[str] | None, Option(help="Effect not to try. Repeatable.")] = None,
     axis_name: common.AxisOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,
@@ -168,18 +168,18 @@ def diagnose(
 
 
 def robot(
-    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs of the robot, of any known format.")],
-    mjcf: Annotated[Path, typer.Option(help="MJCF of the robot.")],
-    out: Annotated[Path, typer.Option(help="Folder for MJCF, models, page and JSON.")],
-    holdout: Annotated[Path | None, typer.Option(help="Another log of it, not fitted.")] = None,
+    logs: Annotated[list[Path], Argument(metavar="LOG...", help="Logs of the robot, of any known format.")],
+    mjcf: Annotated[Path, Option(help="MJCF of the robot.")],
+    out: Annotated[Path, Option(help="Folder for MJCF, models, page and JSON.")],
+    holdout: Annotated[Path | None, Option(help="Another log of it, not fitted.")] = None,
     rig: common.OptionalRigOption = None,
-    joint: Annotated[list[str] | None, typer.Option(help="Only this joint. Repeatable.")] = None,
+    joint: Annotated[list[str] | None, Option(help="Only this joint. Repeatable.")] = None,
     at: common.AtOption = None,
     payload: Annotated[
         str | None,
-        typer.Option(help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
+        Option(help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
     ] = None,
-    without: Annotated[list[str] | None, typer.Option(help="Effect not to try. Repeatable.")] = None,
+    without: Annotated[list[str] | None, Option(help="Effect not to try. Repeatable.")] = None,
     json: common.JsonOption = None,
 ) -> None:
     """Identify every joint of a robot from its logs, find what each is missing, and write its MJCF with all of it."""
@@ -237,10 +237,10 @@ def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) 
 
 
 def friction(
-    traces: Annotated[list[Path], typer.Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
+    traces: Annotated[list[Path], Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
     rig: common.RigOption,
     json: common.JsonOption = None,
-    out: Annotated[Path | None, typer.Option(help="Figure to write: .png, .pdf or .svg.")] = None,
+    out: Annotated[Path | None, Option(help="Figure to write: .png, .pdf or .svg.")] = None,
     axis_name: common.AxisOption = None,
     report: common.ReportOption = None,
 ) -> None:
@@ -260,9 +260,9 @@ def friction(
 
 
 def limits(
-    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
+    trace: Annotated[Path, Argument(help="Recording of any known format.")],
     rig: common.RigOption,
-    out: Annotated[Path, typer.Option(help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
+    out: Annotated[Path, Option(help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
     axis_name: common.AxisOption = None,
 ) -> None:
     """Draw a recording into its motor's speed-torque diagram; say how much reserve it leaves."""
@@ -275,16 +275,16 @@ def limits(
 
 
 def fleet(
-    manifest: Annotated[Path, typer.Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
-    out: Annotated[Path, typer.Option(help="Folder for results, table, summary and page.")],
-    diagnose: Annotated[bool, typer.Option("--diagnose", help="Name missing effects too.")] = False,
-    retry: Annotated[bool, typer.Option("--retry", help="Do again what failed or timed out.")] = False,
-    deadline: Annotated[float, typer.Option(help="Of one recording, in s.", min=0.1)] = 120.0,
-    memory: Annotated[float, typer.Option(help="Of one recording, in GB.", min=0.25)] = 4.0,
-    workers: Annotated[int | None, typer.Option(help="Processes (preset: one a core).", min=1)] = None,
-    scheduler: Annotated[str | None, typer.Option(help="Dask's, e.g. tcp://host:8786.")] = None,
+    manifest: Annotated[Path, Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
+    out: Annotated[Path, Option(help="Folder for results, table, summary and page.")],
+    diagnose: Annotated[bool, Option("--diagnose", help="Name missing effects too.")] = False,
+    retry: Annotated[bool, Option("--retry", help="Do again what failed or timed out.")] = False,
+    deadline: Annotated[float, Option(help="Of one recording, in s.", min=0.1)] = 120.0,
+    memory: Annotated[float, Option(help="Of one recording, in GB.", min=0.25)] = 4.0,
+    workers: Annotated[int | None, Option(help="Processes (preset: one a core).", min=1)] = None,
+    scheduler: Annotated[str | None, Option(help="Dask's, e.g. tcp://host:8786.")] = None,
     storage: Annotated[
-        list[str] | None, typer.Option(help="fsspec's name of one that the manifest may name. Repeatable.")
+        list[str] | None, Option(help="fsspec's name of one that the manifest may name. Repeatable.")
     ] = None,
     json: common.JsonOption = None,
 ) -> None:

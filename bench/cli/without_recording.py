@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 import bench
 from bench.cli import common
@@ -24,8 +25,8 @@ SHOWN = 12
 
 
 def demo(
-    out: Annotated[Path, typer.Option(help="Folder for trace, truth, model and page.")] = Path("bench_demo"),
-    seed: Annotated[int, typer.Option(help="Draws the effect that is hidden.", min=0)] = SHOWN,
+    out: Annotated[Path, Option(help="Folder for trace, truth, model and page.")] = Path("bench_demo"),
+    seed: Annotated[int, Option(help="Draws the effect that is hidden.", min=0)] = SHOWN,
 ) -> None:
     """Hide an effect in a simulated axis, find it, add it to the model, and set truth beside what was found."""
     from bench.demo import demo as run_demo
@@ -39,9 +40,9 @@ def demo(
 
 def simulate(
     rig: RigArgument,
-    out: Annotated[Path, typer.Option(help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
+    out: Annotated[Path, Option(help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
     profile: Annotated[str, common.profile_option("Motion:")] = DEFAULT,
-    seed: Annotated[int, typer.Option(help="Seed of the sensors' noise.", min=0)] = 0,
+    seed: Annotated[int, Option(help="Seed of the sensors' noise.", min=0)] = 0,
     effect: Annotated[list[str] | None, common.effect_option("NAME:key=value,... to add; see bench effects.")] = None,
     report: ReportOption = None,
 ) -> None:
@@ -69,11 +70,11 @@ def simulate(
 
 def plan(
     rig: RigOption,
-    out: Annotated[Path, typer.Option(help="CSV of the motion, for a controller.")],
+    out: Annotated[Path, Option(help="CSV of the motion, for a controller.")],
     wanted: Annotated[
-        str | None, typer.Option("--for", help="NAME:key=value,... of an effect to determine; see bench effects.")
+        str | None, Option("--for", help="NAME:key=value,... of an effect to determine; see bench effects.")
     ] = None,
-    period: Annotated[float, typer.Option(help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
+    period: Annotated[float, Option(help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
 ) -> None:
     """Plan the motion to record inside the rig's limits: the one that tells best, and how well it will."""
     from bench.effects.present import parse_effect
@@ -98,8 +99,8 @@ def plan(
 
 
 def rigs(
-    name: Annotated[str | None, typer.Argument(help="A shipped rig, or a rig file of your own; all without.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Copy of the rig file to write.")] = None,
+    name: Annotated[str | None, Argument(help="A shipped rig, or a rig file of your own; all without.")] = None,
+    out: Annotated[Path | None, Option(help="Copy of the rig file to write.")] = None,
 ) -> None:
     """List the rigs that are shipped, copy one, or say which commands a rig suffices for and all that is missing."""
     from bench.rig.rig import lacking, rig_file, shipped, without_constant
@@ -124,9 +125,7 @@ def rigs(
 
 
 def effects(
-    name: Annotated[
-        str | None, typer.Argument(help="Effect whose page to print; all of them as a table without.")
-    ] = None,
+    name: Annotated[str | None, Argument(help="Effect whose page to print; all of them as a table without.")] = None,
 ) -> None:
     """List the physical effects the bench knows, or print the page of one: equation, quantities, source."""
     from bench.report.effects import effect_page, effects_table
@@ -138,11 +137,9 @@ def effects(
 
 
 def report(
-    folders: Annotated[list[Path], typer.Argument(metavar="DIR...", help="Folders that --out of a command wrote.")],
-    script: Annotated[
-        Path | None, typer.Option(help="Script file to write that the pages share, for many of them.")
-    ] = None,
-    opened: Annotated[bool, typer.Option("--open", help="Open the pages in the browser.")] = False,
+    folders: Annotated[list[Path], Argument(metavar="DIR...", help="Folders that --out of a command wrote.")],
+    script: Annotated[Path | None, Option(help="Script file to write that the pages share, for many of them.")] = None,
+    opened: Annotated[bool, Option("--open", help="Open the pages in the browser.")] = False,
 ) -> None:
     """Make report.html of folders anew, from the report.json that lies in each."""
     from bench.report.publish import rebuild
@@ -155,26 +152,22 @@ def report(
 
 
 def validate(
-    rigs: Annotated[int, typer.Option(help="Runs: an axis, a motion and noise each.", min=1)] = 64,
-    seed: Annotated[int, typer.Option(help="Of all that is drawn.", min=0)] = 0,
-    effects: Annotated[
-        str, typer.Option(help="Hidden in each run: a count as 0-3; or names, or all, each in turn.")
-    ] = "0",
-    diagnose: Annotated[
-        bool, typer.Option("--diagnose", help="Name what is missing too, a second or two a run.")
-    ] = False,
+    rigs: Annotated[int, Option(help="Runs: an axis, a motion and noise each.", min=1)] = 64,
+    seed: Annotated[int, Option(help="Of all that is drawn.", min=0)] = 0,
+    effects: Annotated[str, Option(help="Hidden in each run: a count as 0-3; or names, or all, each in turn.")] = "0",
+    diagnose: Annotated[bool, Option("--diagnose", help="Name what is missing too, a second or two a run.")] = False,
     rig: OptionalRigOption = None,
     profile: Annotated[Path, common.profile_option("With --rig, its motion: a recording's file, or")] = Path(DEFAULT),
-    into: Annotated[Path | None, typer.Option(help="Instead: your recording, to put known effects into.")] = None,
+    into: Annotated[Path | None, Option(help="Instead: your recording, to put known effects into.")] = None,
     effect: Annotated[list[str] | None, common.effect_option("With --into, instead of all.")] = None,
     strength: Annotated[
         list[float] | None,
-        typer.Option(help="With --into, over what it leaves; else the least named is sought. Repeatable."),
+        Option(help="With --into, over what it leaves; else the least named is sought. Repeatable."),
     ] = None,
-    workers: Annotated[int | None, typer.Option(help="Processes on this machine.", min=1)] = None,
-    scheduler: Annotated[str | None, typer.Option(help="Dask cluster to work on, e.g. tcp://host:8786.")] = None,
+    workers: Annotated[int | None, Option(help="Processes on this machine.", min=1)] = None,
+    scheduler: Annotated[str | None, Option(help="Dask cluster to work on, e.g. tcp://host:8786.")] = None,
     json: JsonOption = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for page, tables, figures and JSON.")] = None,
+    out: Annotated[Path | None, Option(help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
     """How far off numbers are, how often intervals and names hold: by Monte Carlo, or of effects in your recording."""
     from bench.report.parts import provenance
