@@ -25,6 +25,8 @@ from bench.structured import parse_json
 
 #: Name of what is no array.
 _PARTS = "result"
+#: What is raised by a file that another version, or somebody else, wrote.
+_UNKNOWN = (ValueError, KeyError, TypeError, AttributeError, ImportError, OSError, EOFError, zipfile.BadZipFile)
 #: Kinds of a series of values, by name.
 _SERIES = {kind.__name__: kind for kind in (tuple, list, frozenset)}
 
@@ -48,16 +50,7 @@ def unpack(path: Path, kind: type) -> Any:  # noqa: ANN401 - of this kind
         with np.load(io.BytesIO(content), allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}
         result = _unpack(parse_json(str(arrays[_PARTS]), path), arrays)
-    except (
-        ValueError,
-        KeyError,
-        TypeError,
-        AttributeError,
-        ImportError,
-        OSError,
-        EOFError,
-        zipfile.BadZipFile,
-    ) as error:
+    except _UNKNOWN as error:
         found = f"holds no result that this version knows ({error})"
         raise InputError(path, found, "allowed: what the same version's `save` wrote") from error
     if not isinstance(result, kind):

@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-from typer import Option
+from typer import BadParameter, Exit, Option
 
 from bench.cli.common import list_files, printed, say
 
@@ -45,7 +44,7 @@ def lab(
 
         list_files(write_notebooks(notebooks))
     elif students is not None or truth is not None:
-        raise typer.BadParameter("--students goes with --record, --truth with --grade")
+        raise BadParameter("--students goes with --record, --truth with --grade")
     else:
         _report(data, out)
 
@@ -54,7 +53,7 @@ def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
     from bench.course.grade import grade_class, grades_table, write_grades
 
     if truth is None:
-        raise typer.BadParameter("--grade needs --truth FILE, which --record --students wrote")
+        raise BadParameter("--grade needs --truth FILE, which --record --students wrote")
     graded = grade_class(submissions, truth)
     files = write_grades(graded, out)
     printed(grades_table(graded))
@@ -62,7 +61,7 @@ def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
         say(f"not graded: {error}", err=True)
     list_files(files[:2])
     if graded.unread:
-        raise typer.Exit(1)
+        raise Exit(1)
 
 
 def _ask(folder: Path, out: Path) -> None:
@@ -73,7 +72,7 @@ def _ask(folder: Path, out: Path) -> None:
         say(str(reason), err=True)
     list_files(files[-1:])
     if missing:
-        raise typer.Exit(1)
+        raise Exit(1)
 
 
 def _report(data: Path | None, out: Path) -> None:
@@ -85,4 +84,4 @@ def _report(data: Path | None, out: Path) -> None:
     printed(course_table(report.results))
     list_files(report.files)
     if not report.usable:
-        raise typer.Exit(1)
+        raise Exit(1)
