@@ -251,17 +251,16 @@ def _lasting(state: State) -> list[NamedHere]:
 
 def matched(baseline: State, now: State) -> Matched:
     """Pairs of the same effect, then pairs that are `ambiguous_with` each other, then the rest."""
-    before, after, pairs = _lasting(baseline), _lasting(now), []
-    for alike in (NamedHere.same, NamedHere.indistinguishable_from):
-        pairs.append([])
+    before, after = _lasting(baseline), _lasting(now)
+    both, renamed = list[tuple[NamedHere, NamedHere]](), list[tuple[NamedHere, NamedHere]]()
+    for pairs, alike in ((both, NamedHere.same), (renamed, NamedHere.indistinguishable_from)):
         for one in list(before):
             other = next((candidate for candidate in after if alike(one, candidate)), None)
             if other is not None:
                 before.remove(one)
                 after.remove(other)
-                pairs[-1].append((one, other))
-    both, renamed = map(tuple, pairs)
-    return Matched(both, renamed, tuple(before), tuple(after))
+                pairs.append((one, other))
+    return Matched(tuple(both), tuple(renamed), tuple(before), tuple(after))
 
 
 def _of_both(

@@ -73,12 +73,12 @@ class Observed:
         assert own is not None
         shaped_here = [one for one in self.state.effects if one.shape is not None]
         held = [pair for pair in others if pair[0].shape is not None]
-        terms = (
-            Term(effect.effect, effect.shape or (), load=() if effect.on_load else None)
-            if mine is None
-            else own.terms[shaped_here.index(mine)]
-            for effect, mine in held
-        )
+        terms = []
+        for effect, mine in held:
+            if mine is not None:
+                terms.append(own.terms[shaped_here.index(mine)])
+            else:
+                terms.append(Term(effect.effect, effect.shape or (), load=() if effect.on_load else None))
         fitted = fit(own.rows, own.hypothesis.with_terms(terms))
         for index, (_, mine) in enumerate(held):
             if mine is None:
