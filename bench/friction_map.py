@@ -121,24 +121,21 @@ def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
     probability = min(1.0, len(names) * chances[least])
     kept = best if probability < CHANCE else plain
     base = Base(float("nan"), float(kept.theta[0]), float(kept.theta[1]))
-    offset = float(kept.theta[2]) if kept.constant else None
-    name = kept.name or None
-    values = dict(catalogue()[name].report(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
-    left = (float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total)))
+    effect = catalogue()[kept.name] if kept.name else None
     return FrictionMap(
-        velocity,
-        effort,
-        unit,
-        rig.axis_kind,
-        plain,
-        best,
-        base,
-        offset,
-        name,
-        values,
-        probability,
-        left,
-        joined([one.checks for one in gated]),
+        velocity=velocity,
+        effort=effort,
+        effort_unit=unit,
+        kind=rig.axis_kind,
+        plain=plain,
+        best=best,
+        base=base,
+        offset=float(kept.theta[2]) if kept.constant else None,
+        name=kept.name or None,
+        values={} if effect is None else dict(effect.report(kept.theta[3:].tolist(), kept.shape, base)),
+        probability=probability,
+        unexplained=(float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total))),
+        checks=joined([one.checks for one in gated]),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,8 +18,6 @@ from bench.names import readable
 from bench.plant.profile_names import DEFAULT
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from bench.cli.common import Subject
     from bench.diagnosis.let_free import FreeRun
     from bench.diagnosis.replay import Replay
