@@ -2,6 +2,7 @@
 
 import atexit
 import os
+import resource
 import signal
 import sys
 from contextlib import suppress
@@ -50,8 +51,6 @@ def _threads() -> bool:
 
 def _lacking() -> str | None:
     """What libraries wait for without end, or abort the process for; None where there is enough of it."""
-    import resource
-
     most = resource.getrlimit(resource.RLIMIT_AS)[0]
     if most != resource.RLIM_INFINITY and most < LEAST_MEMORY:
         return "ulimit -v: found less than 1 GB, for which NumPy's OpenBLAS waits for ever; allow 1 GB"
@@ -64,7 +63,7 @@ def main() -> None:
         if sys.argv[1:] == ["--version"] and sys.stdout is not None:
             print(__version__, flush=True)  # 0.03 s of CPU; 0.2 s with the command line's library
             return
-    if os.name == "posix" and (lacking := _lacking()):
+    if lacking := _lacking():
         os.write(2, f"bench: {lacking}\n".encode())
         os._exit(2)
     status = 70
@@ -78,7 +77,7 @@ def main() -> None:
 
     atexit.register(leave)  # the first that is registered is the last that is called
     try:
-        for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if os.name == "posix" else [])):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it
                 signal.signal(number, _stop)
         from bench.allocation import keep_freed_memory

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import os
 import re
@@ -70,7 +71,7 @@ def opened(path: Path, kind: str, replaced: bool = False) -> Iterator[BufferedRe
         if not stat.S_ISREG(state.st_mode):  # a pipe may never end, a device has no end
             raise InputError(path, "found a pipe or a device", f"{give}, a regular file")
         with path.open("rb") as file:
-            if not state.st_size and os.name == "posix" and not os.fstatvfs(file.fileno()).f_blocks:  # /proc, /sys
+            if not state.st_size and not os.fstatvfs(file.fileno()).f_blocks:  # /proc, /sys
                 raise InputError(path, "found a file that the system makes while it is read", f"{give}, a regular file")
             touched, own = _TOUCHED.get(), _identity(os.fstat(file.fileno()))
             if touched is not None and not replaced and own not in touched.made:
@@ -188,11 +189,8 @@ def _begun(target: Path) -> tuple[Path, int]:
         name = f".bench-{secrets.token_hex(6)}-{target.stem[:32]}{target.suffix[-16:]}"
         temporary = target.with_name(name)
         handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)  # less the umask
-        if os.name == "posix":
-            import fcntl
-
-            with suppress(OSError):  # a file system without locks, where `_remove_left` gets none either
-                fcntl.flock(handle, fcntl.LOCK_EX)
+        with suppress(OSError):  # a file system without locks, where `_remove_left` gets none either
+            fcntl.flock(handle, fcntl.LOCK_EX)
         if os.fstat(handle).st_nlink:  # none: another process took it for left over before it was locked
             return temporary, handle
         os.close(handle)
@@ -200,10 +198,6 @@ def _begun(target: Path) -> tuple[Path, int]:
 
 def _remove_left(folder: Path) -> None:
     """Remove files of runs that were killed while they wrote: those that no process has locked."""
-    if os.name != "posix":
-        return
-    import fcntl
-
     for name in filter(_UNDER_WAY.fullmatch, os.listdir(folder)):  # noqa: PTH208 (a name is enough)
         left = folder / name
         # locked, or not ours to remove: it does no harm
@@ -213,10 +207,9 @@ def _remove_left(folder: Path) -> None:
 
 
 def _flush(path: Path) -> None:
-    """Flush a file, or the names in a folder, to the disk; folders only where the system allows it."""
-    if os.name == "posix" or not path.is_dir():
-        with _handle(path) as handle:
-            os.fsync(handle)
+    """Flush a file, or the names in a folder, to the disk."""
+    with _handle(path) as handle:
+        os.fsync(handle)
 
 
 @contextmanager
@@ -231,8 +224,6 @@ def _handle(path: Path, flags: int = 0) -> Iterator[int]:
 @contextmanager
 def held(folder: Path) -> Iterator[None]:
     """Make a folder and lock it for writing: another run of the bench waits until this one is done."""
-    import fcntl
-
     try:
         folder.mkdir(parents=True, exist_ok=True)
         handle = os.open(folder, os.O_RDONLY)
