@@ -2,6 +2,7 @@
 
 import atexit
 import os
+import resource
 import signal
 import sys
 from contextlib import suppress
@@ -35,14 +36,6 @@ def _stop(number: int, _frame: FrameType | None) -> None:
     raise Stopped
 
 
-def _memory() -> float:
-    """Bytes of addresses that this process may have."""
-    import resource
-
-    most = resource.getrlimit(resource.RLIMIT_AS)[0]
-    return float("inf") if most == resource.RLIM_INFINITY else most
-
-
 def _threads() -> bool:
     """Whether as many threads as libraries need may run beside one another (1 ms)."""
     ended = Event()
@@ -58,7 +51,8 @@ def _threads() -> bool:
 
 def _lacking() -> str | None:
     """What libraries wait for without end, or abort the process for; None where there is enough of it."""
-    if _memory() < LEAST_MEMORY:
+    most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if most != resource.RLIM_INFINITY and most < LEAST_MEMORY:
         return "ulimit -v: found less than 1 GB, for which NumPy's OpenBLAS waits for ever; allow 1 GB"
     return None if _threads() else f"ulimit -u: found room for fewer than {LEAST_THREADS} threads; allow more"
 
@@ -69,7 +63,7 @@ def main() -> None:
         if sys.argv[1:] == ["--version"] and sys.stdout is not None:
             print(__version__, flush=True)  # 0.03 s of CPU; 0.2 s with the command line's library
             return
-    if os.name == "posix" and (lacking := _lacking()):
+    if lacking := _lacking():
         os.write(2, f"bench: {lacking}\n".encode())
         os._exit(2)
     status = 70
@@ -83,7 +77,7 @@ def main() -> None:
 
     atexit.register(leave)  # the first that is registered is the last that is called
     try:
-        for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if os.name == "posix" else [])):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it
                 signal.signal(number, _stop)
         from bench.allocation import keep_freed_memory

@@ -24,11 +24,7 @@ NUMPYS = frozenset({np.ndarray, np.float64, float})
 
 
 def namespace(value: object) -> ModuleType:
-    """The functions of the array API standard for a value: NumPy's for one of its numbers or arrays.
-
-    Raises:
-        TypeError: no array, nor a number of NumPy's or Python's.
-    """
+    """The functions of the array API standard for a value, NumPy's for its own; TypeError if no array or number."""
     if type(value) in NUMPYS:
         return np
     return array_api_compat.array_namespace(value)
@@ -95,9 +91,7 @@ def column_rms(table: Array) -> Array:
 def symmetric_inverse(matrix: Array, least: float) -> Array:
     """Pseudo-inverse of symmetric matrices (..., p, p), as `numpy.linalg.pinv` has it, which takes twice as long.
 
-    Args:
-        matrix: any unit; its inverse has one over it.
-        least: share of the largest eigenvalue's magnitude up to which another one counts as zero.
+    Eigenvalues count as zero up to a share `least` of the largest one's magnitude. The unit is one over the matrix'.
     """
     values, vectors = np.linalg.eigh(matrix)
     magnitude = np.abs(values)
@@ -158,11 +152,7 @@ def spline(values: Array) -> Array:
 
 
 def splined(values: Array, steps: int) -> tuple[Array, Array]:
-    """A cubic spline through samples (n,) and its slope per sample, at `steps` to each sample; see `spline`.
-
-    Returns:
-        Both ((n - 1)*steps + 1,).
-    """
+    """A cubic spline through samples (n,) and its slope per sample, at `steps` to each: both ((n - 1)*steps + 1,)."""
     start, slope, bend, twist = spline(values)[:, :, None]
     at = np.arange(steps) / steps
     between = start + at * (slope + at * (bend + at * twist))

@@ -14,17 +14,7 @@ INERTIA, VISCOUS, COULOMB, OFFSET, MISALIGNMENT = "inertia", "viscous", "coulomb
 
 @dataclass(frozen=True)
 class AxisKind:
-    """How an axis moves, with the names and units that depend on it.
-
-    Attributes:
-        name: in rig files, truths and models.
-        turns: whether its position is an angle.
-        length_unit: of its position.
-        effort: name of what drives it.
-        effort_unit: its unit.
-        inertia: name of its inertia in results.
-        inertia_unit: its unit.
-    """
+    """How an axis moves, with the names and units that depend on it; `turns`: whether its position is an angle."""
 
     name: str
     turns: bool
@@ -59,16 +49,11 @@ class AxisKind:
         return words(self.parameter(term))
 
     def base_parameters(self, effort_unit: str | None = None) -> dict[str, str]:
-        """Names of J, K_w and K_0 with their units; `effort_unit` as of `parameter_unit`."""
+        """Names of J, K_w and K_0 with their units; `effort_unit` as of `unit`."""
         return {self.parameter(term): self.parameter_unit(term, effort_unit) for term in (INERTIA, VISCOUS, COULOMB)}
 
     def parameter_unit(self, term: str, effort_unit: str | None = None) -> str:
-        """Unit of the coefficient of a term, e.g. kg*m**2 of INERTIA, or A*s**2/rad where the effort stands in A.
-
-        Args:
-            term: of the equation of motion.
-            effort_unit: that recordings give, where the rig cannot turn it into torque or force.
-        """
+        """Unit of the coefficient of a term, e.g. kg*m**2 of INERTIA; `effort_unit` as of `unit`."""
         effort = effort_unit or self.effort_unit
         if term == INERTIA and effort == self.effort_unit:
             return self.inertia_unit

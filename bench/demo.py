@@ -31,16 +31,8 @@ RIG = "sh30701p"
 def demo(out: Path, seed: int, progress: Callable[[float], None]) -> tuple[Document, list[Path]]:
     """Run the chain into a folder; identification and diagnosis read the trace file, like anybody's.
 
-    Args:
-        out: folder, made if it is not there.
-        seed: draws which effect is hidden, how strong it is, and the sensors' noise.
-        progress: called with the share done.
-
-    Returns:
-        The diagnosis beside the truth, and the files that were written.
-
-    Raises:
-        InputError: the folder cannot be written to.
+    The seed draws which effect is hidden, how strong it is, and the sensors' noise; `progress` is called with the share
+    done. Returns the diagnosis beside the truth, and the files that were written. InputError where they cannot be.
     """
     rig, trace = load_rig(RIG), out / "trace.csv.gz"
     case = Plan(seed, Hiding(1, 1), population=own_axis(rig, DEFAULT, None)).case(0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import os
 import re
@@ -49,8 +50,7 @@ def marker(path: Path) -> Path:
 def read_bytes(path: str | Path, kind: str, replaced: bool = False) -> bytes:
     """Content of a regular file; `kind` is what it should be, for messages, e.g. `a trace`.
 
-    Raises:
-        InputError: not there, not a regular file, not readable, or beyond the bound on size.
+    InputError: not there, not a regular file, not readable, or beyond the bound on size.
     """
     with opened(Path(path), kind, replaced) as file:
         require_size(path, size := os.fstat(file.fileno()).st_size)
@@ -71,7 +71,7 @@ def opened(path: Path, kind: str, replaced: bool = False) -> Iterator[BufferedRe
         if not stat.S_ISREG(state.st_mode):  # a pipe may never end, a device has no end
             raise InputError(path, "found a pipe or a device", f"{give}, a regular file")
         with path.open("rb") as file:
-            if not state.st_size and os.name == "posix" and not os.fstatvfs(file.fileno()).f_blocks:  # /proc, /sys
+            if not state.st_size and not os.fstatvfs(file.fileno()).f_blocks:  # /proc, /sys
                 raise InputError(path, "found a file that the system makes while it is read", f"{give}, a regular file")
             touched, own = _TOUCHED.get(), _identity(os.fstat(file.fileno()))
             if touched is not None and not replaced and own not in touched.made:
@@ -118,7 +118,9 @@ def keeping(inputs: Iterable[Path]) -> Iterator[None]:
     """Until the outermost such block ends no output replaces one of these files, nor any read within, by any link."""
     outer = _TOUCHED.get()
     touched = outer or _Touched()
-    touched.read.update(_identity(state) for path in inputs if (state := _state(path)))
+    for path in inputs:
+        with suppress(OSError, ValueError):  # there is none, which reading it will report
+            touched.read.add(_identity(path.stat()))
     token = _TOUCHED.set(touched)
     try:
         yield
@@ -126,24 +128,12 @@ def keeping(inputs: Iterable[Path]) -> Iterator[None]:
         _TOUCHED.reset(token)
 
 
-def _state(path: Path) -> os.stat_result | None:
-    """Of a file; None if there is none, which reading it will report."""
-    try:
-        return path.stat()
-    except (OSError, ValueError):
-        return None
-
-
 def _identity(state: os.stat_result) -> Identity:
     return state.st_dev, state.st_ino
 
 
 def require_writable(path: str | Path) -> Path:
-    """The file of an output, links resolved.
-
-    Raises:
-        InputError: it is an input, a folder, a pipe or a device, or a loop of links leads to it.
-    """
+    """The file of an output, links resolved; InputError if it is an input, a folder, a pipe, a device or a loop."""
     path = Path(path)
     try:
         target = path.resolve()
@@ -167,10 +157,7 @@ def whole(path: str | Path, lasting: bool = True) -> Iterator[Path]:
 
     The file is on the disk before it takes the name, unless it is one of many that can be made again (not `lasting`).
     Links are followed; permissions are those of the file that is replaced, else what the umask leaves. Its folder is
-    made; what a run that was killed has left in it is removed.
-
-    Raises:
-        InputError: the place cannot be written to, or is an input.
+    made; what a run that was killed has left in it is removed. InputError: it cannot be written to, or is an input.
     """
     target = require_writable(path)
     try:
@@ -202,11 +189,8 @@ def _begun(target: Path) -> tuple[Path, int]:
         name = f".bench-{secrets.token_hex(6)}-{target.stem[:32]}{target.suffix[-16:]}"
         temporary = target.with_name(name)
         handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)  # less the umask
-        if os.name == "posix":
-            import fcntl
-
-            with suppress(OSError):  # a file system without locks, where `_remove_left` gets none either
-                fcntl.flock(handle, fcntl.LOCK_EX)
+        with suppress(OSError):  # a file system without locks, where `_remove_left` gets none either
+            fcntl.flock(handle, fcntl.LOCK_EX)
         if os.fstat(handle).st_nlink:  # none: another process took it for left over before it was locked
             return temporary, handle
         os.close(handle)
@@ -214,10 +198,6 @@ def _begun(target: Path) -> tuple[Path, int]:
 
 def _remove_left(folder: Path) -> None:
     """Remove files of runs that were killed while they wrote: those that no process has locked."""
-    if os.name != "posix":
-        return
-    import fcntl
-
     for name in filter(_UNDER_WAY.fullmatch, os.listdir(folder)):  # noqa: PTH208 (a name is enough)
         left = folder / name
         # locked, or not ours to remove: it does no harm
@@ -227,10 +207,9 @@ def _remove_left(folder: Path) -> None:
 
 
 def _flush(path: Path) -> None:
-    """Flush a file, or the names in a folder, to the disk; folders only where the system allows it."""
-    if os.name == "posix" or not path.is_dir():
-        with _handle(path) as handle:
-            os.fsync(handle)
+    """Flush a file, or the names in a folder, to the disk."""
+    with _handle(path) as handle:
+        os.fsync(handle)
 
 
 @contextmanager
@@ -245,8 +224,6 @@ def _handle(path: Path, flags: int = 0) -> Iterator[int]:
 @contextmanager
 def held(folder: Path) -> Iterator[None]:
     """Make a folder and lock it for writing: another run of the bench waits until this one is done."""
-    import fcntl
-
     try:
         folder.mkdir(parents=True, exist_ok=True)
         handle = os.open(folder, os.O_RDONLY)

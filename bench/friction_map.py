@@ -110,11 +110,9 @@ def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
     total = float(effort @ effort)
     plain = _fitted("", (), velocity, effort)
     if plain.theta[0] * (velocity @ velocity) + plain.theta[1] * np.abs(velocity).sum() < 0.0:
-        raise InputError(
-            "friction over speed",
-            "found friction that drives the axis: torque and motion have opposite signs",
-            "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)",
-        )
+        found = "found friction that drives the axis: torque and motion have opposite signs"
+        allowed = "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)"
+        raise InputError("friction over speed", found, allowed)
     names = [name for name, effect in catalogue().items() if isinstance(effect, OfSpeed)]
     tried = [bent_curve(name, velocity, effort) for name in names]
     chances = [chance(plain, one, effort.size, ROUNDING * total) for one in tried]
@@ -123,24 +121,21 @@ def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
     probability = min(1.0, len(names) * chances[least])
     kept = best if probability < CHANCE else plain
     base = Base(float("nan"), float(kept.theta[0]), float(kept.theta[1]))
-    offset = float(kept.theta[2]) if kept.constant else None
-    name = kept.name or None
-    values = dict(catalogue()[name].report(kept.theta[3:].tolist(), kept.shape, base)) if name else {}
-    left = (float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total)))
+    effect = catalogue()[kept.name] if kept.name else None
     return FrictionMap(
-        velocity,
-        effort,
-        unit,
-        rig.axis_kind,
-        plain,
-        best,
-        base,
-        offset,
-        name,
-        values,
-        probability,
-        left,
-        joined([one.checks for one in gated]),
+        velocity=velocity,
+        effort=effort,
+        effort_unit=unit,
+        kind=rig.axis_kind,
+        plain=plain,
+        best=best,
+        base=base,
+        offset=float(kept.theta[2]) if kept.constant else None,
+        name=kept.name or None,
+        values={} if effect is None else dict(effect.report(kept.theta[3:].tolist(), kept.shape, base)),
+        probability=probability,
+        unexplained=(float(np.sqrt(plain.squares / total)), float(np.sqrt(best.squares / total))),
+        checks=joined([one.checks for one in gated]),
     )
 
 
@@ -165,9 +160,8 @@ def _points(recordings: Sequence[Trace], rig: Rig) -> tuple[Array, Array, str]:
     if fewest < LEAST:
         raise UndeterminedError("friction over speed", f"found {fewest} steady speeds in one of the directions", wanted)
     if np.abs(velocity).max() <= 2.0 * np.abs(velocity).min():
-        raise UndeterminedError(
-            "friction over speed", "found no speed twice another", f"{wanted}, the fastest well over twice the slowest"
-        )
+        wanted += ", the fastest well over twice the slowest"
+        raise UndeterminedError("friction over speed", "found no speed twice another", wanted)
     return velocity, table[:, 1], next(iter(units))
 
 

@@ -25,16 +25,16 @@ from bench.structured import parse_json
 
 #: Name of what is no array.
 _PARTS = "result"
+#: What is raised by a file that another version, or somebody else, wrote.
+_UNKNOWN = (ValueError, KeyError, TypeError, AttributeError, ImportError, OSError, EOFError, zipfile.BadZipFile)
 #: Kinds of a series of values, by name.
 _SERIES = {kind.__name__: kind for kind in (tuple, list, frozenset)}
 
 
 def pack(path: Path, result: object) -> None:
-    """Write a dataclass of the bench whole into a file.
+    """Write a dataclass of the bench whole into a file; InputError where that cannot be written.
 
-    Raises:
-        InputError: the file cannot be written.
-        TypeError: a part of it is neither a dataclass, an effect, an array, a number nor a text, nor made of those.
+    TypeError: a part of it is neither a dataclass, an effect, an array, a number nor a text, nor made of those.
     """
     arrays: dict[str, Array] = {}
     parts = json.dumps(_pack(result, arrays))
@@ -44,26 +44,13 @@ def pack(path: Path, result: object) -> None:
 
 
 def unpack(path: Path, kind: type) -> Any:  # noqa: ANN401 - of this kind
-    """What `pack` wrote of a result of this kind.
-
-    Raises:
-        InputError: no such file, or one that another version of the bench or somebody else wrote.
-    """
+    """What `pack` wrote of a result of this kind; InputError: no such file, or of another version or somebody else."""
     content = read_bytes(path, "a packed result")
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}
         result = _unpack(parse_json(str(arrays[_PARTS]), path), arrays)
-    except (
-        ValueError,
-        KeyError,
-        TypeError,
-        AttributeError,
-        ImportError,
-        OSError,
-        EOFError,
-        zipfile.BadZipFile,
-    ) as error:
+    except _UNKNOWN as error:
         found = f"holds no result that this version knows ({error})"
         raise InputError(path, found, "allowed: what the same version's `save` wrote") from error
     if not isinstance(result, kind):

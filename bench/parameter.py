@@ -65,13 +65,10 @@ class Parameter:
         return float(scipy.special.stdtridf(0.5 + 0.5 * LEVEL, reach)) if student else math.inf
 
     def interval(self, level: float) -> tuple[float, float]:
-        """The interval of another level - unit - by Student's t with the same degrees of freedom.
+        """The interval of another level, between 0 and 1 - unit - by Student's t with the same degrees of freedom.
 
         Without significant correlation and without `widened` those are the degrees of the covariance; a wide margin in
         addition to the covariance is treated as normally distributed.
-
-        Args:
-            level: 0 to 1, both excluded.
         """
         if level == LEVEL or not self.std_error > 0.0:
             return self.ci95

@@ -19,9 +19,8 @@ TOO_MANY_DIGITS = "holds an integer of thousands of digits"
 def read_toml(path: str | Path, kind: str, schema: str | None = None) -> dict[str, Any]:
     """Tables of a TOML file; `kind` is what it should be, for messages, e.g. `a rig file`.
 
-    Raises:
-        InputError: it cannot be read, is no TOML, is nested too deep, holds a number of too many digits, or is of
-            another schema than the one that it must have.
+    InputError: it cannot be read, is no TOML, is nested too deep, holds a number of too many digits, or is of another
+    schema than the one that it must have.
     """
     text = read_text(path, kind)
     try:
@@ -40,8 +39,7 @@ def read_toml(path: str | Path, kind: str, schema: str | None = None) -> dict[st
 def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
     """Content of a JSON text.
 
-    Raises:
-        InputError: not JSON, nested too deep, or a number of too many digits; names `where`, and the line.
+    InputError: not JSON, nested too deep, or a number of too many digits; names `where`, and the line.
     """
     try:
         return json.loads(text)
@@ -55,11 +53,7 @@ def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
 
 
 def json_text(content: Mapping[str, Any], ascii_only: bool = True) -> str:
-    """A result as JSON, which has no nan and no infinity: unknown values are null.
-
-    Raises:
-        UndeterminedError: a number of it is not finite.
-    """
+    """A result as JSON, whose unknown values are null; UndeterminedError if a number of it is not finite."""
     try:
         return json.dumps(content, indent=2, allow_nan=False, ensure_ascii=ascii_only)
     except ValueError as error:

@@ -51,7 +51,7 @@ LINES = (
 #: Runs the lines, each once; whatever one prints is printed at each width, which the terminal is given before.
 DRIVER = """
 import fcntl, json, struct, sys, termios
-from bench.cli import check, common, identify, lab, main, many, model, recording, without_recording
+from bench.cli import common, lab, main
 import bench.cli
 
 printing = False

@@ -179,12 +179,8 @@ def _of_quantities(
 ) -> Iterator[Comparison]:
     """Comparisons of parameters and gaps.
 
-    Args:
-        baseline, now: the states.
-        under: now with the effects of the baseline; None where they are the same.
-        both_sets: the same where a change has to show with both sets of effects.
-        allowed: margins and spreads.
-        motion: whether motion or sampling differ.
+    `under` is now with the effects of the baseline, None where they are the same; `both_sets` is that where a change
+    has to show with both sets of effects.
     """
     for name, own in now.quantities.items():
         if name not in baseline.quantities or (name == VELOCITY_GAP and under is not None):
@@ -256,23 +252,15 @@ def _lasting(state: State) -> list[NamedHere]:
 def matched(baseline: State, now: State) -> Matched:
     """Pairs of the same effect, then pairs that are `ambiguous_with` each other, then the rest."""
     before, after = _lasting(baseline), _lasting(now)
-    both = _paired(before, after, NamedHere.same)
-    renamed = _paired(before, after, NamedHere.indistinguishable_from)
+    both, renamed = list[tuple[NamedHere, NamedHere]](), list[tuple[NamedHere, NamedHere]]()
+    for pairs, alike in ((both, NamedHere.same), (renamed, NamedHere.indistinguishable_from)):
+        for one in list(before):
+            other = next((candidate for candidate in after if alike(one, candidate)), None)
+            if other is not None:
+                before.remove(one)
+                after.remove(other)
+                pairs.append((one, other))
     return Matched(tuple(both), tuple(renamed), tuple(before), tuple(after))
-
-
-def _paired(
-    before: list[NamedHere], after: list[NamedHere], alike: Callable[[NamedHere, NamedHere], bool]
-) -> list[tuple[NamedHere, NamedHere]]:
-    """Pairs that are alike, removed from both lists."""
-    pairs = []
-    for one in list(before):
-        other = next((candidate for candidate in after if alike(one, candidate)), None)
-        if other is not None:
-            before.remove(one)
-            after.remove(other)
-            pairs.append((one, other))
-    return pairs
 
 
 def _of_both(
@@ -320,7 +308,8 @@ def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, motion: Le
     if torque is None or baseline.shows is None:
         why = "shown by its signals alone, which do not say from when on the baseline would have shown it"
         return _undetermined(after.label, why, effect="appeared")
-    least = motion.factor * baseline.shows.named_from(max(len(after.quantities), 1))
+    significant = baseline.shows.torque * math.sqrt(max(len(after.quantities), 1))
+    least = motion.factor * max(significant, baseline.shows.left)
     nothing = Measured(0.0, torque.unit, torque.std_error)
     difference = Difference.of(nothing, torque, allowed.between_of(after.name, torque))
     found = Comparison(after.label, torque.unit, None, torque.value, (difference,), least, "appeared", motion.unlike)

@@ -10,7 +10,6 @@ same.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -47,9 +46,7 @@ def is_model(path: str | Path) -> bool:
 def modelled(path: str | Path, baseline: State | None = None) -> State:
     """The state of a `model.toml` that `bench diagnose` wrote, its response the run of `baseline` if there is one.
 
-    Raises:
-        InputError: no such model.
-        SimulationError: the model diverged.
+    InputError: no such model. SimulationError: the model diverged.
     """
     stored = load_model(path)
     kind, effects = stored.model.parameters.kind, []
@@ -101,16 +98,11 @@ def compare_models(baseline: State, now: State, allowed: Allowed) -> Checked:
             comparisons.append(_exact(key, was.unit, (was.value, value), away, margin))
     for how, changed in (("gone", effects.gone), ("appeared", effects.appeared)):
         comparisons += [Comparison(e.label, "", None, None, (), 0.0, how, chance=0.0, result=CHANGED) for e in changed]
-    comparisons += _of_response(baseline, now)
-    return Checked.of(comparisons, baseline, now, effects)
-
-
-def _of_response(baseline: State, now: State) -> Iterator[Comparison]:
-    """Comparison of the torque of both runs."""
     if baseline.response is not None and now.response is not None:
         before, after = np.array(baseline.response.torque), np.array(now.response.torque)
         values, margin = (rms(before), rms(after)), RESPONSE * rms(before)
-        yield _exact(RESPONSE_TORQUE, now.kind.effort_unit, values, rms(after - before), margin)
+        comparisons.append(_exact(RESPONSE_TORQUE, now.kind.effort_unit, values, rms(after - before), margin))
+    return Checked.of(comparisons, baseline, now, effects)
 
 
 def _exact(name: str, unit: str, values: tuple[float, float], away: float, margin: float) -> Comparison:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.recordings import Recordings
-from bench.fit.estimate import Alone
+from bench.diagnosis.show import Diagnosis
+from bench.fit.estimate import Estimate
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Hypothesis, Term
@@ -31,8 +32,7 @@ from bench.trace.motion import measured_velocity
 from bench.trace.trace import Trace, join
 
 Progress = Callable[[float], None]
-#: Effects of another state, each with its match in this one.
-Others = Sequence[tuple[NamedHere, NamedHere | None]]
+
 #: Factor within which conditions count as equal.
 ALIKE = 1.1
 #: Recorded but not compared: a changed axis needs another effort, and the cut-off follows the noise.
@@ -46,12 +46,9 @@ BESIDE = {"name", "simulation", "check", "drive", "source"}
 
 @dataclass(frozen=True)
 class Refitted:
-    """Quantities of recordings fitted with the effects of another state.
+    """Recordings fitted with the effects of another state: the torques of those in the torque balance by their labels.
 
-    Attributes:
-        quantities: by name.
-        torques: of those effects that are in the torque balance, by their labels.
-        noise_floor: of the torque gap - N*m (N).
+    The noise floor is that of the torque gap - N*m (N).
     """
 
     quantities: Mapping[str, Measured]
@@ -61,41 +58,34 @@ class Refitted:
 
 @dataclass(frozen=True)
 class Observed:
-    """A state, and the fit behind it.
-
-    Attributes:
-        state: of the axis.
-        fitted: the torque balance with the effects found, through the common filter of all states.
-        base_units: names and units of J, K_w and K_0.
-        unit: of the effort.
-    """
+    """A state and, where effects were searched for, the torque balance with them, through the filter of all states."""
 
     state: State
     fitted: Fit | None = None
-    base_units: Mapping[str, str] = field(default_factory=dict)
-    unit: str = ""
 
-    def under(self, others: Others) -> Refitted:
-        """The recording fitted with the effects of another state instead of its own.
+    def under(self, others: Sequence[tuple[NamedHere, NamedHere | None]]) -> Refitted:
+        """The recording fitted with the effects of another state, each with its match in this one, instead of its own.
 
-        An effect that comes or goes changes J, K_w and K_0 with it: an unchanged axis agrees under both sets.
-
-        Args:
-            others: effects of the other state. Those without a match start from the shape they had there; those
-                outside the torque balance are left out.
+        An effect that comes or goes changes J, K_w and K_0 with it: an unchanged axis agrees under both sets. Effects
+        without a match here start from the shape they had there; those outside the torque balance are left out.
         """
-        own = self.fitted
+        own, unit = self.fitted, self.state.quantities[TORQUE_GAP].unit
         assert own is not None
+        shaped_here = [one for one in self.state.effects if one.shape is not None]
         held = [pair for pair in others if pair[0].shape is not None]
-        hypothesis = own.hypothesis.with_terms(_term(effect, mine, own, self.state) for effect, mine in held)
-        fitted = fit(own.rows, hypothesis)
+        terms = []
+        for effect, mine in held:
+            if mine is not None:
+                terms.append(own.terms[shaped_here.index(mine)])
+            else:
+                terms.append(Term(effect.effect, effect.shape or (), load=() if effect.on_load else None))
+        fitted = fit(own.rows, own.hypothesis.with_terms(terms))
         for index, (_, mine) in enumerate(held):
             if mine is None:
                 fitted = shaped(fitted.rows, fitted.hypothesis, index)
-        base = uncertain(fitted).base(self.base_units)
-        torques = {effect.label: _torque(fitted, index, self.unit) for index, (effect, _) in enumerate(held)}
-        parameters = {name: Measured.of(one) for name, one in base.items()}
-        return Refitted(parameters | {TORQUE_GAP: _torque_gap(fitted, self.unit)}, torques, fitted.floor)
+        base = uncertain(fitted).base(self.state.kind.base_parameters(unit))
+        torques = {effect.label: _torque(fitted, index, unit) for index, (effect, _) in enumerate(held)}
+        return Refitted(_measured(base) | {TORQUE_GAP: _torque_gap(fitted, unit)}, torques, fitted.floor)
 
 
 def observe(
@@ -118,9 +108,8 @@ def observe(
         return _diagnosed(traces, rig, progress)
     traces = [passed(trace, rig).trace for trace in traces]
     found, fitted = identify(traces, rig), balance(join(traces), rig, Hypothesis())
-    gap = _torque_gap(fitted, found.residual.unit)
-    quantities = _parameters(rig.axis_kind.base_parameters(), found.parameters, found.recordings) | {TORQUE_GAP: gap}
-    gaps = {"torque": RemainingGap(gap.value, fitted.floor, gap.unit)}
+    quantities = _quantities(found, fitted, rig, found.residual.unit)
+    gaps = {"torque": RemainingGap(fitted.rms, fitted.floor, found.residual.unit)}
     at = conditions(traces, rig, found.cutoff)
     return Observed(State("recordings", False, quantities, gaps=gaps, conditions=at, rig=rig_values(rig)))
 
@@ -131,29 +120,29 @@ def _diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress) -> Observe
     traces = [passed(trace, rig).trace for trace in traces]
     recordings = Recordings.of(traces, rig, None)
     unit, fitted = recordings.unit, balance(recordings.corrected, rig, replace(found.balance.hypothesis, hum=()))
-    count, gaps = len(fitted.terms), {"torque": found.torque, "velocity": found.velocity}
+    count = len(fitted.terms)
     effects = [_named(effect, fitted, index, unit) for index, effect in enumerate(found.effects[:count])]
     effects += [NamedHere(e.effect, _measured(e.parameters)) for e in found.effects[count:]]
-    quantities = _parameters(recordings.base_units, found.parameters, found.recordings)
-    quantities[TORQUE_GAP] = _torque_gap(fitted, unit)
-    if found.velocity.identify is not None:
-        quantities[VELOCITY_GAP] = Measured(found.velocity.identify[1], found.velocity.unit)
+    gaps = {
+        name: RemainingGap(gap.identify[1], gap.noise_floor, gap.unit)
+        for name, gap in (("torque", found.torque), ("velocity", found.velocity))
+        if gap.identify is not None
+    }
+    quantities = _quantities(found, fitted, rig, unit)
+    if "velocity" in gaps:
+        quantities[VELOCITY_GAP] = Measured(gaps["velocity"].after, gaps["velocity"].unit)
     state = State(
         source="recordings",
         names=True,
         quantities=quantities,
         effects=tuple(effects),
         verdict=found.verdict,
-        gaps={
-            name: RemainingGap(gap.identify[1], gap.noise_floor, gap.unit)
-            for name, gap in gaps.items()
-            if gap.identify is not None
-        },
+        gaps=gaps,
         shows=_shows(fitted),
         conditions=conditions(traces, rig, recordings.rows.conditioning.filter.cutoff),
         rig=rig_values(rig),
     )
-    return Observed(state, fitted, recordings.base_units, unit)
+    return Observed(state, fitted)
 
 
 def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
@@ -165,11 +154,12 @@ def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
     return with_hum(fit(Rows.of(trace, rig, width=WIDEST), hypothesis))
 
 
-def _parameters(
-    names: Iterable[str], found: Mapping[str, Parameter], recordings: Sequence[Alone]
-) -> dict[str, Measured]:
-    alone = {name: [one.parameters[name] for one in recordings if name in one.parameters] for name in names}
-    return {name: Measured.of(found[name], alone[name]) for name in names if name in found}
+def _quantities(found: Estimate | Diagnosis, fitted: Fit, rig: Rig, unit: str) -> dict[str, Measured]:
+    """J, K_w and K_0 with how recordings differ in them, and what the torque balance leaves."""
+    names = [name for name in rig.axis_kind.base_parameters() if name in found.parameters]
+    alone = {name: [one.parameters[name] for one in found.recordings if name in one.parameters] for name in names}
+    known = {name: Measured.of(found.parameters[name], alone[name]) for name in names}
+    return known | {TORQUE_GAP: _torque_gap(fitted, unit)}
 
 
 def _measured(parameters: Mapping[str, Parameter]) -> dict[str, Measured]:
@@ -214,13 +204,6 @@ def _shows(fitted: Fit) -> DetectionLimits:
     return DetectionLimits(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
 
 
-def _term(effect: NamedHere, mine: NamedHere | None, own: Fit, state: State) -> Term:
-    """The term of an effect: the one of this recording, else one of the shape in the other state."""
-    if mine is not None:
-        return own.terms[[one for one in state.effects if one.shape is not None].index(mine)]
-    return Term(effect.effect, effect.shape or (), load=() if effect.on_load else None)
-
-
 def conditions(traces: Sequence[Trace], rig: Rig, cutoff: float) -> dict[str, Measured]:
     """Motion, sampling and cut-off - Hz - of recordings, their mean where there are several; SI."""
     kind = rig.axis_kind
@@ -232,12 +215,12 @@ def conditions(traces: Sequence[Trace], rig: Rig, cutoff: float) -> dict[str, Me
         "duration": "s",
         "sample_period": "s",
     }
-    found = np.mean([_of(trace, rig) for trace in traces], axis=0).tolist()
+    found = np.mean([_conditions_of(trace, rig) for trace in traces], axis=0).tolist()
     measured = {name: Measured(value, unit) for (name, unit), value in zip(units.items(), found, strict=True)}
     return measured | {"cutoff": Measured(cutoff, "Hz")}
 
 
-def _of(trace: Trace, rig: Rig) -> list[float]:
+def _conditions_of(trace: Trace, rig: Rig) -> list[float]:
     speed, period = measured_velocity(trace), trace.sample_period
     width = max(1, round(SMOOTH / period))
     slopes = [np.zeros(1)]

@@ -136,19 +136,12 @@ class DetectionLimits:
     torque: float
     left: float
 
-    def named_from(self, numbers: int) -> float:
-        """RMS torque of an effect with so many parameters that the recording would have shown - N*m (N)."""
-        return max(self.torque * float(np.sqrt(numbers)), self.left)
-
 
 @dataclass(frozen=True)
 class Response:
-    """A run of a model.
+    """A run of a model: the drive's torque at INSTANTS of it - N*m (N).
 
-    Attributes:
-        inertia: for which drive and speeds are laid out - kg*m**2 (kg).
-        acceleration: largest of the reference - rad/s**2 (m/s**2).
-        torque: of the drive at INSTANTS of the run - N*m (N).
+    Drive and speeds are laid out for an inertia - kg*m**2 (kg) - and a largest acceleration - rad/s**2 (m/s**2).
     """
 
     inertia: float
@@ -264,13 +257,7 @@ def read_baseline(path: str | Path) -> State:
 
 @dataclass(frozen=True)
 class _Table:
-    """A table of a baseline's file, and what it stands for; every error names file and key.
-
-    Attributes:
-        source: the file.
-        place: of the table in it, dotted; empty for the whole file.
-        content: as TOML has it.
-    """
+    """A table of a baseline's file at a dotted place, and what it stands for; every error names file and key."""
 
     source: str
     place: str

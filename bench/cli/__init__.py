@@ -22,17 +22,16 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer import Option
 from typer.exceptions import TyperException
 
 from bench import __version__
 from bench.cli.check import check
 from bench.cli.common import guarded, say
-from bench.cli.identify import diagnose, identify, robot
 from bench.cli.lab import lab
-from bench.cli.many import fleet, validate
 from bench.cli.model import compensate, export, replay, view
-from bench.cli.recording import friction, inspect, limits
-from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate
+from bench.cli.recording import diagnose, fleet, friction, identify, inspect, limits, robot
+from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate, validate
 from bench.errors import BenchError, InputError
 from bench.names import plain, short
 
@@ -42,7 +41,7 @@ app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
 @app.callback(invoke_without_command=True)
 def bench(
     context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+    version: Annotated[bool, Option("--version", help="Print the version and stop.")] = False,
 ) -> None:
     """Test bench for a servo axis: simulate it in MuJoCo, and identify simulated and real ones alike."""
     if version:
@@ -90,7 +89,10 @@ LONGEST = 6000
 def main() -> None:
     """Entry point of `bench`: errors become one line on standard error and an exit status."""
     try:
-        _encode_everything()
+        if sys.stdout is None:
+            raise InputError("standard output", "is closed", "send it to a file, or to /dev/null")
+        if isinstance(sys.stdout, io.TextIOWrapper):
+            sys.stdout.reconfigure(errors="backslashreplace")  # as standard error is
         _add_offered()
         status = app(standalone_mode=False)
         sys.stdout.flush()
@@ -119,11 +121,7 @@ def _leave_output() -> None:
 
 
 def _add_offered() -> None:
-    """Add the commands of other packages.
-
-    Raises:
-        InputError: what one offers is no function, or has the name of a command of the bench.
-    """
+    """Add the commands of other packages; InputError if one is no function, or has the name of one of the bench."""
     own = {command.__name__ for command in COMMANDS}
     for entry in entry_points(group=GROUP):
         offered: Callable[..., None] = entry.load()
@@ -132,14 +130,6 @@ def _add_offered() -> None:
             raise InputError(f"{GROUP}: {entry.value}", found, "allowed: a function under a name of its own")
         if entry.name not in {known.name for known in app.registered_commands}:
             app.command(entry.name)(guarded(offered))
-
-
-def _encode_everything() -> None:
-    """Have characters that standard output cannot encode written out, as standard error does; InputError if closed."""
-    if sys.stdout is None:
-        raise InputError("standard output", "is closed", "send it to a file, or to /dev/null")
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _fault(fault: Exception) -> str:

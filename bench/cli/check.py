@@ -6,12 +6,12 @@ import os
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
+from typer import Argument, Option
 
 import bench
 from bench.cli import common
@@ -31,94 +31,80 @@ Format = Literal["text", "github", "gitlab"]
 
 
 def check(
-    baseline: Annotated[Path, typer.Option("--baseline", help="TOML file of what the axis was.")],
+    baseline: Annotated[Path, Option(help="TOML file of what the axis was.")],
     traces: Annotated[
-        list[Path] | None, typer.Argument(metavar="TRACE...", help="Recordings of the axis now, of any known format.")
+        list[Path] | None, Argument(metavar="TRACE...", help="Recordings of the axis now, of any known format.")
     ] = None,
     rig: common.OptionalRigOption = None,
-    simulated: Annotated[
-        Path | None, typer.Option("--simulated", help="model.toml to check in the place of recordings.")
-    ] = None,
-    update: Annotated[bool, typer.Option("--update", help="Accept the present state: write the baseline.")] = False,
+    simulated: Annotated[Path | None, Option(help="model.toml to check in the place of recordings.")] = None,
+    update: Annotated[bool, Option("--update", help="Accept the present state: write the baseline.")] = False,
     without_names: Annotated[
-        bool, typer.Option("--without-names", help="With --update: compare parameters alone, in a tenth of the time.")
+        bool, Option("--without-names", help="With --update: compare parameters alone, in a tenth of the time.")
     ] = False,
-    junit: Annotated[Path | None, typer.Option("--junit", help="JUnit XML to write.")] = None,
+    junit: Annotated[Path | None, Option(help="JUnit XML to write.")] = None,
     json: common.JsonOption = None,
     report: common.ReportOption = None,
     form: Annotated[
-        Format, typer.Option("--format", help="github: annotations. gitlab: a code quality report on standard output.")
+        Format, Option("--format", help="github: annotations. gitlab: a code quality report on standard output.")
     ] = "text",
-    false_alarm_rate: Annotated[
-        float, typer.Option("--false-alarm-rate", help="Of all comparisons together.", min=1e-6, max=0.5)
-    ] = 0.01,
+    false_alarm_rate: Annotated[float, Option(help="Of all comparisons together.", min=1e-6, max=0.5)] = 0.01,
     axis_name: common.AxisOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,
     at: common.AtOption = None,
 ) -> None:
     """Has this axis, or this model of one, changed? Exit status 0: the same, 3: changed, 1: undecided."""
-    asked = Asked(traces or [], rig, simulated, axis_name, mjcf, joint or [], at or [])
-    _require_consistent(asked, update, without_names, any((junit, json, report)))
-    if update:
-        _update(asked, baseline, not without_names)
-        return
-    with common.refusal_as_json(json, "bench.check/1"):
-        checked = asked.checked(baseline, false_alarm_rate)
-    if simulated is not None:  # all of which are named model.toml
-        title = f"{simulated} against {baseline}"
+    given = traces or []
+    selects_joint, no_rig = bool(mjcf or joint or at), rig is None and mjcf is None
+    _require_consistent(given, simulated, selects_joint, no_rig, update, without_names, any((junit, json, report)))
+    if simulated is None:
+        of = common.subject(rig, axis_name, mjcf, joint, at, given[0])
+        if update:
+            _accept(baseline, _observed(of, given, axis_name, not without_names).state, len(given))
+            return
+        with common.refusal_as_json(json, "bench.check/1"):
+            checked = _recordings_checked(baseline, of, given, axis_name, false_alarm_rate)
+        title = f"{in_a_row(given)} against {readable(baseline.name)}"
     else:
-        title = f"{in_a_row(asked.traces)} against {readable(baseline.name)}"
+        if update:
+            _accept(baseline, _of_model(simulated))
+            return
+        checked = _model_checked(baseline, simulated, rig, axis_name)
+        title = f"{simulated} against {baseline}"  # all of which are named model.toml
     _write(checked, title, baseline, (junit, json, report), form)
     raise typer.Exit(STATUS[checked.result])
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What is to be held against the baseline: recordings with their rig, or a model."""
+def _require_consistent(
+    traces: list[Path], simulated: Path | None, joint: bool, no_rig: bool, update: bool, quick: bool, written: bool
+) -> None:
+    """InputError where arguments contradict each other, or one is missing."""
+    if simulated is not None and traces:
+        raise InputError("--simulated", "found with recordings", "allowed: a model, or recordings with their rig")
+    if simulated is None and not traces:
+        raise InputError("TRACE...", "found none", "allowed: recordings with --rig RIG, or --simulated MODEL")
+    if simulated is not None and joint:
+        raise InputError("--simulated", "found with --mjcf, --joint or --at", "allowed: with recordings")
+    if simulated is None and no_rig:
+        allowed = "give the rig file of the axis, or the name of a shipped rig; or --mjcf and --joint"
+        raise InputError("--rig", "missing", allowed)
+    if quick and not (update and traces):
+        found = "found without --update TRACE..."
+        raise InputError("--without-names", found, "allowed: when the baseline is made, which says so from then on")
+    if update and written:
+        found = "found with --junit, --json or --report"
+        raise InputError("--update", found, "allowed: alone; the check after it has results")
 
-    traces: list[Path]
-    rig: Path | None
-    simulated: Path | None
-    axis_name: str | None
-    mjcf: Path | None
-    joints: list[str]
-    at: list[str]
 
-    @cached_property
-    def subject(self) -> Subject:
-        """What the recordings are of."""
-        return common.subject(self.rig, self.axis_name, self.mjcf, self.joints, self.at, self.traces[0])
+def _observed(of: Subject, traces: list[Path], axis: str | None, names: bool) -> Observed:
+    """What recordings tell now, with where it comes from."""
+    from bench.baseline.observe import observe
+    from bench.report.terminal import progress
 
-    def observed(self, names: bool) -> Observed:
-        """What recordings tell now, with where it comes from."""
-        from bench.baseline.observe import observe
-        from bench.report.parts import provenance
-        from bench.report.terminal import progress
-
-        of = self.subject
-        with progress(f"checking {in_a_row(self.traces)}") as done:
-            observed = observe([of.read(trace) for trace in self.traces], of.rig, names, done)
-        options = {"names": names, "axis": self.axis_name, **of.options}
-        basis = provenance(self.rig, self.traces, options, None, self.mjcf)
-        return replace(observed, state=replace(observed.state, provenance=basis))
-
-    def checked(self, baseline: Path, rate: float) -> bench.Checked:
-        """The check."""
-        from bench.baseline.check import Allowed, compare
-        from bench.baseline.state import read_baseline
-
-        if self.simulated is None:
-            before = read_baseline(baseline)
-            before.require_source("recordings", baseline)
-            return compare(before, self.observed(before.names), Allowed.of(self.subject.rig), rate)
-        from bench.baseline.model import compare_models, is_model
-
-        before = _of_model(baseline) if is_model(baseline) else read_baseline(baseline)
-        before.require_source("model", baseline)
-        now = _of_model(self.simulated, before)
-        rig = None if self.rig is None else bench.load_rig(self.rig).on_axis(self.axis_name)
-        return compare_models(before, now, Allowed.of(rig, now.kind))
+    with progress(f"checking {in_a_row(traces)}") as done:
+        observed = observe([of.read(trace) for trace in traces], of.rig, names, done)
+    basis = of.provenance(traces, {"names": names, "axis": axis})
+    return replace(observed, state=replace(observed.state, provenance=basis))
 
 
 def _of_model(model: Path, like: State | None = None) -> State:
@@ -129,38 +115,38 @@ def _of_model(model: Path, like: State | None = None) -> State:
     return replace(modelled(model, like), provenance=basis)
 
 
-def _require_consistent(asked: Asked, update: bool, quick: bool, written: bool) -> None:
-    """InputError where arguments contradict each other, or one is missing."""
-    if asked.simulated is not None and asked.traces:
-        raise InputError("--simulated", "found with recordings", "allowed: a model, or recordings with their rig")
-    if asked.simulated is None and not asked.traces:
-        raise InputError("TRACE...", "found none", "allowed: recordings with --rig RIG, or --simulated MODEL")
-    if asked.simulated is not None and (asked.mjcf or asked.joints or asked.at):
-        raise InputError("--simulated", "found with --mjcf, --joint or --at", "allowed: with recordings")
-    if asked.simulated is None and asked.rig is None and asked.mjcf is None:
-        allowed = "give the rig file of the axis, or the name of a shipped rig; or --mjcf and --joint"
-        raise InputError("--rig", "missing", allowed)
-    if quick and not (update and asked.traces):
-        found = "found without --update TRACE..."
-        raise InputError("--without-names", found, "allowed: when the baseline is made, which says so from then on")
-    if update and written:
-        raise InputError(
-            "--update", "found with --junit, --json or --report", "allowed: alone; the check after it has results"
-        )
+def _recordings_checked(
+    baseline: Path, of: Subject, traces: list[Path], axis: str | None, rate: float
+) -> bench.Checked:
+    from bench.baseline.check import Allowed, compare
+    from bench.baseline.state import read_baseline
+
+    before = read_baseline(baseline)
+    before.require_source("recordings", baseline)
+    return compare(before, _observed(of, traces, axis, before.names), Allowed.of(of.rig), rate)
 
 
-def _update(asked: Asked, baseline: Path, names: bool) -> None:
-    """Accept the present state, and say what a check against it will not be able to tell."""
+def _model_checked(baseline: Path, model: Path, rig: Path | None, axis: str | None) -> bench.Checked:
+    from bench.baseline.check import Allowed
+    from bench.baseline.model import compare_models, is_model
+    from bench.baseline.state import read_baseline
+
+    before = _of_model(baseline) if is_model(baseline) else read_baseline(baseline)
+    before.require_source("model", baseline)
+    now = _of_model(model, before)
+    known = None if rig is None else bench.load_rig(rig).on_axis(axis)
+    return compare_models(before, now, Allowed.of(known, now.kind))
+
+
+def _accept(baseline: Path, state: State, recordings: int = 0) -> None:
+    """Write the present state, and say what a check against it will not be able to tell."""
     from bench.baseline.state import write_baseline
     from bench.comparison.difference import ENOUGH
 
-    simulated = asked.simulated
-    state = asked.observed(names).state if simulated is None else _of_model(simulated)
     write_baseline(baseline, state)
     common.list_files([baseline])
-    count = len(asked.traces)
-    if 0 < count < ENOUGH:
-        counted = "1 recording tells" if count == 1 else f"{count} recordings tell"
+    if 0 < recordings < ENOUGH:
+        counted = "1 recording tells" if recordings == 1 else f"{recordings} recordings tell"
         advice = f"make the baseline of {ENOUGH} or more, or state it in [check.between] of the rig"
         how = f"{counted} little of how recordings of this axis differ, so defaults count (docs/check.md)"
         common.warn([f"{how}: {advice}"])

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
+from typer import Argument, Option
 
 import bench
 from bench.bounds import bounded
@@ -36,7 +37,7 @@ FOLDERS = frozenset({"out", "synthetic", "notebooks"})
 REPLACED = frozenset({"baseline"})
 
 TracesArgument = Annotated[
-    list[Path], typer.Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
+    list[Path], Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
 ]
 
 
@@ -54,12 +55,12 @@ def _shipped_rigs() -> list[str]:
 
 def profile_option(about: str) -> Any:  # noqa: ANN401 - typer's
     """`--profile`, which a shell completes."""
-    return typer.Option("--profile", help=f"{about} {', '.join(NAMES)}.", autocompletion=lambda: [*NAMES])
+    return Option("--profile", help=f"{about} {', '.join(NAMES)}.", autocompletion=lambda: [*NAMES])
 
 
 def effect_option(about: str) -> Any:  # noqa: ANN401 - typer's
     """`--effect`, which a shell completes."""
-    return typer.Option("--effect", help=f"{about} Repeatable.", autocompletion=_effects)
+    return Option("--effect", help=f"{about} Repeatable.", autocompletion=_effects)
 
 
 def _effects() -> list[str]:
@@ -72,39 +73,37 @@ def _effects() -> list[str]:
 _RIG: dict[str, Any] = {"parser": _rig_file, "metavar": "RIG", "autocompletion": _shipped_rigs}
 BesideRigOption = Annotated[
     Path | None,
-    typer.Option("--rig", help="Rig file (TOML), or a shipped rig's name; without, one is drafted.", **_RIG),
+    Option("--rig", help="Rig file (TOML), or a shipped rig's name; without, one is drafted.", **_RIG),
 ]
 DraftOption = Annotated[
-    Path | None, typer.Option("--draft", help="Without --rig: file to write the rig to that was drafted.")
+    Path | None, Option("--draft", help="Without --rig: file to write the rig to that was drafted.")
 ]
 MjcfOption = Annotated[
-    Path | None, typer.Option("--mjcf", help="MJCF of the robot whose other dynamics are known, gravity among them.")
+    Path | None, Option("--mjcf", help="MJCF of the robot whose other dynamics are known, gravity among them.")
 ]
-JointOption = Annotated[list[str] | None, typer.Option("--joint", help="Joint of the MJCF that the log is of.")]
+JointOption = Annotated[list[str] | None, Option("--joint", help="Joint of the MJCF that the log is of.")]
 AtOption = Annotated[
     list[str] | None,
-    typer.Option("--at", help="NAME=ANGLE of a joint that stands and that the log does not hold. Repeatable."),
+    Option("--at", help="NAME=ANGLE of a joint that stands and that the log does not hold. Repeatable."),
 ]
 RIG_HELP = "Rig file (TOML), or a shipped rig's name: what is known about the axis."
-RigOption = Annotated[Path, typer.Option("--rig", help=RIG_HELP, **_RIG)]
-OptionalRigOption = Annotated[Path | None, typer.Option("--rig", help=RIG_HELP, **_RIG)]
-RigArgument = Annotated[Path, typer.Argument(help="Rig file with [drive] and [simulation], or a shipped rig.", **_RIG)]
-AxisOption = Annotated[str | None, typer.Option("--axis", help="Axis to read where a recording holds several.")]
+RigOption = Annotated[Path, Option("--rig", help=RIG_HELP, **_RIG)]
+OptionalRigOption = Annotated[Path | None, Option("--rig", help=RIG_HELP, **_RIG)]
+RigArgument = Annotated[Path, Argument(help="Rig file with [drive] and [simulation], or a shipped rig.", **_RIG)]
+AxisOption = Annotated[str | None, Option("--axis", help="Axis to read where a recording holds several.")]
 FiguresOption = Annotated[
-    Literal["png", "pdf", "svg"], typer.Option("--figures", help="Format of the figures that --out writes.")
+    Literal["png", "pdf", "svg"], Option("--figures", help="Format of the figures that --out writes.")
 ]
-ReportOption = Annotated[Path | None, typer.Option("--report", help="Page to write: .html, all in one file.")]
-JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the result as JSON to this file; - is stdout.")]
+ReportOption = Annotated[Path | None, Option("--report", help="Page to write: .html, all in one file.")]
+JsonOption = Annotated[Path | None, Option("--json", help="Write the result as JSON to this file; - is stdout.")]
 #: Standard output, as `--json` names it.
 STDOUT = Path("-")
 
 
 def _everywhere(
     *,
-    max_size: Annotated[
-        str | None, typer.Option("--max-size", help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")
-    ] = None,
-    debug: Annotated[bool, typer.Option("--debug", help="Print the whole traceback of a failure.")] = False,
+    max_size: Annotated[str | None, Option(help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")] = None,
+    debug: Annotated[bool, Option("--debug", help="Print the whole traceback of a failure.")] = False,
 ) -> None:
     """What every command takes."""
 
@@ -112,8 +111,7 @@ def _everywhere(
 def guarded(verb: Callable[..., None]) -> Callable[..., None]:
     """A command that takes `--debug` and `--max-size` too, and whose outputs replace none of its inputs.
 
-    Raises:
-        InputError: before any work, where an output is an input or `--json` names a folder that is not there.
+    InputError: before any work, where an output is an input or `--json` names a folder that is not there.
     """
     signatures = (inspect.signature(each, eval_str=True) for each in (verb, _everywhere))
     taken = [one.replace(kind=one.KEYWORD_ONLY) for each in signatures for one in each.parameters.values()]
@@ -121,7 +119,12 @@ def guarded(verb: Callable[..., None]) -> Callable[..., None]:
     @functools.wraps(verb)
     def command(max_size: str | None, debug: bool, **given: object) -> None:  # `debug` is `bench.cli.main`'s
         with bounded(max_size), keeping(path for _, path in _paths(given, read=True)):
-            _require_places(given)
+            for name, path in _paths(given, read=False):
+                if path != STDOUT and not (name in FOLDERS and path.is_dir()):
+                    require_writable(path)
+            json, out = given.get("json"), given.get("out")
+            if isinstance(json, Path) and json != STDOUT and not json.parent.is_dir() and json.parent != out:
+                raise InputError(json, f"found no folder '{json.parent}'", "allowed: a file in a folder that is there")
             verb(**given)
 
     vars(command)["__signature__"] = inspect.Signature(taken)
@@ -138,21 +141,8 @@ def _paths(given: Mapping[str, object], read: bool) -> Iterator[tuple[str, Path]
             yield from ((name, path) for path in paths if isinstance(path, Path))
 
 
-def _require_places(given: Mapping[str, object]) -> None:
-    for name, path in _paths(given, read=False):
-        if path != STDOUT and not (name in FOLDERS and path.is_dir()):
-            require_writable(path)
-    json, out = given.get("json"), given.get("out")
-    if isinstance(json, Path) and json != STDOUT and not json.parent.is_dir() and json.parent != out:
-        raise InputError(json, f"found no folder '{json.parent}'", "allowed: a file in a folder that is there")
-
-
 def write_json(path: Path | None, text: Callable[[], str]) -> None:
-    """Write JSON to a file in an existing folder, or to standard output, where it is asked for: only then it is made.
-
-    Raises:
-        InputError: a place that cannot be written to.
-    """
+    """Write JSON to a file, or to standard output, where it is asked for: only then it is made."""
     if path == STDOUT:
         typer.echo(text())
     elif path is not None:
@@ -160,11 +150,7 @@ def write_json(path: Path | None, text: Callable[[], str]) -> None:
 
 
 def write_page(path: Path | None, document: Document) -> None:
-    """Write the page of a result to a file, where one is asked for.
-
-    Raises:
-        InputError: another ending than .html, or a place that cannot be written to.
-    """
+    """Write the page of a result to a file, where one is asked for; InputError for another ending than .html."""
     if path is not None:
         from bench.report.publish import write_html
 
@@ -172,11 +158,7 @@ def write_page(path: Path | None, document: Document) -> None:
 
 
 def write_picture(path: Path | None, picture: Picture) -> None:
-    """Write a picture to a file, where one is asked for; the ending decides the format.
-
-    Raises:
-        InputError: an ending that is no picture's, or a place that cannot be written to.
-    """
+    """Write a picture to a file, where one is asked for; InputError for an ending that is no picture's."""
     if path is not None:
         from bench.report.figures import drawn, save  # matplotlib: 0.35 s
 
@@ -258,21 +240,30 @@ def warn(warnings: Iterable[str]) -> None:
 
 @dataclass(frozen=True)
 class Subject:
-    """What a recording is of: an axis or a robot's joint.
+    """What a recording is of: an axis, or a robot's joint, which alone has the last three.
 
     Attributes:
-        rig: of it.
+        files: of the rig and of the robot, where they are given.
         read: how its recordings are read whole.
-        joint: the robot's; None of an axis.
-        along: the robot along a log; None of an axis.
-        options: of the command that say which joint it is; {} of an axis.
+        along: the robot along a log.
+        options: of the command that say which joint it is.
     """
 
     rig: bench.Rig
+    files: tuple[Path | None, Path | None]
     read: Callable[[Path], bench.Trace]
     joint: str | None = None
     along: Callable[[Path], RobotAlong] | None = None
     options: dict[str, object] = field(default_factory=dict)
+
+    def provenance(
+        self, traces: Sequence[Path], options: Mapping[str, object], holdout: Path | None = None
+    ) -> dict[str, Any]:
+        """What a result of recordings rests on, with the options that change it."""
+        from bench.report.parts import provenance
+
+        rig, mjcf = self.files
+        return provenance(rig, traces, {**options, **self.options}, holdout, mjcf)
 
 
 def subject(
@@ -284,24 +275,23 @@ def subject(
     trace: Path | None,
     draft: Path | None = None,
 ) -> Subject:
-    """The axis of a rig file, or of one drafted from a recording, or the joint of an MJCF with or without a rig.
+    """The axis of a rig file, or of one drafted from the first recording, or the joint of an MJCF; by these options.
 
-    Args:
-        rig, axis, mjcf, joints, at: as the options of these names have them.
-        trace: the first recording.
-        draft: where a drafted rig is written.
-
-    Raises:
-        InputError: neither is given, options that do not go together, or a file that cannot be read.
+    InputError: neither is given, options that do not go together, or a file that cannot be read.
     """
-    joint = _one_joint(joints)
+    named = [*dict.fromkeys(joints or [])]
+    if len(named) > 1:
+        every = " ".join(f"--joint {name}" for name in named)
+        allowed = f"allowed: one here; several together: bench robot LOG --mjcf ROBOT {every} --out DIR"
+        raise InputError("--joint", f"found {', '.join(named)}", allowed)
+    joint = next(iter(named), None)
     if mjcf is None:
         if joint is not None or at:
             raise InputError("--joint" if joint is not None else "--at", "found without --mjcf", "allowed: with --mjcf")
         if rig is not None and draft is not None:
             raise InputError("--draft", "found with --rig", "allowed: without, for the rig that is drafted then")
         known = _drafted(trace, axis, draft) if rig is None else bench.load_rig(rig).on_axis(axis)
-        return Subject(known, lambda path: bench.read(path, known.trace))
+        return Subject(known, (rig, None), lambda path: bench.read(path, known.trace))
     from bench.plant.robot import Robot, joint_rig, poses_along, read_log
 
     robot = Robot.of(mjcf, joint)
@@ -321,17 +311,7 @@ def subject(
         ratio = within.load.gear_ratio if within.load is not None else 1.0
         return RobotAlong(mjcf, robot.joint, ratio, *poses_along(path, within, robot, stands))
 
-    return Subject(within, read, joint, along, {"joint": joint, "at": at or []})
-
-
-def _one_joint(joints: Sequence[str] | None) -> str | None:
-    """The joint that a command for one is given; None without. InputError where several are, as `bench robot` takes."""
-    named = [*dict.fromkeys(joints or [])]
-    if len(named) > 1:
-        every = " ".join(f"--joint {name}" for name in named)
-        allowed = f"allowed: one here; several together: bench robot LOG --mjcf ROBOT {every} --out DIR"
-        raise InputError("--joint", f"found {', '.join(named)}", allowed)
-    return named[0] if named else None
+    return Subject(within, (rig, mjcf), read, joint, along, {"joint": joint, "at": at or []})
 
 
 def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.Rig:

@@ -5,35 +5,36 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import BadParameter, Exit, Option
 
 from bench.cli.common import list_files, printed, say
 
 
 def lab(
-    data: Annotated[Path | None, typer.Option("--data", help="Folder of your recordings; else synthetic ones.")] = None,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the report, or the grades.")] = Path("bench_lab"),
+    data: Annotated[Path | None, Option(help="Folder of your recordings; else synthetic ones.")] = None,
+    out: Annotated[Path, Option(help="Folder for the report, or the grades.")] = Path("bench_lab"),
     synthetic: Annotated[
-        Path | None, typer.Option("--record", help="Only simulate the course's recordings, into this folder.")
+        Path | None, Option("--record", help="Only simulate the course's recordings, into this folder.")
     ] = None,
-    students: Annotated[
-        int | None, typer.Option("--students", help="With --record: a folder and an axis of its own for each.")
-    ] = None,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="With --record: of everything drawn.")] = 0,
+    students: Annotated[int | None, Option(help="With --record: a folder and an axis of its own for each.")] = None,
+    seed: Annotated[int, Option(min=0, help="With --record: of everything drawn.")] = 0,
     submissions: Annotated[
-        Path | None, typer.Option("--grade", help="Grade the filled forms in this folder; with --truth.")
+        Path | None, Option("--grade", help="Grade the filled forms in this folder; with --truth.")
     ] = None,
-    truth: Annotated[Path | None, typer.Option("--truth", help="Sealed truth that --students wrote.")] = None,
-    notebooks: Annotated[
-        Path | None, typer.Option("--notebooks", help="Only write a notebook for each task, into this folder.")
-    ] = None,
+    truth: Annotated[Path | None, Option(help="Sealed truth that --students wrote.")] = None,
+    notebooks: Annotated[Path | None, Option(help="Only write a notebook for each task, into this folder.")] = None,
     folders: Annotated[
-        Path | None, typer.Option("--questions", help="Three questions for each student of this class' folder.")
+        Path | None, Option("--questions", help="Three questions for each student of this class' folder.")
     ] = None,
 ) -> None:
     """Do all tasks of the lab course; write one report as HTML, PDF and JSON. Or prepare and grade a class."""
     if synthetic is not None:
-        _record(synthetic, students, seed)
+        from bench.course.record import record, record_class
+        from bench.report.terminal import progress
+
+        with progress("recording") as done:
+            made = record(synthetic, seed, done) if students is None else record_class(synthetic, students, seed, done)
+        list_files(made)
     elif submissions is not None:
         _grade(submissions, truth, out)
     elif folders is not None:
@@ -43,24 +44,16 @@ def lab(
 
         list_files(write_notebooks(notebooks))
     elif students is not None or truth is not None:
-        raise typer.BadParameter("--students goes with --record, --truth with --grade")
+        raise BadParameter("--students goes with --record, --truth with --grade")
     else:
         _report(data, out)
-
-
-def _record(folder: Path, students: int | None, seed: int) -> None:
-    from bench.course.record import record, record_class
-    from bench.report.terminal import progress
-
-    with progress("recording") as done:
-        list_files(record(folder, seed, done) if students is None else record_class(folder, students, seed, done))
 
 
 def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
     from bench.course.grade import grade_class, grades_table, write_grades
 
     if truth is None:
-        raise typer.BadParameter("--grade needs --truth FILE, which --record --students wrote")
+        raise BadParameter("--grade needs --truth FILE, which --record --students wrote")
     graded = grade_class(submissions, truth)
     files = write_grades(graded, out)
     printed(grades_table(graded))
@@ -68,7 +61,7 @@ def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
         say(f"not graded: {error}", err=True)
     list_files(files[:2])
     if graded.unread:
-        raise typer.Exit(1)
+        raise Exit(1)
 
 
 def _ask(folder: Path, out: Path) -> None:
@@ -79,7 +72,7 @@ def _ask(folder: Path, out: Path) -> None:
         say(str(reason), err=True)
     list_files(files[-1:])
     if missing:
-        raise typer.Exit(1)
+        raise Exit(1)
 
 
 def _report(data: Path | None, out: Path) -> None:
@@ -91,4 +84,4 @@ def _report(data: Path | None, out: Path) -> None:
     printed(course_table(report.results))
     list_files(report.files)
     if not report.usable:
-        raise typer.Exit(1)
+        raise Exit(1)

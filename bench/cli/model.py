@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Argument, Option
 
 import bench
 from bench.cli import common
@@ -17,25 +18,23 @@ from bench.names import readable
 from bench.plant.profile_names import DEFAULT
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from bench.cli.common import Subject
     from bench.diagnosis.let_free import FreeRun
     from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
     from bench.view.side_by_side import SideBySide
 
-ModelArgument = Annotated[Path, typer.Argument(help="model.toml that diagnose wrote.")]
+ModelArgument = Annotated[Path, Argument(help="model.toml that diagnose wrote.")]
 #: Name of a joint that no other is given for, as `load_models` has it.
 ALONE = "axis"
 
 
 def replay(
     model: ModelArgument,
-    trace: Annotated[Path, typer.Argument(help="Recording to run it along.")],
+    trace: Annotated[Path, Argument(help="Recording to run it along.")],
     out: Annotated[
         Path,
-        typer.Option("--out", help="File to write: CSV, or joint states for Foxglove and Rerun where it is .mcap."),
+        Option(help="File to write: CSV, or joint states for Foxglove and Rerun where it is .mcap."),
     ],
     rig: BesideRigOption = None,
     axis_name: AxisOption = None,
@@ -75,18 +74,14 @@ def _joint_states(replayed: Replay, out: Path, joint: str) -> None:
 
 def view(
     model: ModelArgument,
-    trace: Annotated[
-        Path | None, typer.Argument(help="Recording to run it along; without, it follows a profile.")
-    ] = None,
-    out: Annotated[Path, typer.Option("--out", help="Page to write, for any browser: .html, all in one file.")] = Path(
-        "view.html"
-    ),
+    trace: Annotated[Path | None, Argument(help="Recording to run it along; without, it follows a profile.")] = None,
+    out: Annotated[Path, Option(help="Page to write, for any browser: .html, all in one file.")] = Path("view.html"),
     rig: BesideRigOption = None,
     profile: Annotated[str, common.profile_option("Without a recording:")] = DEFAULT,
-    start: Annotated[float | None, typer.Option("--from", help="Show it from this time on, in s.")] = None,
-    stop: Annotated[float | None, typer.Option("--to", help="Show it up to this time, in s.")] = None,
-    video: Annotated[Path | None, typer.Option("--video", help="Video to write: .mp4, rendered by MuJoCo.")] = None,
-    slowed: Annotated[float, typer.Option("--slowed", help="How many times slower the video plays.", min=1.0)] = 1.0,
+    start: Annotated[float | None, Option("--from", help="Show it from this time on, in s.")] = None,
+    stop: Annotated[float | None, Option("--to", help="Show it up to this time, in s.")] = None,
+    video: Annotated[Path | None, Option(help="Video to write: .mp4, rendered by MuJoCo.")] = None,
+    slowed: Annotated[float, Option(help="How many times slower the video plays.", min=1.0)] = 1.0,
     axis_name: AxisOption = None,
     mjcf: MjcfOption = None,
     joint: JointOption = None,
@@ -146,24 +141,18 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
 
 def export(
     model: ModelArgument,
-    out: Annotated[Path, typer.Option("--out", help="File to write.")],
-    mjcf: Annotated[Path | None, typer.Option("--mjcf", help="MJCF of the robot that has the joint.")] = None,
-    joint: Annotated[
-        list[str] | None, typer.Option("--joint", help="Joint that the model goes onto; of several, repeatable.")
-    ] = None,
+    out: Annotated[Path, Option(help="File to write.")],
+    mjcf: Annotated[Path | None, Option(help="MJCF of the robot that has the joint.")] = None,
+    joint: Annotated[list[str] | None, Option(help="Joint that the model goes onto; of several, repeatable.")] = None,
     to: Annotated[
-        str, typer.Option("--to", help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
+        str, Option(help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
     ] = "mjcf",
-    actuator: Annotated[
-        str | None, typer.Option("--actuator", help="With --to bam: BAM's name of the actuator.")
-    ] = None,
-    snippet: Annotated[bool, typer.Option("--snippet", help="A default class and a body on this joint alone.")] = False,
+    actuator: Annotated[str | None, Option(help="With --to bam: BAM's name of the actuator.")] = None,
+    snippet: Annotated[bool, Option("--snippet", help="A default class and a body on this joint alone.")] = False,
     ranges: Annotated[
-        Path | None, typer.Option("--ranges", help="JSON of identify or diagnose: ranges for domain randomisation.")
+        Path | None, Option(help="JSON of identify or diagnose: ranges for domain randomisation.")
     ] = None,
-    armature: Annotated[
-        str | None, typer.Option("--armature", help="Inertia that becomes the joint's armature: motor, or all.")
-    ] = None,
+    armature: Annotated[str | None, Option(help="Inertia that becomes the joint's armature: motor, or all.")] = None,
 ) -> None:
     """Put a diagnosed model into a robot's MJCF, or write it as another simulator takes it, or ranges of its values."""
     from bench.plant.model_file import load_models
@@ -213,7 +202,7 @@ def _mjcf(
 def compensate(
     model: ModelArgument,
     rig: RigOption,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the tables.")],
+    out: Annotated[Path, Option(help="Folder for the tables.")],
     profile: Annotated[str, common.profile_option("Motion to track:")] = DEFAULT,
 ) -> None:
     """Make of a diagnosed model what its drive feeds forward; say how much better it tracks with it, by simulation."""

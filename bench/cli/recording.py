@@ -1,27 +1,38 @@
-"""`bench inspect`, `friction` and `limits`: what recordings hold."""
+"""`bench inspect`, `identify`, `diagnose`, `robot`, `friction`, `limits` and `fleet`: what recordings tell."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
+from typer import Argument, Option
 
 import bench
 from bench.cli import common
-from bench.cli.common import AxisOption, JsonOption, OptionalRigOption, ReportOption, RigOption
-from bench.files import write_text
+from bench.errors import InputError, UndeterminedError
+from bench.files import sha256, write_text
+from bench.names import in_a_row, readable
+
+if TYPE_CHECKING:
+    from bench.cli.common import Subject
+    from bench.fit.refine import Refinement
+    from bench.plant.robot import AddedBody
+    from bench.report.document import Section
+
+Estimator = Literal["regression", "lab"]
 
 
 def inspect(
-    file: Annotated[Path, typer.Argument(metavar="TRACE", help="Recording of any known format.")],
-    rig: OptionalRigOption = None,
-    json: JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Picture of every signal: .png, .pdf or .svg.")] = None,
-    draft: Annotated[Path | None, typer.Option("--draft", help="Rig file to write, as far as the file tells.")] = None,
-    motor: Annotated[str | None, typer.Option("--motor", help="For --draft: a motor of the catalogue.")] = None,
-    axis_name: AxisOption = None,
-    report: ReportOption = None,
+    file: Annotated[Path, Argument(metavar="TRACE", help="Recording of any known format.")],
+    rig: common.OptionalRigOption = None,
+    json: common.JsonOption = None,
+    out: Annotated[Path | None, Option(help="Picture of every signal: .png, .pdf or .svg.")] = None,
+    draft: Annotated[Path | None, Option(help="Rig file to write, as far as the file tells.")] = None,
+    motor: Annotated[str | None, Option(help="For --draft: a motor of the catalogue.")] = None,
+    axis_name: common.AxisOption = None,
+    report: common.ReportOption = None,
 ) -> None:
     """Say what a recording holds: every column, what it is likely to be, rate, holes, signals with their range."""
     from bench.gate.gate import gate
@@ -50,13 +61,188 @@ def inspect(
     common.tell(document, [out, draft, report], json)
 
 
+def identify(
+    traces: common.TracesArgument,
+    rig: common.BesideRigOption = None,
+    json: common.JsonOption = None,
+    out: Annotated[Path | None, Option(help="Folder for figures and JSON.")] = None,
+    estimator: Annotated[Estimator, Option(help="lab: as in courses.")] = "regression",
+    refine: Annotated[bool, Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
+    offset: Annotated[bool, Option("--offset", help="Fit a constant torque (force) too.")] = False,
+    cutoff: Annotated[float | None, Option(help="Filter's half-power frequency in Hz.", min=1e-6)] = None,
+    axis_name: common.AxisOption = None,
+    mjcf: common.MjcfOption = None,
+    joint: common.JointOption = None,
+    at: common.AtOption = None,
+    figures: common.FiguresOption = "png",
+    draft: common.DraftOption = None,
+) -> None:
+    """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
+    from bench.fit.estimate import RefusedEstimateError
+    from bench.report.identification import SCHEMA, identification, identification_json, moved
+
+    of = common.subject(rig, axis_name, mjcf, joint, at, traces[0], draft)
+    axis = of.rig.model_copy(update={"offset": of.rig.offset or offset})
+    _require_consistent(traces, estimator, refine, bool(offset or cutoff))
+    options = {"estimator": estimator, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
+    try:
+        with common.refusal_as_json(json, SCHEMA):
+            estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
+    except RefusedEstimateError as error:
+        known, why, basis = error.estimate, str(error), of.provenance(traces, options)
+        common.write_json(json, lambda: identification_json(known, None, why, basis))
+        common.warn(known.warnings)
+        raise
+    basis = of.provenance(traces, options)
+    motions = [] if out is None else moved(traces, axis, estimate, None if of.joint is None else of.read)
+    found = identification(f"{axis.name}: {in_a_row(traces)}", axis.axis_kind, estimate, refinement, motions, basis)
+    common.deliver(found, lambda: identification_json(estimate, refinement, None, basis), json, out, f".{figures}")
+
+
+def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, tuned: bool) -> None:
+    """InputError where options contradict each other, or the number of recordings."""
+    lab = estimator == "lab"
+    if lab and (refine or tuned):
+        raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
+    if len(traces) > 1 and (refine or lab):
+        found = f"found with {len(traces)} recordings"
+        raise InputError("--refine" if refine else "--estimator lab", found, "allowed: with one recording")
+
+
+def _estimate(
+    traces: list[Path], of: Subject, estimator: Estimator, refine: bool, cutoff: float | None
+) -> tuple[bench.Estimate, Refinement | None]:
+    """Estimate by the method asked for, and what polishing did to it."""
+    from bench.gate.gate import passed
+
+    rig, trace = of.rig, traces[0]
+    if estimator == "lab":
+        from bench.fit.lab import identify_as_in_the_lab
+
+        gated = passed(of.read(trace), rig)
+        return replace(identify_as_in_the_lab(gated.trace, rig), checks=gated.checks), None
+    from bench.report.terminal import progress
+    from bench.trace.stream import stream
+
+    with progress(f"identifying {', '.join(each.name for each in traces)}") as done:
+        if not refine:
+            parts = [stream(each, rig.trace) if of.joint is None else of.read(each) for each in traces]
+            return bench.identify(parts, rig, cutoff), None
+        from bench.fit.refine import refine as polish  # MuJoCo: 0.1 s
+
+        recording = passed(of.read(trace), rig).trace
+        return polish(recording, rig, bench.identify(recording, rig, cutoff), done)
+
+
+def diagnose(
+    traces: common.TracesArgument,
+    rig: common.BesideRigOption = None,
+    holdout: Annotated[Path | None, Option(help="Another recording of the axis, not fitted.")] = None,
+    json: common.JsonOption = None,
+    out: Annotated[Path | None, Option(help="Folder for model, figures and JSON.")] = None,
+    without: Annotated[list[str] | None, Option(help="Effect not to try. Repeatable.")] = None,
+    axis_name: common.AxisOption = None,
+    mjcf: common.MjcfOption = None,
+    joint: common.JointOption = None,
+    at: common.AtOption = None,
+    figures: common.FiguresOption = "png",
+    draft: common.DraftOption = None,
+) -> None:
+    """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
+    from bench.effects.present import named
+    from bench.report.diagnosis import SCHEMA, diagnosis, diagnosis_json
+    from bench.report.terminal import progress
+
+    of = common.subject(rig, axis_name, mjcf, joint, at, traces[0], draft)
+    axis, read = of.rig, of.read
+    excluded = frozenset(named(name, "--without").name for name in without or [])
+    other = read(holdout) if holdout else None
+    names = in_a_row(traces)
+    with common.refusal_as_json(json, SCHEMA), progress(f"diagnosing {names}") as done:
+        recordings = [read(trace) for trace in traces]
+        found = bench.diagnose(recordings, axis, other, excluded, done)
+    basis = of.provenance(traces, {"without": sorted(excluded)}, holdout)
+    moving = [] if out is None else _moving(found, of, traces[0], recordings[0])
+    document = diagnosis(found, f"{axis.name}: {names}", basis, moving)
+    common.deliver(document, lambda: diagnosis_json(found, basis), json, out, f".{figures}")
+
+
+def robot(
+    logs: Annotated[list[Path], Argument(metavar="LOG...", help="Logs of the robot, of any known format.")],
+    mjcf: Annotated[Path, Option(help="MJCF of the robot.")],
+    out: Annotated[Path, Option(help="Folder for MJCF, models, page and JSON.")],
+    holdout: Annotated[Path | None, Option(help="Another log of it, not fitted.")] = None,
+    rig: common.OptionalRigOption = None,
+    joint: Annotated[list[str] | None, Option(help="Only this joint. Repeatable.")] = None,
+    at: common.AtOption = None,
+    payload: Annotated[
+        str | None,
+        Option(help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
+    ] = None,
+    without: Annotated[list[str] | None, Option(help="Effect not to try. Repeatable.")] = None,
+    json: common.JsonOption = None,
+) -> None:
+    """Identify every joint of a robot from its logs, find what each is missing, and write its MJCF with all of it."""
+    from bench.effects.present import named
+    from bench.plant.robot import joint_units
+    from bench.report.parts import provenance
+    from bench.report.robot import robot as document_of
+    from bench.report.robot import robot_json
+    from bench.report.terminal import progress
+
+    excluded = frozenset(named(name, "--without").name for name in without or [])
+    stated = common.positions(at or (), joint_units(mjcf))
+    known = None if rig is None else bench.load_rig(rig)
+    with progress(f"identifying the joints of {mjcf.name}") as done:
+        found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done)
+    options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded)}
+    basis = provenance(rig, logs, options, holdout, mjcf)
+    folder = out if found.answered else None
+    document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder)
+    common.deliver(document, lambda: robot_json(found, basis), json, folder)
+    if not found.answered:  # the first reason
+        first = next(iter(found.joints.values()))
+        if first.failed:
+            raise InputError("none of the joints could be answered", f"{first.name}: {first.failed}", "see the table")
+        reason = f"{first.name}: {next(iter(first.refused.values()))}"
+        raise UndeterminedError("any joint", reason, first.record)
+
+
+def _carried(text: str | None) -> AddedBody | str | None:
+    """A payload of `BODY=2.8kg@x,y,z`, or the body alone."""
+    from bench.effects.present import parse_value
+    from bench.plant.robot import AddedBody
+
+    body, equals, rest = (text or "").partition("=")
+    if not equals:
+        return text
+    mass, at, places = rest.partition("@")
+    where = f"--payload {text}"
+    centre = [parse_value(place, "m", where) for place in places.split(",")] if at else [0.0, 0.0, 0.0]
+    if len(centre) != 3:
+        raise InputError(where, f"found {len(centre)} coordinates", "allowed: BODY=2.8kg@x,y,z, in m")
+    return AddedBody(body, parse_value(mass, "kg", where), (centre[0], centre[1], centre[2]))
+
+
+def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) -> list[Section]:
+    """The robot whose joint was diagnosed, along the first log; none of an axis, nor of a model that does not move."""
+    if of.along is None:
+        return []
+    from bench.joints.motion import joint_motion
+    from bench.report.simulation import moving_section
+
+    robot = of.along(log)
+    motion = joint_motion(found, trace, of.rig, (robot.times, robot.poses))
+    return [] if motion is None else [moving_section(robot.mjcf, {robot.joint: motion})]
+
+
 def friction(
-    traces: Annotated[list[Path], typer.Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
-    rig: RigOption,
-    json: JsonOption = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Figure to write: .png, .pdf or .svg.")] = None,
-    axis_name: AxisOption = None,
-    report: ReportOption = None,
+    traces: Annotated[list[Path], Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
+    rig: common.RigOption,
+    json: common.JsonOption = None,
+    out: Annotated[Path | None, Option(help="Figure to write: .png, .pdf or .svg.")] = None,
+    axis_name: common.AxisOption = None,
+    report: common.ReportOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
     from bench.friction_map import friction_map
@@ -74,10 +260,10 @@ def friction(
 
 
 def limits(
-    trace: Annotated[Path, typer.Argument(help="Recording of any known format.")],
-    rig: RigOption,
-    out: Annotated[Path, typer.Option("--out", help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
-    axis_name: AxisOption = None,
+    trace: Annotated[Path, Argument(help="Recording of any known format.")],
+    rig: common.RigOption,
+    out: Annotated[Path, Option(help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
+    axis_name: common.AxisOption = None,
 ) -> None:
     """Draw a recording into its motor's speed-torque diagram; say how much reserve it leaves."""
     from bench.report.drive import limits as document_of
@@ -86,3 +272,38 @@ def limits(
     document = document_of(bench.read(trace, axis.trace), axis)
     common.write_picture(out, document.pictures[0])
     common.tell(document, [out])
+
+
+def fleet(
+    manifest: Annotated[Path, Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
+    out: Annotated[Path, Option(help="Folder for results, table, summary and page.")],
+    diagnose: Annotated[bool, Option("--diagnose", help="Name missing effects too.")] = False,
+    retry: Annotated[bool, Option("--retry", help="Do again what failed or timed out.")] = False,
+    deadline: Annotated[float, Option(help="Of one recording, in s.", min=0.1)] = 120.0,
+    memory: Annotated[float, Option(help="Of one recording, in GB.", min=0.25)] = 4.0,
+    workers: Annotated[int | None, Option(help="Processes (preset: one a core).", min=1)] = None,
+    scheduler: Annotated[str | None, Option(help="Dask's, e.g. tcp://host:8786.")] = None,
+    storage: Annotated[
+        list[str] | None, Option(help="fsspec's name of one that the manifest may name. Repeatable.")
+    ] = None,
+    json: common.JsonOption = None,
+) -> None:
+    """Evaluate many recordings of many axes: one row each, which axes changed since when, and which need a person."""
+    from bench.fleet.fleet import TABLE
+    from bench.fleet.fleet import fleet as run_fleet
+    from bench.jobs.process import Limits
+    from bench.report.fleet import FLEET, SUMMARY, fleet_document, fleet_json, write_fleet
+    from bench.report.terminal import progress
+
+    limits = Limits(deadline, memory * 1024**3)
+    basis = {"version": bench.__version__, "manifest_sha256": sha256(manifest), "options": {"diagnose": diagnose}}
+    publish = partial(write_fleet, out, provenance=basis)
+    with progress(f"evaluating {manifest.name}") as done:
+        found = run_fleet(manifest, out, diagnose, retry, limits, workers, scheduler, done, publish, storage or ())
+    common.write_json(json, lambda: fleet_json(found, basis))
+    common.tell(fleet_document(found, basis), (out / TABLE, out / SUMMARY, out / FLEET), json)
+    if json != common.STDOUT:
+        common.say(f"{found.evaluated} evaluated now")
+    if not found.summary.counts["done"]:
+        reason = f"none of {len(found.manifest)} recordings gave a result"
+        raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")

@@ -1,27 +1,32 @@
-"""`bench demo`, `simulate`, `plan`, `rigs`, `effects` and `report`: commands that need no recording."""
+"""`bench demo`, `simulate`, `plan`, `rigs`, `effects`, `report` and `validate`: commands that need no recording."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 import bench
 from bench.cli import common
-from bench.cli.common import ReportOption, RigArgument, RigOption
+from bench.cli.common import JsonOption, OptionalRigOption, ReportOption, RigArgument, RigOption
 from bench.errors import InputError
 from bench.files import held, read_text, write_text
 from bench.names import readable
-from bench.plant.profile_names import DEFAULT
+from bench.plant.profile_names import DEFAULT, NAMES
+
+if TYPE_CHECKING:
+    from bench.validation.plan import OwnAxis
 
 #: Seed of the demo that is run unless another is given: one that hides what a person sees in the picture, too.
 SHOWN = 12
 
 
 def demo(
-    out: Annotated[Path, typer.Option("--out", help="Folder for trace, truth, model and page.")] = Path("bench_demo"),
-    seed: Annotated[int, typer.Option("--seed", help="Draws the effect that is hidden.", min=0)] = SHOWN,
+    out: Annotated[Path, Option(help="Folder for trace, truth, model and page.")] = Path("bench_demo"),
+    seed: Annotated[int, Option(help="Draws the effect that is hidden.", min=0)] = SHOWN,
 ) -> None:
     """Hide an effect in a simulated axis, find it, add it to the model, and set truth beside what was found."""
     from bench.demo import demo as run_demo
@@ -35,9 +40,9 @@ def demo(
 
 def simulate(
     rig: RigArgument,
-    out: Annotated[Path, typer.Option("--out", help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
+    out: Annotated[Path, Option(help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
     profile: Annotated[str, common.profile_option("Motion:")] = DEFAULT,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of the sensors' noise.", min=0)] = 0,
+    seed: Annotated[int, Option(help="Seed of the sensors' noise.", min=0)] = 0,
     effect: Annotated[list[str] | None, common.effect_option("NAME:key=value,... to add; see bench effects.")] = None,
     report: ReportOption = None,
 ) -> None:
@@ -65,11 +70,11 @@ def simulate(
 
 def plan(
     rig: RigOption,
-    out: Annotated[Path, typer.Option("--out", help="CSV of the motion, for a controller.")],
+    out: Annotated[Path, Option(help="CSV of the motion, for a controller.")],
     wanted: Annotated[
-        str | None, typer.Option("--for", help="NAME:key=value,... of an effect to determine; see bench effects.")
+        str | None, Option("--for", help="NAME:key=value,... of an effect to determine; see bench effects.")
     ] = None,
-    period: Annotated[float, typer.Option("--period", help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
+    period: Annotated[float, Option(help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
 ) -> None:
     """Plan the motion to record inside the rig's limits: the one that tells best, and how well it will."""
     from bench.effects.present import parse_effect
@@ -94,8 +99,8 @@ def plan(
 
 
 def rigs(
-    name: Annotated[str | None, typer.Argument(help="A shipped rig, or a rig file of your own; all without.")] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Copy of the rig file to write.")] = None,
+    name: Annotated[str | None, Argument(help="A shipped rig, or a rig file of your own; all without.")] = None,
+    out: Annotated[Path | None, Option(help="Copy of the rig file to write.")] = None,
 ) -> None:
     """List the rigs that are shipped, copy one, or say which commands a rig suffices for and all that is missing."""
     from bench.rig.rig import lacking, rig_file, shipped, without_constant
@@ -120,9 +125,7 @@ def rigs(
 
 
 def effects(
-    name: Annotated[
-        str | None, typer.Argument(help="Effect whose page to print; all of them as a table without.")
-    ] = None,
+    name: Annotated[str | None, Argument(help="Effect whose page to print; all of them as a table without.")] = None,
 ) -> None:
     """List the physical effects the bench knows, or print the page of one: equation, quantities, source."""
     from bench.report.effects import effect_page, effects_table
@@ -134,11 +137,9 @@ def effects(
 
 
 def report(
-    folders: Annotated[list[Path], typer.Argument(metavar="DIR...", help="Folders that --out of a command wrote.")],
-    script: Annotated[
-        Path | None, typer.Option("--script", help="Script file to write that the pages share, for many of them.")
-    ] = None,
-    opened: Annotated[bool, typer.Option("--open", help="Open the pages in the browser.")] = False,
+    folders: Annotated[list[Path], Argument(metavar="DIR...", help="Folders that --out of a command wrote.")],
+    script: Annotated[Path | None, Option(help="Script file to write that the pages share, for many of them.")] = None,
+    opened: Annotated[bool, Option("--open", help="Open the pages in the browser.")] = False,
 ) -> None:
     """Make report.html of folders anew, from the report.json that lies in each."""
     from bench.report.publish import rebuild
@@ -148,3 +149,92 @@ def report(
     for page in written if opened else ():
         if page != script:
             typer.launch(page.resolve().as_uri())
+
+
+def validate(
+    rigs: Annotated[int, Option(help="Runs: an axis, a motion and noise each.", min=1)] = 64,
+    seed: Annotated[int, Option(help="Of all that is drawn.", min=0)] = 0,
+    effects: Annotated[str, Option(help="Hidden in each run: a count as 0-3; or names, or all, each in turn.")] = "0",
+    diagnose: Annotated[bool, Option("--diagnose", help="Name what is missing too, a second or two a run.")] = False,
+    rig: OptionalRigOption = None,
+    profile: Annotated[Path, common.profile_option("With --rig, its motion: a recording's file, or")] = Path(DEFAULT),
+    into: Annotated[Path | None, Option(help="Instead: your recording, to put known effects into.")] = None,
+    effect: Annotated[list[str] | None, common.effect_option("With --into, instead of all.")] = None,
+    strength: Annotated[
+        list[float] | None,
+        Option(help="With --into, over what it leaves; else the least named is sought. Repeatable."),
+    ] = None,
+    workers: Annotated[int | None, Option(help="Processes on this machine.", min=1)] = None,
+    scheduler: Annotated[str | None, Option(help="Dask cluster to work on, e.g. tcp://host:8786.")] = None,
+    json: JsonOption = None,
+    out: Annotated[Path | None, Option(help="Folder for page, tables, figures and JSON.")] = None,
+) -> None:
+    """How far off numbers are, how often intervals and names hold: by Monte Carlo, or of effects in your recording."""
+    from bench.report.parts import provenance
+    from bench.report.terminal import progress
+    from bench.report.validation import validation, validation_json, write_validation
+    from bench.validation.plan import Hiding, Plan, any_axis
+    from bench.validation.validate import validate as run_validation
+
+    if into is not None:
+        _into(into, rig, effect or [], strength or [], seed, workers, json, out)
+        return
+    if effect or strength:
+        raise InputError("--effect or --strength", "found without --into", "allowed: with a recording to put them into")
+    if rig is None and str(profile) != DEFAULT:
+        raise InputError("--profile", "found without --rig", "allowed: with the rig whose motion it is")
+    hiding = Hiding.parse(effects)
+    named = diagnose or (rig is not None and hiding.anything)  # what is hidden in one's own axis is to be named
+    options = {"rigs": rigs, "seed": seed, "effects": effects, "diagnose": named, "profile": str(profile)}
+    population, basis = (any_axis, provenance(None, [], options)) if rig is None else _own(rig, profile, options)
+    plan = Plan(seed, hiding, named, population)
+    with progress(f"validating on {rigs} runs") as done:
+        found = run_validation(plan, rigs, workers, scheduler, done)
+    command = f"bench validate --rigs {rigs} --seed {seed} --effects {effects}{' --diagnose' * named}"
+    command += "" if rig is None else f" --rig {rig} --profile {profile}"
+    document = validation(found, basis, command, rig is not None)
+    written = [] if out is None else write_validation(out, found, document)
+    common.write_json(json, lambda: validation_json(found, basis))
+    common.tell(document, written, json)
+
+
+def _into(
+    into: Path,
+    rig: Path | None,
+    effects: list[str],
+    strengths: list[float],
+    seed: int,
+    workers: int | None,
+    json: Path | None,
+    out: Path | None,
+) -> None:
+    """Known effects in one's own recording."""
+    from bench.report.injection import injections, injections_json
+    from bench.report.parts import provenance
+    from bench.report.terminal import progress
+    from bench.validation.into import inject
+
+    if rig is None:
+        raise InputError("--into", "found without --rig", "allowed: with the rig of the recording's axis")
+    if not all(0.0 < one < math.inf for one in strengths):
+        raise InputError("--strength", f"found {min(strengths):g}", "allowed: positive numbers, as 2 or 5")
+    known = bench.load_rig(rig)
+    options = {"effect": effects, "strength": strengths, "seed": seed}
+    with progress(f"putting effects into {into.name}") as done:
+        found = inject(bench.read(into, known.trace), known, effects, strengths, seed, workers, done)
+    basis = provenance(rig, [into], options)
+    document = injections(found, basis, readable(into.name))
+    common.deliver(document, lambda: injections_json(found, basis), json, out)
+
+
+def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:
+    """The axis of a rig along a named motion, or the one of a file, and what it rests on."""
+    from bench.report.parts import provenance
+    from bench.validation.plan import own_axis
+
+    known = bench.load_rig(rig)
+    if str(profile) in NAMES:
+        return own_axis(known, str(profile), None), provenance(rig, [], options)
+    if not profile.exists():
+        raise InputError("--profile", f"found '{profile}'", f"allowed: the file of a recording, or {', '.join(NAMES)}")
+    return own_axis(known, profile.name, bench.read(profile, known.trace)), provenance(rig, [profile], options)

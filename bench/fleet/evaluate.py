@@ -12,7 +12,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fsspec.core import url_to_fs
 
@@ -35,6 +35,9 @@ from bench.trace.choose import axes_of
 from bench.trace.read import read_recording
 from bench.trace.stream import cut
 from bench.trace.trace import Trace, assemble
+
+if TYPE_CHECKING:
+    from bench.diagnosis.show import Diagnosis
 
 #: Storages that a manifest may name: those that only send files. fsspec knows others that start programs or unpack.
 STORAGES = ("https", "http", "s3", "gs", "gcs", "az", "abfs", "sftp", "ssh")
@@ -61,8 +64,7 @@ class Job:
 
 def evaluate(job: Job) -> Plain:
     """Row of one recording: `done`, or `missing` or `refused` with the reason, and all that was found."""
-    with ExitStack() as stack:
-        stack.enter_context(within(job.bounds))
+    with within(job.bounds), ExitStack() as stack:
         path, digest = Path(job.place), None
         try:
             if "://" in job.place:
@@ -98,8 +100,7 @@ def _found(trace: Trace, job: Job) -> Plain:
         explained = None
     gaps = {"torque": found.torque, "velocity": found.velocity}
     return {
-        **_done(found.parameters, found.checks, found.warnings),
-        "explained": explained,
+        **_done(found, explained),
         "verdict": found.verdict,
         "effects": [{"name": effect.name, "parameters": _parameters(effect.parameters)} for effect in found.effects],
         "gap": {name: _gap(gap.unit, gap.noise_floor, *(gap.identify or (None, None))) for name, gap in gaps.items()},
@@ -108,16 +109,18 @@ def _found(trace: Trace, job: Job) -> Plain:
 
 def _estimated(found: Estimate) -> Plain:
     left = found.residual
+    return {**_done(found, found.explained), "gap": {"torque": _gap(left.unit, left.noise_floor, None, left.rms)}}
+
+
+def _done(found: Estimate | Diagnosis, explained: float | None) -> Plain:
     return {
-        **_done(found.parameters, found.checks, found.warnings),
-        "explained": found.explained,
-        "gap": {"torque": _gap(left.unit, left.noise_floor, None, left.rms)},
+        "status": "done",
+        "reason": None,
+        "parameters": _parameters(found.parameters),
+        "checks": _checks(found.checks),
+        "warnings": found.warnings,
+        "explained": explained,
     }
-
-
-def _done(parameters: Mapping[str, Parameter], checks: Sequence[Check], warnings: Sequence[str]) -> Plain:
-    found = {"parameters": _parameters(parameters), "checks": _checks(checks), "warnings": warnings}
-    return {"status": "done", "reason": None, **found}
 
 
 def _gap(unit: str, noise_floor: float, before: float | None, after: float | None) -> Plain:
@@ -184,13 +187,9 @@ def _errors_as_input(url: str) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class PlannedRecording:
-    """One recording of the manifest.
+    """One recording of the manifest: the key of its result and the job, or why it cannot be begun, as a result.
 
-    Attributes:
-        key: of its result; empty where it cannot be begun.
-        job: to be done for it; None where it cannot be begun.
-        refusal: why not, as a result; None where it can.
-        basis: what its result rests on, for the table.
+    `basis` is what its result rests on, for the table.
     """
 
     key: str
@@ -218,34 +217,29 @@ def plan(
         options["effects"] = sorted(catalogue())
 
     places, rigs, axes = manifest.located("file"), manifest.located("rig"), manifest.text("axis")
-    asked = [*((_rig, rig) for rig in dict.fromkeys(rigs)), *((_marked, place) for place in dict.fromkeys(places))]
-    known = dict[tuple[object, str], Any]()
-    for number, result in each(partial(_asked, (*STORAGES, *storages), bounds()), asked, limits, workers):
+    asked = [*(("rig", rig) for rig in dict.fromkeys(rigs)), *(("file", place) for place in dict.fromkeys(places))]
+    known = dict[tuple[str, str], Any]()
+    for number, result in each(partial(_looked_at, (*STORAGES, *storages), bounds()), asked, limits, workers):
         known[asked[number]] = asdict(result) if isinstance(result, Failure) else result
         progress(len(known) / len(asked))
     rows = zip(places, axes, rigs, strict=True)
-    return [_planned(place, known[_marked, place], axis, known[_rig, rig], options) for place, axis, rig in rows]
+    return [_planned(place, known["file", place], axis, known["rig", rig], options) for place, axis, rig in rows]
 
 
-def _asked(storages: Sequence[str], limits: Bounds, asked: tuple[Callable[[str, Sequence[str]], Any], str]) -> Any:  # noqa: ANN401
-    """What `_rig` or `_marked` tells of a file."""
-    with within(limits):
-        return asked[0](asked[1], storages)
+def _looked_at(storages: Sequence[str], limits: Bounds, asked: tuple[str, str]) -> tuple[Rig, str] | str | Plain:
+    """A rig with the hash of its file, or what tells a recording's file from any other content; or what is wrong.
 
-
-def _rig(named: str, _: Sequence[str]) -> tuple[Rig, str] | Plain:
-    """A rig with the hash of its file, under a name that is the same wherever it lies; or what is wrong with it."""
+    A rig has a name, and a refusal a text, that are the same wherever the file lies.
+    """
+    column, place = asked
     try:
-        return load_rig(named).model_copy(update={"source": "rig"}), sha256(Path(named))
+        with within(limits):
+            if column == "rig":
+                return load_rig(place).model_copy(update={"source": "rig"}), sha256(Path(place))
+            return marked(place, storages) if "://" in place else sha256(Path(place))
     except InputError as error:
-        return refused(error, str(InputError(error.where.replace(named, "rig"), error.found, error.allowed)))
-
-
-def _marked(place: str, storages: Sequence[str]) -> str | Plain:
-    """What tells a recording's file from any other content, or why it cannot be read."""
-    try:
-        return marked(place, storages) if "://" in place else sha256(Path(place))
-    except InputError as error:
+        if column == "rig":
+            return refused(error, str(InputError(error.where.replace(place, "rig"), error.found, error.allowed)))
         return refused(error, str(error).replace(place, CALLED))
 
 

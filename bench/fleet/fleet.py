@@ -87,7 +87,8 @@ def fleet(
             progress(PLANNING + (1.0 - PLANNING) * count / len(keys))
         stored = {key: store.get(key) for key in dict.fromkeys(one.key for one in planned if one.job is not None)}
         results = [one.refusal or stored[one.key] or dict(LOST) for one in planned]
-        write_table(out / TABLE, tabulate(manifest, planned, results))
+        with whole(out / TABLE) as temporary:
+            pq.write_table(tabulate(manifest, planned, results), temporary)
         found = Fleet(manifest, planned, results, summarise(manifest, planned, results), len(keys))
         finish(found)
     return found
@@ -139,9 +140,3 @@ def _columns(
     yield "trace_sha256", TEXT, [found.get("trace_sha256") for found in results]
     yield "options", TEXT, [json.dumps(one.basis["options"], sort_keys=True) for one in planned]
     yield "result", TEXT, [one.key or None for one in planned]
-
-
-def write_table(path: Path, table: pa.Table) -> None:
-    """Write it as Parquet, whole or not at all; InputError where the place cannot be written to."""
-    with whole(path) as temporary:
-        pq.write_table(table, temporary)

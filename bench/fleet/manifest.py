@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,9 +38,14 @@ class Manifest:
 
     def located(self, column: str) -> list[str]:
         """Paths and URLs of `file` or `rig` (n,): a file of the manifest's folder, or a shipped rig by its name."""
-        folder, named = self.path.parent, (one.removeprefix("file://") for one in self.text(column))
-        known = shipped() if column == "rig" else {}
-        return [one if "://" in one else str(_beside(folder, one, known)) for one in named]
+        known, places = shipped() if column == "rig" else {}, []
+        for named in self.text(column):
+            named = named.removeprefix("file://")
+            path = self.path.parent / named
+            if named in known and not os.path.lexists(path):
+                path = known[named]
+            places.append(named if "://" in named else str(path))
+        return places
 
     @property
     def inputs(self) -> list[Path]:
@@ -61,12 +66,6 @@ class Manifest:
             microseconds = column.cast(pa.timestamp("us"), safe=False).cast(pa.int64())
             return 1e-6 * microseconds.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
         return column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
-
-
-def _beside(folder: Path, named: str, shipped: Mapping[str, Path]) -> Path:
-    """The file of a folder, or where it has none the shipped one of that name."""
-    path = folder / named
-    return shipped[named] if named in shipped and not os.path.lexists(path) else path
 
 
 def read_manifest(path: Path) -> Manifest:

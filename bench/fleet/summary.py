@@ -38,9 +38,7 @@ KINDS = ("failed", "timed_out", "missing", "refused", "unexplained", "checks")
 class History:
     """What the recordings of one axis tell of one quantity, by the name of the contract, in the order of time.
 
-    Attributes:
-        rows: of the manifest (n,).
-        values, errors: with standard errors (n,).
+    Rows of the manifest, and values with their standard errors (n,).
     """
 
     axis: str

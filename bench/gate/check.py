@@ -24,6 +24,7 @@ from bench.trace.motion import integrated, raw_speed
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace, less_known
 
+#: `fail` ends an identification, `warn` is printed.
 Status = Literal["pass", "warn", "fail", "not_applicable"]
 #: From worst to best.
 STATUSES: tuple[Status, ...] = ("fail", "warn", "pass", "not_applicable")
@@ -31,16 +32,7 @@ STATUSES: tuple[Status, ...] = ("fail", "warn", "pass", "not_applicable")
 
 @dataclass(frozen=True)
 class Check:
-    """Result of a check.
-
-    Attributes:
-        name: of the check.
-        status: `fail` ends an identification, `warn` is printed.
-        found: in the recording.
-        allowed: what would pass.
-        advice: what to do; empty if nothing.
-        unanswerable: whether a failed recording is sound, and only insufficient.
-    """
+    """Result of a check; `unanswerable`: whether a failed recording is sound, and only insufficient."""
 
     name: str
     status: Status
@@ -112,12 +104,12 @@ def balanced(sums: Sequence[Sums], length: int) -> Balanced | None:
 
     Motion alone and motion with position are solved from one triangle of their columns.
     """
-    windows = [found for part in sums if (found := part.windows(length)) is not None]
-    if not windows:
+    if not sums:
         return None
-    columns, mean, starts = (np.concatenate(column) for column in zip(*windows, strict=True))
-    varies = float(np.var(mean))
-    if mean.size < LEAST or varies == 0.0:
+    windows = zip(*(part.windows(length) for part in sums), strict=True)
+    columns, mean, starts = (np.concatenate(column) for column in windows)
+    varies = float(np.var(mean)) if mean.size >= LEAST else 0.0
+    if varies == 0.0:
         return None
     scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0.0] = 1.0
@@ -152,14 +144,7 @@ class Sums:
 
     @classmethod
     def of(cls, trace: Trace, speed: Array, effort: Array, part: slice) -> Sums:
-        """The sums of a stretch.
-
-        Args:
-            trace: the recording.
-            speed: over the stretch - rad/s (m/s) - (n,).
-            effort: over the recording.
-            part: the stretch.
-        """
+        """The sums of a stretch, from the speed over it - rad/s (m/s) - (n,) - and the effort over the recording."""
         period = trace.sample_period
         position = trace["position"][part] if "position" in trace else integrated(speed, period)
         known = (speed, np.sign(speed), position - position.mean(), np.sin(position), np.cos(position), effort[part])
@@ -175,11 +160,9 @@ class Sums:
         last = size - length - reach if size >= 3 * length else 0
         return np.arange(reach, last, max(length // 2, 1))
 
-    def windows(self, length: int) -> tuple[Array, Array, NDArray[np.intp]] | None:
-        """Columns (windows, 7), mean effort and first samples (windows,); None where there are none."""
+    def windows(self, length: int) -> tuple[Array, Array, NDArray[np.intp]]:
+        """Columns (windows, 7), mean effort and first samples (windows,)."""
         at, reach = self.windows_of(length), length // 4
-        if not at.size:
-            return None
         change = (_smooth(self.gone, at + length, reach) - _smooth(self.gone, at, reach)) / (length * self.period)
         v, sign, place, sine, cosine, torque = (self.sums[:, at + length] - self.sums[:, at]) / length
         columns = np.column_stack([change, v, sign, np.ones(at.size), place, sine, cosine])
@@ -245,16 +228,19 @@ class Seen:
         return effort, direct if direct in trace else next(name for name in names if name not in ("torque", "force"))
 
     def balance(self, lengths: Iterable[int] = LENGTHS) -> Balanced | None:
-        """The torque balance over windows of the length that explains most; None without effort, or if too short.
-
-        Args:
-            lengths: of windows to try, LENGTHS or some of them - samples.
-        """
+        """The torque balance over windows of the length that explains most, of these - samples -; None without any."""
         for length in lengths:
             if length not in self._balances:
                 self._balances[length] = balanced(self._sums, length)
         found = [one for length in lengths if (one := self._balances[length]) is not None]
-        return max(found, key=lambda one: one.by_position) if found else None
+        return max(found, key=lambda one: one.by_position, default=None)
+
+    @property
+    def unbalanced(self) -> str:
+        """Why there is no balance."""
+        if self.effort is None or not self.tells_motion:
+            return "not both effort and motion are recorded"
+        return f"too few samples, or {self.effort[1]} never changes"
 
     @cached_property
     def _sums(self) -> list[Sums]:

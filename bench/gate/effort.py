@@ -37,14 +37,11 @@ def has_sign(seen: Seen) -> Check:
 
     What holds a load up is of one sign, too: then inertia, friction and position explain it.
     """
-    trace = seen.trace
-    if seen.effort is None or not seen.tells_motion:
-        return absent(SIGNED, "not both effort and motion are recorded", ALLOWED_SIGN)
-    name = seen.effort[1]
-    raw = trace[name] if name in trace else seen.effort[0]
     parts, fitted = seen.stretches(LEAST), seen.balance()
-    if not parts or fitted is None:
-        return absent(SIGNED, f"too few samples, or {name} never changes", ALLOWED_SIGN)
+    if seen.effort is None or fitted is None or not parts:
+        return absent(SIGNED, seen.unbalanced, ALLOWED_SIGN)
+    effort, name = seen.effort
+    raw = seen.trace.signals.get(name, effort)
     speed, effort = np.concatenate([seen.speed(part) for part in parts]), np.concatenate([raw[part] for part in parts])
     moving = np.abs(speed) > MOVING * rms(speed)
     forward = float(np.mean(speed[moving] > 0.0)) if moving.any() else 0.0
@@ -62,13 +59,10 @@ def has_sign(seen: Seen) -> Check:
 
 def follows_motion(seen: Seen) -> Check:
     """Compare effort with motion."""
-    if seen.effort is None or not seen.tells_motion:
-        return absent(FOLLOWS, "not both effort and motion are recorded", ALLOWED)
-    _, name = seen.effort
     fitted = seen.balance()
-    if fitted is None:
-        return absent(FOLLOWS, f"too few samples, or {name} never changes", ALLOWED)
-    found, speed = judged(fitted, name), rms(fitted.columns[:, 1])
+    if seen.effort is None or fitted is None:
+        return absent(FOLLOWS, seen.unbalanced, ALLOWED)
+    found, speed = judged(fitted, seen.effort[1]), rms(fitted.columns[:, 1])
     if found.status == "fail" and seen.trace.axis_kind.turns and speed < CREEPING:
         advice = "the joint stands or creeps, and its friction takes what it is given: move it"
         return replace(found, found=f"{found.found}; it moves at {speed:.2g} rad/s RMS", advice=advice)

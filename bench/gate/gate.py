@@ -40,23 +40,14 @@ PARTS = tuple(look for look in CHECKS if look not in WHOLE)
 
 
 class UnanswerableError(UndeterminedError):
-    """A sound recording that does not allow the identification.
-
-    Attributes:
-        checks: all of them.
-    """
+    """A sound recording that does not allow the identification, with all checks of it."""
 
     checks: tuple[Check, ...] = ()
 
 
 @dataclass(frozen=True)
 class Gated:
-    """A recording that went through the gate.
-
-    Attributes:
-        trace: repaired where possible.
-        checks: in the order of CHECKS.
-    """
+    """A recording that went through the gate, repaired where possible, with its checks in their order."""
 
     trace: Trace
     checks: tuple[Check, ...]
@@ -65,8 +56,7 @@ class Gated:
 def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -> Gated:
     """Run checks on a recording, or on a part of one.
 
-    Raises:
-        InputError: rig and recording do not fit together, or a value that no axis can have.
+    InputError: rig and recording do not fit together, or a value that no axis can have.
     """
     require_plausible(trace)
     seen, checks = Seen(trace, rig), list[Check]()
@@ -80,11 +70,7 @@ def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -
 
 
 def passed(trace: Trace, rig: Rig, looks: Sequence[Look] = CHECKS) -> Gated:
-    """The gated recording.
-
-    Raises:
-        InputError, UnanswerableError: the first check that fails.
-    """
+    """The gated recording; the first check that fails is an InputError or UnanswerableError."""
     gated = gate(trace, rig, looks)
     require(gated.checks, trace)
     return gated
@@ -108,14 +94,13 @@ def joined(parts: Sequence[Sequence[Check]]) -> tuple[Check, ...]:
 
     A part in which the axis stands still is no evidence against the others. The first part has every check.
     """
-    names = [check.name for check in parts[0]]
-    return tuple(_worst([one for part in parts for one in part if one.name == name]) for name in names)
-
-
-def _worst(same: Sequence[Check]) -> Check:
-    silent = [one for one in same if one.status == "not_applicable" or (one.status == "fail" and one.unanswerable)]
-    answered = [one for one in same if one not in silent] or silent
-    return min(answered, key=lambda one: STATUSES.index(one.status))
+    worst = []
+    for check in parts[0]:
+        same = [one for part in parts for one in part if one.name == check.name]
+        silent = [one for one in same if one.status == "not_applicable" or (one.status == "fail" and one.unanswerable)]
+        answered = [one for one in same if one not in silent] or silent
+        worst.append(min(answered, key=lambda one: STATUSES.index(one.status)))
+    return tuple(worst)
 
 
 def warnings_of(checks: Sequence[Check]) -> list[str]:

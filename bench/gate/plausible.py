@@ -37,7 +37,7 @@ def _compared(seen: Seen) -> Iterator[tuple[float, str]]:
     rig, trace = seen.rig, seen.trace
     if rig is None:
         return
-    known, fitted = _inertia(seen), seen.balance() if seen.effort is not None else None
+    known, fitted = _inertia(seen), seen.balance()
     if known is not None and fitted is not None and fitted.by_motion > EXPLAINED and fitted.inertia > 0.0:
         words = f"{trace.axis_kind.in_words(INERTIA)} is about {fitted.inertia:.3g} {trace.axis_kind.inertia_unit}"
         yield fitted.inertia / known, f"{words}, and {known:.3g} by the rig's motor and load"

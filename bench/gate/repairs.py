@@ -55,18 +55,16 @@ class Damage:
 
     Attributes:
         missing: samples lost in each step; -1 where the next sample repeats this one - (n - 1,).
-        repeated: which samples repeat the one before in every signal - (n,).
+        again: which samples say again what the one before said, in their position or in every signal - (n,).
     """
 
     missing: NDArray[np.int64]
-    repeated: NDArray[np.bool_]
+    again: NDArray[np.bool_]
 
     @property
     def stale(self) -> int:
-        """Samples that say again what the one before said."""
-        again = self.repeated.copy()
-        again[1:] |= self.missing < 0
-        return int(again.sum())
+        """Samples that do."""
+        return int(self.again.sum())
 
     @property
     def lost(self) -> int:
@@ -113,7 +111,9 @@ def damage_of(trace: Trace) -> Damage:
             for part, (jump, step) in zip(parts, steps_of_parts, strict=True):
                 alone = _alone(jump) if "velocity" not in trace else True
                 missing[part.start : part.stop - 1] = _whole_steps(jump, step, limit, least) * alone
-    return Damage(missing, _repeated(trace))
+    again = _repeated(trace)
+    again[1:] |= missing < 0
+    return Damage(missing, again)
 
 
 def _beyond_motion(trace: Trace, part: slice) -> tuple[Array, Array]:
@@ -173,7 +173,7 @@ def repaired(trace: Trace, damage: Damage) -> Trace:
     """The recording with the times that its samples must have had, without repetitions, short gaps interpolated."""
     period = trace.sample_period
     step = np.diff(trace.time) + damage.missing * period
-    kept = np.concatenate([[True], damage.missing >= 0]) & ~damage.repeated
+    kept = ~damage.again
     time = trace.time[0] + np.concatenate([[0.0], np.cumsum(step)])[kept]
     gap = np.diff(time) / period
     filled = np.flatnonzero((gap > HOLE) & (np.rint(gap) == 2.0))

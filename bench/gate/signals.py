@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -120,27 +117,24 @@ def _stands(seen: Seen, name: str, side: float) -> Check | None:
     standing = None if name == "velocity" and not side else _standing(trace, seen.rig, name, side)  # an axis may rest
     if standing is None:
         return None
-    lost = name != "velocity" and _more_demanded(seen, name, standing.samples, side)
+    where, samples, ends = standing
+    lost = name != "velocity" and _more_demanded(seen, name, samples, side)
     if not side and not lost:
         return None  # a motor that coasts has no current
-    begin, end = (trace.time[k] - trace.time[0] for k in (standing.first, standing.last))
-    found = f"{standing.where}, between {begin:.4g} and {end:.4g} s"
+    begin, end = (trace.time[k] - trace.time[0] for k in ends)
+    found = f"{where}, between {begin:.4g} and {end:.4g} s"
     advice = "the end of its range? What lies beyond is lost: record with a wider range, or move more gently"
     advice = advice if side else "the signal dropped out? The motion takes effort meanwhile: cut the recording there"
     return Check(CLIPS, "fail" if lost else "warn", found, ALLOWED_CLIPS, advice, unanswerable=True)
 
 
-class _Standing(NamedTuple):
-    """Samples at which a signal stands (n,), the first and the last in long rows of them, and how many in words."""
+def _standing(
+    trace: Trace, rig: Rig | None, name: str, side: float
+) -> tuple[str, NDArray[np.bool_], tuple[int, int]] | None:
+    """Where a signal stands at an end of its range, as of `_stands`; None where hardly, or at the drive's own limit.
 
-    samples: NDArray[np.bool_]
-    first: int
-    last: int
-    where: str
-
-
-def _standing(trace: Trace, rig: Rig | None, name: str, side: float) -> _Standing | None:
-    """Where a signal stands at an end of its range, as of `_stands`; None where hardly, or at the drive's own limit."""
+    In words, the samples at which it does (n,), and the first and the last in long rows of them.
+    """
     values = side * trace[name]
     top = float(values.max())
     peak = rig.motor.peak_current if rig is not None and name == "current" else None
@@ -153,14 +147,14 @@ def _standing(trace: Trace, rig: Rig | None, name: str, side: float) -> _Standin
     if share <= CLIPPED:
         return None
     where = f"{share:.1%} of {name} stand at exactly {side * top + 0.0:.4g} {trace.units[name]}"
-    return _Standing(samples, int(starts[0]), int(starts[-1] + lengths[-1] - 1), where)
+    return where, samples, (int(starts[0]), int(starts[-1] + lengths[-1] - 1))
 
 
 def clipped(trace: Trace, rig: Rig) -> list[str]:
     """A warning of each end of its range at which a signal of the effort stands."""
     names = [name for name in ("current", "torque", "force") if name in trace]
     ends = (_standing(trace, rig, name, side) for name in names for side in (1.0, -1.0))
-    return [f"{end.where}: the end of its range? What lies beyond is lost" for end in ends if end is not None]
+    return [f"{end[0]}: the end of its range? What lies beyond is lost" for end in ends if end is not None]
 
 
 def _more_demanded(seen: Seen, name: str, standing: NDArray[np.bool_], side: float) -> bool:
@@ -189,9 +183,9 @@ def resolution(seen: Seen) -> Check:
         return absent(RESOLUTION, f"only {len(trace)} samples", ALLOWED_STEPS)
     steps = {}
     for what, names in (("motion", MOTION), ("effort", EFFORTS)):
-        fine = [_steps(trace, name) for name in names if name in trace and np.ptp(trace[name]) > 0.0]
-        if fine:
-            steps[what] = max(fine)
+        changing = [trace[name] for name in names if name in trace and np.ptp(trace[name]) > 0.0]
+        if changing:
+            steps[what] = max(float(np.std(values)) / resolution_of(values) for values in changing)
     if not steps:
         return absent(RESOLUTION, "nothing moves", ALLOWED_STEPS)
     found = ", ".join(f"{count:.3g} steps within the spread of the {what}" for what, count in steps.items())
@@ -200,9 +194,3 @@ def resolution(seen: Seen) -> Check:
     if worst < COARSE:
         return Check(RESOLUTION, "fail", found, ALLOWED_STEPS, advice, unanswerable=True)
     return Check(RESOLUTION, "warn" if worst < FINE else "pass", found, ALLOWED_STEPS, advice * (worst < FINE))
-
-
-def _steps(trace: Trace, name: str) -> float:
-    """Standard deviation of a signal in its smallest steps."""
-    step = resolution_of(trace[name])
-    return float(np.std(trace[name])) / step if step > 0.0 else math.inf

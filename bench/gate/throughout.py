@@ -41,11 +41,10 @@ ALLOWED = "one balance of effort and motion, from beginning to end"
 
 def holds(seen: Seen) -> Check:
     """Whether one balance holds throughout, and the likeliest fault where none does."""
-    if seen.effort is None or not seen.tells_motion:
-        return absent(NAME, "not both effort and motion are recorded", ALLOWED)
-    fitted, (_, name) = seen.balance(), seen.effort
-    if fitted is None:
-        return absent(NAME, f"too few samples, or {name} never changes", ALLOWED)
+    fitted = seen.balance()
+    if seen.effort is None or fitted is None:
+        return absent(NAME, seen.unbalanced, ALLOWED)
+    _, name = seen.effort
     for found, advice in _in_blocks(fitted, name, seen.trace):
         return Check(NAME, "fail", found, ALLOWED, advice)
     for found, advice, left in _delayed(fitted, name, seen.trace):
@@ -112,12 +111,11 @@ def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, s
     length, shifts = fitted.length, np.arange(-most, most + 1, max(1, most // 50))
     columns, efforts = [], []
     for part in fitted.sums:
-        found, at = part.windows(length), part.windows_of(length)
-        if found is not None:
-            inside = (at >= most) & (at + length + most < part.sums.shape[1])
-            ends = at[inside][:, None] + shifts
-            columns.append(found[0][inside])
-            efforts.append((part.sums[-1][ends + length] - part.sums[-1][ends]) / length)
+        at = part.windows_of(length)
+        inside = (at >= most) & (at + length + most < part.sums.shape[1])
+        ends = at[inside][:, None] + shifts
+        columns.append(part.windows(length)[0][inside])
+        efforts.append((part.sums[-1][ends + length] - part.sums[-1][ends]) / length)
     if sum(map(len, columns)) < BLOCKS * WINDOWS // 3:
         return
     basis, effort = _basis(np.concatenate(columns)), np.concatenate(efforts)

@@ -115,17 +115,13 @@ def followed(signals: list[Array]) -> tuple[float, float]:
     spread = float(np.std(np.concatenate(signals)))
     changes = rms(np.concatenate([np.diff(values) for values in signals]))
     alike, size = -1.0, 1
-    while (means := [_averaged(values, size) for values in signals if values.size >= 8 * size]) and size <= LEAST:
+    while (long := [values for values in signals if values.size >= 8 * size]) and size <= LEAST:
+        means = [values[: values.size // size * size].reshape(-1, size).mean(axis=1) for values in long]
         steps = [np.diff(mean) for mean in means]
         power = sum(float(step @ step) for step in steps)
         alike = max(alike, sum(float(step[1:] @ step[:-1]) for step in steps) / power) if power > 0.0 else alike
         size *= 2
     return (changes / spread if spread > 0.0 else 0.0), alike
-
-
-def _averaged(values: Array, size: int) -> Array:
-    count = values.size // size
-    return values[: count * size].reshape(count, size).mean(axis=1)
 
 
 def _heavy(seen: Seen) -> float | None:

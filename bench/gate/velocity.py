@@ -9,7 +9,6 @@ another ratio. What remains, as share of the displacements, says whether both ar
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -41,45 +40,34 @@ def is_derivative(seen: Seen) -> Check:
     found = compared(seen)
     if found is None:
         return absent(NAME, f"hardly any motion, or no stretch of {2 * SPAN} samples without a hole", ALLOWED)
-    if found.remainder >= REMAINDER and rate(seen).status == "fail":
+    ratio, lag, remainder = found
+    if remainder >= REMAINDER and rate(seen).status == "fail":
         return absent(NAME, "sampled too coarsely to compare them", ALLOWED)
-    return judged(found)
+    return judged(ratio, lag, remainder)
 
 
-@dataclass(frozen=True)
-class SpeedAgainstPosition:
-    """Speed against position.
+def compared(seen: Seen) -> tuple[float, float, float] | None:
+    """Ratio of a recording's speed to its position's derivative, by how much it is late - s -, and what is not in it.
 
-    Attributes:
-        ratio: of speed to the derivative of position.
-        lag: by which speed is late - s.
-        remainder: what is not the position's, as share of the displacements.
+    That is a share of the displacements. None where the recording is too short or hardly moves.
     """
-
-    ratio: float
-    lag: float
-    remainder: float
-
-
-def compared(seen: Seen) -> SpeedAgainstPosition | None:
-    """Speed and position of a recording compared; None where it is too short or hardly moves."""
     trace = seen.trace
     spans = [_spans(trace, part) for part in seen.stretches(2 * SPAN)]
     if not spans:
         return None
     moved, claimed, change = (np.concatenate(column) for column in zip(*spans, strict=True))
-    if max(rms(moved), rms(claimed)) <= STEPS * _step(trace):
+    step = max(resolution_of(trace["velocity"]), white_noise(trace["velocity"])) * trace.sample_period * math.sqrt(SPAN)
+    if max(rms(moved), rms(claimed)) <= STEPS * max(resolution_of(trace["position"]), step):
         return None
     columns = np.column_stack([moved, change, np.full(moved.size, SPAN * trace.sample_period)])
     scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     theta = np.linalg.lstsq(columns / scale, claimed, rcond=1e-9)[0] / scale
     left = rms(claimed - columns @ theta)
-    return SpeedAgainstPosition(float(theta[0]), -float(theta[1]), left / max(rms(claimed), 1e-300))
+    return float(theta[0]), -float(theta[1]), left / max(rms(claimed), 1e-300)
 
 
-def judged(both: SpeedAgainstPosition) -> Check:
-    """What a comparison of speed and position says."""
-    ratio, lag, remainder = both.ratio, both.lag, both.remainder
+def judged(ratio: float, lag: float, remainder: float) -> Check:
+    """What a comparison of speed and position, as of `compared`, says."""
     units = "check the units (and signs) of both columns and of the time, or leave one of the two columns out"
     if abs(ratio - 1.0) > REFUSED and remainder < REMAINDER:
         thousands = math.log10(abs(ratio)) / 3.0 if ratio else 0.0
@@ -104,9 +92,3 @@ def _spans(trace: Trace, part: slice) -> tuple[Array, ...]:
     position, velocity = trace["position"][part], trace["velocity"][part]
     columns = position, integrated(velocity, period), velocity
     return tuple(values[SPAN:] - values[:-SPAN] for values in columns)
-
-
-def _step(trace: Trace) -> float:
-    """By how much the resolution of both signals, or noise of the speed, moves a span - rad (m)."""
-    velocity = max(resolution_of(trace["velocity"]), white_noise(trace["velocity"]))
-    return max(resolution_of(trace["position"]), velocity * trace.sample_period * math.sqrt(SPAN))

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from queue import Empty, SimpleQueue
 from statistics import median
 from threading import Thread
-from typing import TypeVar
 
-from bench.jobs.process import LOOK, Failure, Limits, WorkerProcess
-
-Item = TypeVar("Item")
-Result = TypeVar("Result")
+from bench.jobs.process import LOOK, Failure, Item, Limits, Result, WorkerProcess
 
 #: Time that a process takes to start and to load the bench - s (1 to 2 s measured).
 STARTS = 1.5
@@ -62,6 +58,10 @@ def _on_this_machine(
     threads: dict[Thread, WorkerProcess[Item, Result]] = {}
     seconds: deque[float] = deque(maxlen=RECENT)
 
+    def another_pays() -> bool:
+        """Whether one worker more saves more time than it takes to start, judged by the last pieces."""
+        return not threads or (bool(seconds) and len(waiting) * median(seconds) / len(threads) > STARTS)
+
     def serve(process: WorkerProcess[Item, Result]) -> None:
         with process, suppress(IndexError):  # nothing waits any more
             while True:
@@ -74,7 +74,7 @@ def _on_this_machine(
     left = len(waiting)
     try:
         while left:
-            while waiting and len(threads) < most and _pays(len(waiting), seconds, len(threads)):
+            while waiting and len(threads) < most and another_pays():
                 process = WorkerProcess(work, limits)
                 thread = Thread(target=serve, args=(process,), daemon=True)
                 threads[thread] = process
@@ -96,8 +96,3 @@ def _on_this_machine(
             while thread.is_alive():  # it may be about to start its process
                 process.stop()
                 thread.join(LOOK)
-
-
-def _pays(waiting: int, seconds: Sequence[float], workers: int) -> bool:
-    """Whether one worker more saves more time than it takes to start, judged by the last pieces."""
-    return not workers or (bool(seconds) and waiting * median(seconds) / workers > STARTS)

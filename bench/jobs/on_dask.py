@@ -10,9 +10,9 @@ import asyncio
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from functools import partial
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 from uuid import uuid4
 
 from distributed import Client, Future, KilledWorker, Security, Worker, WorkerPlugin, as_completed, get_worker
@@ -20,10 +20,7 @@ from distributed.comm.core import connect
 
 from bench import __version__
 from bench.errors import InputError
-from bench.jobs.process import Failure, Limits, WorkerProcess, raised
-
-Item = TypeVar("Item")
-Result = TypeVar("Result")
+from bench.jobs.process import Failure, Item, Limits, Result, WorkerProcess, raised
 
 #: Seconds within which a scheduler has to answer.
 ANSWERS = 15
@@ -41,49 +38,36 @@ def on_dask(
 
     InputError where there is no such cluster, or its workers have no servobench of this version.
     """
-    with ExitStack() as stack:
-        client = stack.enter_context(_client(scheduler))
+    with _client(scheduler) as client, ExitStack() as stack:
         name = f"bench-{uuid4().hex}"
-        stack.enter_context(_equipped(client, WorkerProcesses(name, work, limits), scheduler))
+        try:
+            client.register_plugin(WorkerProcesses(name, work, limits))  # also for a worker that comes later
+        except ImportError as error:
+            found = f"its workers cannot load the bench ({error})"
+            allowed = f"install servobench {__version__} where they run"
+            raise InputError(f"--scheduler {scheduler}", found, allowed) from error
+        stack.callback(client.unregister_worker_plugin, name)
         keys = [(name, number) for number, _ in numbered]  # one group, which the scheduler hands out as workers ask
         items = [item for _, item in numbered]
         for future in as_completed(client.map(partial(_done, name), items, key=keys, batch_size=BATCH)):
             yield future.key[1], _outcome(future)
 
 
-@contextmanager
-def _client(scheduler: str) -> Iterator[Client]:
+def _client(scheduler: str) -> Client:
     try:
         with ThreadPoolExecutor(1) as thread:  # a notebook's own runs a loop already
             thread.submit(asyncio.run, asyncio.wait_for(_answered(scheduler), ANSWERS)).result()
-        client = Client(scheduler, timeout=ANSWERS)
+        return Client(scheduler, timeout=ANSWERS)
     except (OSError, ValueError, TypeError) as error:
         found = f"no Dask scheduler answers ({' '.join(str(error).split()) or f'nothing within {ANSWERS} s'})"
-        raise InputError(
-            f"--scheduler {scheduler}", found, "allowed: the address of one, e.g. tcp://host:8786"
-        ) from error
-    with client:
-        yield client
+        allowed = "allowed: the address of one, e.g. tcp://host:8786"
+        raise InputError(f"--scheduler {scheduler}", found, allowed) from error
 
 
 async def _answered(scheduler: str) -> None:
     """Return once a scheduler has said what it is, for which a client would wait without end."""
     comm = await connect(scheduler, **Security().get_connection_args("client"))
     await comm.close()
-
-
-@contextmanager
-def _equipped(client: Client, plugin: WorkerProcesses, scheduler: str) -> Iterator[None]:
-    """Within the block each worker, also one that comes later, has the plugin."""
-    try:
-        client.register_plugin(plugin)
-    except ImportError as error:
-        allowed = f"install servobench {__version__} where they run"
-        raise InputError(f"--scheduler {scheduler}", f"its workers cannot load the bench ({error})", allowed) from error
-    try:
-        yield
-    finally:
-        client.unregister_worker_plugin(plugin.name)
 
 
 class WorkerProcesses(WorkerPlugin):

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, Generic, Literal, TypeVar
+from typing import Generic, Literal, TypeVar
 
 import psutil
 
@@ -52,11 +52,9 @@ class Limits:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a piece of work gave no result.
+    """Why a piece of work gave no result: it was stopped at its deadline, or it raised, or its process died.
 
-    Attributes:
-        status: `timed_out` where it was stopped at its deadline, `failed` where it raised, or its process died.
-        reason: for a person; the same whenever the same happens.
+    The reason is for a person, and the same whenever the same happens.
     """
 
     status: Literal["failed", "timed_out"]
@@ -167,17 +165,12 @@ def serve(handle: int) -> None:
             while True:
                 item = calls.recv()
                 faulthandler.dump_traceback_later(deadline + GRACE, exit=True, file=nowhere)
-                answer = _answer(work, item)
+                try:
+                    answer = pickle.dumps(work(item))
+                except Exception as error:  # of a result that cannot be pickled, too
+                    answer = pickle.dumps(raised(error))
                 faulthandler.cancel_dump_traceback_later()
                 calls.send_bytes(answer)
-
-
-def _answer(work: Callable[[Any], Any], item: object) -> bytes:
-    """Result or failure, pickled; a result that cannot be pickled is a failure too."""
-    try:
-        return pickle.dumps(work(item))
-    except Exception as error:
-        return pickle.dumps(raised(error))
 
 
 def raised(error: Exception) -> Failure:

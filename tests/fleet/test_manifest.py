@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from bench.fleet.evaluate import PlannedRecording, plan
-from bench.fleet.fleet import tabulate, write_table
+from bench.fleet.fleet import tabulate
 from bench.fleet.manifest import read_manifest
 from bench.rig.rig import shipped
 
@@ -26,7 +26,7 @@ def through(tmp_path, manifest):
     refusal = {"status": "refused", "reason": "none"}
     planned = PlannedRecording("", None, refusal, {"version": "1", "rig_sha256": None, "options": {}})
     table = tabulate(manifest, [planned] * len(manifest), [refusal] * len(manifest))
-    write_table(tmp_path / "fleet.parquet", table)
+    pq.write_table(table, tmp_path / "fleet.parquet")
     return pq.read_table(tmp_path / "fleet.parquet").select(manifest.table.column_names).to_pydict()
 
 

@@ -23,8 +23,9 @@ def measures(trace: Trace, rig: Rig) -> Iterator[tuple[str, float]]:
     if {"position", "velocity"} <= set(trace.signals):
         both = velocity.compared(seen)
         assert both is not None
-        yield f"|ratio - 1| of speed (warned {velocity.WARNED}, refused {velocity.REFUSED})", abs(both.ratio - 1.0)
-        yield f"remainder of speed (refused {velocity.REMAINDER})", both.remainder
+        ratio, _, remainder = both
+        yield f"|ratio - 1| of speed (warned {velocity.WARNED}, refused {velocity.REFUSED})", abs(ratio - 1.0)
+        yield f"remainder of speed (refused {velocity.REMAINDER})", remainder
     damage = repairs.damage_of(trace)
     share = (damage.lost + damage.stale) / len(trace)
     yield f"share of lost samples (refused {repairs.MOST}, without speed {repairs.MOST_BLIND})", share

@@ -62,7 +62,7 @@ def test_a_standstill_compares_nothing(sound, rig):
     ],
 )
 def test_ratio_and_remainder_are_judged_by_their_borders(ratio, remainder, status):
-    found = velocity.judged(velocity.SpeedAgainstPosition(ratio, 0.0, remainder))
+    found = velocity.judged(ratio, 0.0, remainder)
     assert found.status == status
     assert ("not the same motion" in found.found) == (remainder > 0.4)
 
@@ -72,7 +72,8 @@ def test_ratio_lag_and_offset_of_a_motion_in_closed_form_are_found():
     time = 1e-3 * np.arange(4000)
     position, speed, rate = np.sin(3.0 * time), 3.0 * np.cos(3.0 * time), -9.0 * np.sin(3.0 * time)
     seen = {"position": position, "velocity": 0.7 * (speed - 5e-3 * rate) + 0.4}
-    found = velocity.compared(Seen(Trace(time, seen, {"position": "rad", "velocity": "rad/s"}, "sine")))
-    assert found.ratio == pytest.approx(0.7 * (1.0 + 0.015**2), rel=1e-5)
-    assert found.lag == pytest.approx(5e-3, rel=1e-3)
-    assert found.remainder < 1e-4
+    trace = Trace(time, seen, {"position": "rad", "velocity": "rad/s"}, "sine")
+    ratio, lag, remainder = velocity.compared(Seen(trace))
+    assert ratio == pytest.approx(0.7 * (1.0 + 0.015**2), rel=1e-5)
+    assert lag == pytest.approx(5e-3, rel=1e-3)
+    assert remainder < 1e-4
