@@ -19,7 +19,7 @@ from bench.fit.determined import require_friction, require_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.gathered import TELLS, TERMS, solved, steady
 from bench.fit.hum import with_hum
-from bench.fit.layout import lay_out, plain
+from bench.fit.hypothesis import lay_out, plain
 from bench.fit.quantities import Uncertain
 from bench.fit.rows import Rows, clear_motion
 from bench.fit.solution import equations_of

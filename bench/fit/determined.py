@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, OFFSET, VISCOUS, AxisKind
 from bench.errors import UndeterminedError
-from bench.fit.estimate import Estimate
-from bench.fit.normal_equations import NormalEquations
-from bench.fit.rows import ONE_WAY
+from bench.fit.estimate import Estimate, RefusedEstimateError
+from bench.fit.solution import INDEPENDENT_SHARE, NormalEquations
 from bench.names import words
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 
 #: Least number of rows for each column of the regression.
 ROWS_PER_COLUMN = 20
-#: Least share of a column's power that the others do not explain; 1 % inflates its standard error tenfold.
-INDEPENDENT_SHARE = 0.01
-
 #: Least share of the effort's variance that a model has to explain.
 LEAST_EXPLAINED = 0.5
 
@@ -73,15 +70,6 @@ def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
             raise refusal
 
 
-def only_direction(equations: NormalEquations) -> str | None:
-    """`forward` or `backward` if the axis moves one way only: Coulomb friction and offset are then inseparable."""
-    sign, constant = equations.place(COULOMB), equations.place(OFFSET)
-    mean_direction = equations.total[sign, constant] / equations.count
-    if 0.5 * (1.0 - abs(mean_direction)) >= ONE_WAY:
-        return None
-    return "forward" if mean_direction > 0.0 else "backward"
-
-
 def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
     """Why each term that the rows leave open is, in the order of the report; the inertia's alone if it is one."""
     least, open_terms = ROWS_PER_COLUMN * len(equations.names), _not_excited(equations, kind)
@@ -90,11 +78,10 @@ def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, Undetermi
         return {INERTIA: UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])}
     if INERTIA in open_terms:
         return {INERTIA: open_terms[INERTIA]}
-    side = only_direction(equations)
-    if side is None:
+    if equations.one_way is None:
         return open_terms
     name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
-    one_way = UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
+    one_way = UndeterminedError(name, f"the axis moves {equations.one_way} only", RECORD[COULOMB])
     open_terms.pop(COULOMB, None)
     return {COULOMB: one_way, OFFSET: one_way, **open_terms}
 
@@ -161,15 +148,25 @@ def negative_friction(
     }
 
 
-def require_sound(estimate: Estimate, rig: Rig, suspicions: Sequence[str]) -> None:
-    """Raise UndeterminedError, with what else is suspicious about the recording, if an estimate is meaningless.
+def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: Sequence[str]) -> Estimate:
+    """The estimate, if its equations, of every column and a constant, determine it and it means something.
 
-    Its inertia may be zero or is negative, the load's is negative, or the model explains less than half of the effort's
-    variance.
+    It means nothing where its inertia may be zero or is negative, the load's is negative, a friction surely is, or the
+    model explains less than half of the effort's variance.
+
+    Raises:
+        RefusedEstimateError: else, with what is determined, and with what else is suspicious.
     """
-    for refusal in refused_masses(estimate.parameters, rig, suspicions).values():
-        raise refusal
-    kind = rig.axis_kind
+    kind, refused = rig.axis_kind, _refusals(equations, rig.axis_kind)
+    negative = negative_friction(estimate.parameters, kind, suspicions)
+    reasons = [*refused.values(), *refused_masses(estimate.parameters, rig, suspicions).values()]
     if estimate.explained < LEAST_EXPLAINED:
         share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
-        raise UndeterminedError(f"{kind.in_words(INERTIA)} and friction", "; ".join([share, *suspicions]), EXPLAINED)
+        what = f"{kind.in_words(INERTIA)} and friction"
+        reasons.append(UndeterminedError(what, "; ".join([share, *suspicions]), EXPLAINED))
+    reasons += negative.values()
+    if not reasons:
+        return estimate
+    unknown = {kind.parameter(term) for term in left_open(equations, kind)} | negative.keys()
+    determined = {name: value for name, value in estimate.parameters.items() if name not in unknown}
+    raise RefusedEstimateError(reasons[0], replace(estimate, parameters=determined)) from reasons[0]

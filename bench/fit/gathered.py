@@ -11,30 +11,30 @@ has a clearly narrower interval. If some were rejected, the interval includes th
 
 from __future__ import annotations
 
+import math
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain, islice
-from typing import TypeVar
 
 import numpy as np
 
 from bench.arrays import Array
-from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS, AxisKind
+from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
+from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
-from bench.fit.determined import left_open, only_direction
+from bench.fit.determined import left_open, require_inertia, sound
+from bench.fit.estimate import Estimate, Residual, load_inertia
+from bench.fit.fit import fit, hint
 from bench.fit.hum import mains, passes
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.layout import lay_out, plain
-from bench.fit.normal_equations import BLOCKS, Name, NormalEquations, join
-from bench.fit.rows import Rows
-from bench.fit.solution import Solution, equations_of, solve
-from bench.fit.systematic import by_hint, by_tolerance
+from bench.fit.hypothesis import Hypothesis, Name, lay_out, plain
+from bench.fit.rows import Rows, known_of
+from bench.fit.solution import NOISE_ALONE, SURE, NormalEquations, Solution, equations_of, join, solve
 from bench.gate.check import Check
 from bench.gate.gate import PARTS, gate, joined, passed, require
+from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
@@ -49,6 +49,12 @@ ROUNDING = 1e-4
 #: Terms of the axis, in whose order all numbers here stand.
 TERMS = (INERTIA, VISCOUS, COULOMB)
 TELLS = "bench diagnose may tell why"
+#: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
+#: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
+A_DELAY = 0.25
+
+#: Normal equations, number of samples and checks of a part of a recording.
+Summed = tuple[NormalEquations, int, tuple[Check, ...]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,8 +151,8 @@ def _lower(highest: Solution, rig: Rig) -> Iterator[Solution]:
 def solved(rows: Rows, hypothesis: Hypothesis, rig: Rig) -> Solution:
     """The solution of a hypothesis, at the cut-off of the rows."""
     laid = lay_out(rows, hypothesis)
-    equations = equations_of(rows, laid).coarsened(BLOCKS)
-    return solve(rows, hypothesis, laid, equations, rig.offset and only_direction(equations) is None)
+    equations = equations_of(rows, laid)
+    return solve(rows, hypothesis, laid, equations, rig.offset and equations.one_way is None)
 
 
 def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
@@ -187,77 +193,52 @@ def _moves(taken: Tried, usable: Sequence[Tried], kind: AxisKind) -> str:
     )
 
 
-Part = TypeVar("Part")
-Result = TypeVar("Result")
-
-
 @dataclass(frozen=True, eq=False)
 class Gathered:
-    """Normal equations of a recording.
+    """A recording summed up.
 
     Attributes:
-        first: solution of its first part, at whose filter the others are taken; of all of it where it is one part.
-        equations: of every column and, last, a constant.
+        solution: of all of it, with the rows of its first part, at whose filter the others are taken.
         effort_unit: N*m, N, or what the rig allows.
         samples_read: of all parts.
+        measured: sum of the squares of the measured effort over all rows - its unit squared -, and its sum.
         doubt: possible bias of J, K_w and K_0, as they move with the filter's cut-off.
-        hinted: by how much an effect that the recording hints at would move them.
+        hinted: by how much the effect that the recording hints at would move them; empty without one.
         tolerance: half widths of coefficients from the rig's tolerances.
         warnings: about the cut-off.
         checks: of all parts.
-        in_parts: whether there are parts beside the first.
     """
 
-    first: Solution
-    equations: NormalEquations
+    solution: Solution
     effort_unit: str
     samples_read: int
+    measured: tuple[float, float]
     doubt: Mapping[str, float]
     hinted: Mapping[str, float]
     tolerance: Mapping[Name, float]
     warnings: tuple[str, ...]
     checks: tuple[Check, ...]
-    in_parts: bool
 
     @property
     def rows(self) -> Rows:
         """Of its first part, which determines filter and noise floor."""
-        return self.first.rows
+        return self.solution.rows
 
-    @cached_property
-    def measured(self) -> tuple[float, float]:
-        """Sum of the squares of the measured effort over all rows - its unit squared -, and its sum.
-
-        Beside a robot that is what its motor gave, not the small part that its own inertia and friction are to explain.
-        """
-        equations = self.equations
-        if not self.in_parts and self.rows.stretches[0].signals.known:
-            effort = self.rows.measured
-            return float(effort @ effort), float(effort.sum())
-        return float(equations.power.sum()), float(equations.moment[:, equations.place(OFFSET)].sum())
-
-    @cached_property
-    def one_way(self) -> str | None:
-        """The one direction in which it moves, if it does so."""
-        return only_direction(self.equations)
+    @property
+    def equations(self) -> NormalEquations:
+        """Of every column and, last, a constant."""
+        return self.solution.whole
 
     def solved(self, offset: bool) -> Solution:
-        """Its solution with or without a constant, each solved for once."""
-        if not self.in_parts and offset == (OFFSET in self.first.names):
-            return self.first
-        return self._with_offset if offset else self._plain
-
-    @cached_property
-    def _plain(self) -> Solution:
-        return solve(self.rows, self.first.hypothesis, self.first.laid, self.equations, offset=False)
-
-    @cached_property
-    def _with_offset(self) -> Solution:
-        return solve(self.rows, self.first.hypothesis, self.first.laid, self.equations, offset=True)
+        """Its solution with or without a constant."""
+        found = self.solution
+        if offset == (OFFSET in found.names):
+            return found
+        return solve(found.rows, found.hypothesis, found.laid, found.whole, offset)
 
 
 def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
-    """Normal equations of a recording, or of its consecutive parts, at a cut-off - Hz -, or at the one the data choose.
+    """A recording, or its consecutive parts, summed up at a cut-off - Hz -, or at the one the data choose.
 
     Raises:
         UndeterminedError: the recording is too short, or never moves clearly.
@@ -268,46 +249,149 @@ def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Ga
     first = gated.trace
     found, chosen = choose(first, rig, cutoff)
 
-    def gathered(part: Trace) -> tuple[NormalEquations, int, tuple[Check, ...]]:
-        if part is first:
-            return found.whole, len(part), gated.checks
+    def summed(part: Trace) -> Summed:
         sound = gate(part, rig, PARTS)
         rows = Rows.of(sound.trace, rig, conditioning=found.rows.conditioning, begins=float(first.time[0]))
         return equations_of(rows, lay_out(rows, found.hypothesis)), len(sound.trace), sound.checks
 
-    equations, read, checks = zip(*in_parallel(gathered, chain([first], parts)), strict=True)
-    together = joined(checks)
-    require(together, first)
+    others = list(_in_parallel(summed, parts))
+    checks = joined([gated.checks, *(checked for _, _, checked in others)])
+    require(checks, first)
+    whole = found
+    if others:
+        equations = join([found.whole, *(each for each, _, _ in others)])
+        offset = rig.offset and equations.one_way is None
+        whole = solve(found.rows, found.hypothesis, found.laid, equations, offset)
     return Gathered(
-        first=found,
-        equations=join(equations).coarsened(BLOCKS),
+        solution=whole,
         effort_unit=rig.net_effort(first)[1],
-        samples_read=sum(read),
+        samples_read=len(first) + sum(read for _, read, _ in others),
+        measured=_measured(whole.whole, None if others else found.rows),
         doubt=dict(zip(TERMS, chosen.doubt.tolist(), strict=True)),
-        hinted=by_hint(found),
-        tolerance=by_tolerance(first, rig, found, OFFSET in found.names),
+        hinted=_by_hint(found),
+        tolerance=_by_tolerance(first, rig, found),
         warnings=chosen.warnings,
-        checks=together,
-        in_parts=len(equations) > 1,
+        checks=checks,
     )
 
 
-def in_parallel(work: Callable[[Part], Result], parts: Iterable[Part]) -> Iterator[Result]:
+def _in_parallel(work: Callable[[Trace], Summed], parts: Iterable[Trace]) -> Iterator[Summed]:
     """Results of `work` on each part, in order, on one thread a core; NumPy releases the interpreter lock.
 
-    At most two parts a core are in memory, so a recording may be larger than it. A single part is done without threads,
-    whose start takes milliseconds.
+    At most two parts a core are in memory, so a recording may be larger than it.
     """
-    cores, parts = os.cpu_count() or 1, iter(parts)
-    ahead = list(islice(parts, 2))
-    if len(ahead) < 2:
-        yield from map(work, ahead)
-        return
-    waiting: deque[Future[Result]] = deque()
+    cores, waiting = os.cpu_count() or 1, deque[Future[Summed]]()
     with ThreadPoolExecutor(cores) as pool:
-        for part in chain(ahead, parts):
+        for part in parts:
             waiting.append(pool.submit(work, part))
             if len(waiting) >= 2 * cores:
                 yield waiting.popleft().result()
         while waiting:
             yield waiting.popleft().result()
+
+
+def _measured(equations: NormalEquations, rows: Rows | None) -> tuple[float, float]:
+    """Sum of the squares of the measured effort, and its sum; `rows`: all that there are, if they are in memory.
+
+    Beside a robot that is what its motor gave, not the small part that its own inertia and friction are to explain.
+    """
+    if rows is not None and rows.stretches[0].signals.known:
+        effort = rows.effort + rows.table(known_of)[:, 0]
+        return float(effort @ effort), float(effort.sum())
+    return float(equations.power.sum()), float(equations.moment[:, equations.names.index(OFFSET)].sum())
+
+
+def _by_hint(found: Solution) -> dict[str, float]:
+    """By how much the effect that a recording hints at would move J, K_w and K_0 of its solution; empty without one."""
+    fitted = fit(found.rows, found.hypothesis)
+    beside = hint(fitted, catalogue().values())
+    return {} if beside is None else {term: beside.value(term) - fitted.value(term) for term in TERMS}
+
+
+def _by_tolerance(first: Trace, rig: Rig, found: Solution) -> dict[Name, float]:
+    """Half widths at 95 % of coefficients by their names from the rig's tolerances, taken for independent."""
+    moved = np.zeros(found.theta.size)
+    for other in rig.within_tolerance():
+        rows = Rows.of(first, other, conditioning=found.rows.conditioning)
+        laid = lay_out(rows, found.hypothesis)
+        theta = solve(rows, found.hypothesis, laid, equations_of(rows, laid), OFFSET in found.names).theta
+        moved = np.hypot(moved, theta - found.theta)
+    return dict(zip(found.names, moved.tolist(), strict=True))
+
+
+def estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
+    """Estimate from a solution of a recording, without a constant where it moves in one direction only.
+
+    Raises:
+        RefusedEstimateError: it determines only some parameters.
+        UndeterminedError: it determines none.
+    """
+    kind, unit, parameters = rig.axis_kind, gathered.effort_unit, {}
+    require_inertia(gathered.equations, kind)
+    for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
+        margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
+        parameter = parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
+        parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
+    estimate = summed_up([gathered], [found], parameters, found.power, rig)
+    remaining = tuple(_remaining(estimate))
+    estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *remaining))
+    return sound(estimate, gathered.equations, rig, (*gathered.warnings, *remaining))
+
+
+def parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
+    """A coefficient of a solution with the interval that its covariance gives it."""
+    value, error = found.of(term, found.theta), found.of(term, found.errors)
+    interval = (value - found.reach * error, value + found.reach * error)
+    return Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
+
+
+def summed_up(
+    gathered: Sequence[Gathered],
+    solutions: Sequence[Solution],
+    parameters: Mapping[str, Parameter],
+    left: float,
+    rig: Rig,
+) -> Estimate:
+    """The estimate of recordings, with what explains them; `left`: their squared residuals - the effort's unit squared.
+
+    Raises:
+        UndeterminedError: no effort at all.
+    """
+    kind, counts = rig.axis_kind, np.array([one.equations.count for one in gathered])
+    squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
+    if squares == 0.0:
+        reason = "the effort is zero throughout"
+        raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
+    count = int(counts.sum())
+    floor = math.sqrt(float(counts @ np.square([found.floor.coloured for found in solutions])) / count)
+    filters = [one.rows.conditioning.filter for one in gathered]
+    return Estimate(
+        estimator="regression",
+        parameters={**parameters, **load_inertia(parameters, rig)},
+        residual=Residual(math.sqrt(left / count), floor, math.sqrt(left / squares), gathered[0].effort_unit),
+        samples_read=sum(one.samples_read for one in gathered),
+        samples_used=int(counts @ [smooth.stride for smooth in filters]),
+        cutoff=min(smooth.cutoff for smooth in filters),
+        source=" and ".join(sorted({one.rows.conditioning.source for one in gathered})),
+        explained=1.0 - left / max(squares - total**2 / count, 1e-300),
+        checks=joined([one.checks for one in gathered]),
+    )
+
+
+def _remaining(estimate: Estimate) -> Iterator[str]:
+    """What share is explained, where more than noise is left."""
+    residual = estimate.residual
+    if residual.rms > NOISE_ALONE * residual.noise_floor:
+        yield (
+            f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
+            f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
+        )
+
+
+def _shifted(found: Solution) -> Iterator[str]:
+    (shift, error), period = found.shift, found.rows.scope.sample_period
+    if abs(shift) > period and abs(shift) > SURE * error and found.shift_explains > A_DELAY:
+        yield (
+            f"current and speed are {shift * 1e3:.3g} ms apart, more than a sample ({period * 1e3:.3g} ms): "
+            "a lag in the drive or its filters, which bench diagnose can tell"
+        )

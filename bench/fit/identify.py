@@ -29,159 +29,86 @@ from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
-from bench.fit.determined import left_open, negative_friction, require_determined, require_inertia, require_sound
-from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
-from bench.fit.gathered import Gathered, gather
-from bench.fit.layout import BASE
-from bench.fit.normal_equations import NormalEquations, join, solved
-from bench.fit.solution import NOISE_ALONE, SURE, Solution
-from bench.gate.gate import joined
+from bench.fit.determined import sound
+from bench.fit.estimate import Alone, Estimate, RefusedEstimateError
+from bench.fit.gathered import Gathered, estimated_alone, gather, parameter_of, summed_up
+from bench.fit.hypothesis import BASE
+from bench.fit.solution import NormalEquations, Solution, join, solved
 from bench.parameter import Parameter
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
-#: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
-A_DELAY = 0.25
 
+def identify(
+    trace: Given | Iterator[Trace] | Sequence[Given | Iterator[Trace]],
+    rig: Rig | str | Path,
+    cutoff: float | None = None,
+) -> Estimate:
+    """Inertia, viscous and Coulomb friction (and offset, if the rig asks for it) of a recording, or of several.
 
-def estimated_alone(gathered: Gathered, rig: Rig) -> Estimate:
-    """Estimate from the normal equations of a recording.
+    Each recording goes through the gate, is laid out in rows through one filter, and is summed up in normal equations
+    at the cut-off at which the estimate stands still; these are solved, alone or together, with intervals that count
+    correlated residuals, misfit, tolerances and what the recording hints at. What is not determined is refused.
 
-    Raises:
-        RefusedEstimateError: they determine only some parameters.
-        UndeterminedError: they determine none.
-    """
-    kind = rig.axis_kind
-    require_inertia(gathered.equations, kind)
-    estimate = _estimate(gathered, rig, gathered.solved(rig.offset and gathered.one_way is None))
-    return sound(estimate, gathered.equations, rig, (*gathered.warnings, *_remaining(estimate)))
-
-
-def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: tuple[str, ...]) -> Estimate:
-    """The estimate, if its equations, of every column and a constant, determine it and it means something.
+    Args:
+        trace: the recording, or its file, arrays by their names or a data frame; an iterator over its consecutive
+            parts, for one that does not fit into memory; or a list (tuple) of several of one axis, which are fitted
+            together.
+        rig: what is known about the axis, or its file, or a shipped rig's name.
+        cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz.
 
     Raises:
-        RefusedEstimateError: else, with what is determined, and with what else is suspicious.
+        RefusedEstimateError: the recordings leave one of them undetermined; the error carries the others.
+        UndeterminedError: they determine none, or one of several recordings never moves clearly.
+        InputError: no recording, one that is given twice, a signal is missing, efforts in different units, rig and
+            trace do not fit together, or a check of a recording fails.
     """
-    kind = rig.axis_kind
-    negative = negative_friction(estimate.parameters, kind, suspicions)
-    try:
-        require_determined(equations, kind)
-        require_sound(estimate, rig, suspicions)
-        for refusal in negative.values():
-            raise refusal
-    except UndeterminedError as refusal:
-        unknown = {kind.parameter(term) for term in left_open(equations, kind)} | negative.keys()
-        determined = {name: value for name, value in estimate.parameters.items() if name not in unknown}
-        raise RefusedEstimateError(refusal, replace(estimate, parameters=determined)) from refusal
-    return estimate
-
-
-def _estimate(gathered: Gathered, rig: Rig, found: Solution) -> Estimate:
-    equations, unit, kind = gathered.equations, gathered.effort_unit, rig.axis_kind
-    parameters = {}
-    for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
-        margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
-        parameter = parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
-        parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
-    parameters |= load_inertia(parameters, rig)
-    squares, total = gathered.measured
-    if squares == 0.0:
-        reason = "the effort is zero throughout"
-        raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
-    rms, relative = math.sqrt(found.power / equations.count), math.sqrt(found.power / squares)
-    smooth = gathered.rows.conditioning.filter
-    estimate = Estimate(
-        estimator="regression",
-        parameters=parameters,
-        residual=Residual(rms, found.floor.coloured, relative, unit),
-        samples_read=gathered.samples_read,
-        samples_used=equations.count * smooth.stride,
-        cutoff=smooth.cutoff,
-        source=gathered.rows.conditioning.source,
-        warnings=(*gathered.warnings, *_shifted(found)),
-        explained=1.0 - found.power / max(squares - total**2 / equations.count, 1e-300),
-        checks=gathered.checks,
-    )
-    return replace(estimate, warnings=(*estimate.warnings, *_remaining(estimate)))
-
-
-def parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
-    """A coefficient of a solution with the interval that its covariance gives it."""
-    value, error = found.of(term, found.theta), found.of(term, found.errors)
-    interval = (value - found.reach * error, value + found.reach * error)
-    return Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
-
-
-def _remaining(estimate: Estimate) -> Iterator[str]:
-    """What share is explained, where more than noise is left."""
-    residual = estimate.residual
-    if residual.rms > NOISE_ALONE * residual.noise_floor:
-        yield (
-            f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
-            f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
-        )
-
-
-def _shifted(found: Solution) -> Iterator[str]:
-    (shift, error), period = found.shift, found.rows.scope.sample_period
-    if abs(shift) > period and abs(shift) > SURE * error and found.shift_explains > A_DELAY:
-        yield (
-            f"current and speed are {shift * 1e3:.3g} ms apart, more than a sample ({period * 1e3:.3g} ms): "
-            "a lag in the drive or its filters, which bench diagnose can tell"
-        )
+    rig = rig_of(rig)
+    every = trace if isinstance(trace, list | tuple) else [cast("Given", trace)]
+    recordings = [one if isinstance(one, Iterator) else trace_of(one, rig) for one in every]
+    gathered = [gather(one, rig, cutoff) for one in recordings]
+    if len(gathered) == 1:
+        found = estimated_alone(gathered[0], gathered[0].solution, rig)
+    else:
+        found = estimated_together(gathered, rig)
+    return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
 
 
 def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
-    """Estimate from the normal equations of several recordings of one axis.
+    """Estimate from several recordings of one axis.
 
     Raises:
         RefusedEstimateError: together they leave a parameter undetermined; the error carries the others.
         InputError: no recording, one that is given twice, or efforts in different units.
     """
     _require_distinct(gathered)
-    kind, unit, whole = rig.axis_kind, gathered[0].effort_unit, _joined(gathered)
+    kind, unit = rig.axis_kind, gathered[0].effort_unit
     members = [Member.of(one, rig) for one in gathered]
-    terms = members[0].terms
-    excesses = {term: _excess(members, kind, term) for term in terms}
-    joint = Joint.of(members, list(excesses.values()))
+    excesses = {term: _excess(members, kind, term) for term in members[0].terms}
+    theta, errors, reaches = _jointly(members, list(excesses.values()))
     parameters = {}
-    for term, *numbers in zip(terms, joint.theta, joint.errors, joint.reaches, strict=True):
-        value, error, reach = map(float, numbers)
-        tolerance = float(np.mean([member.tolerances[kind.parameter(term)] for member in members]))
-        interval = (value - reach, value + reach)
-        found = Parameter(value, kind.parameter_unit(term, unit), error, interval)
+    for term, value, error, reach in zip(excesses, theta.tolist(), errors.tolist(), reaches.tolist(), strict=True):
+        found = Parameter(value, kind.parameter_unit(term, unit), error, (value - reach, value + reach))
+        tolerance = float(np.mean([_tolerance(one, term) for one in gathered]))
         parameters[kind.parameter(term)] = found.widened(tolerance)
-    filters = [one.rows.conditioning.filter for one in gathered]
-    left = joint.left(members)
-    squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
-    variation = squares - total**2 / whole.count
-    estimate = Estimate(
-        estimator="regression",
-        parameters=parameters | load_inertia(parameters, rig),
-        residual=_residual(members, left, unit),
-        samples_read=sum(one.samples_read for one in gathered),
-        samples_used=sum(one.equations.count * f.stride for one, f in zip(gathered, filters, strict=True)),
-        cutoff=min(smooth.cutoff for smooth in filters),
-        source=" and ".join(sorted({one.rows.conditioning.source for one in gathered})),
+    left = sum(each.left(theta) for each in members)
+    estimate = replace(
+        summed_up(gathered, [each.solution for each in members], parameters, left, rig),
         warnings=(
-            *(f"{member.alone.origin}: {warning}" for member in members for warning in member.warnings),
-            *(f"{member.alone.origin} alone: {member.alone.reason}" for member in members if member.alone.reason),
+            *(f"{each.alone.origin}: {warning}" for each in members for warning in each.warnings),
+            *(f"{each.alone.origin} alone: {each.alone.reason}" for each in members if each.alone.reason),
             *_differences(members, excesses, kind),
-            *_offset(gathered, members, rig),
+            *_offset(members, rig),
         ),
-        explained=1.0 - left / max(variation, 1e-300),
-        checks=joined([one.checks for one in gathered]),
-        recordings=tuple(member.alone for member in members),
+        recordings=tuple(each.alone for each in members),
         between=_between(members, kind),
     )
     spread, suspicions = excesses[INERTIA].variance, ()
     if spread:
         apart = f"{math.sqrt(spread):.2g} {estimate[kind.inertia].unit}"
         suspicions = (f"it differs from recording to recording by {apart}, and few are given",)
-    return sound(estimate, whole, rig, suspicions)
+    return sound(estimate, _joined(gathered), rig, suspicions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,72 +116,73 @@ class Member:
     """One of several recordings: its information about the axis, and its estimate alone.
 
     Attributes:
-        gathered: its normal equations.
+        gathered: it summed up.
         terms: that all recordings share: J, K_w, K_0 and, where it is fitted, offset (s,).
-        names: of these in results.
         solution: its own fit, with these columns and its own shift and hum.
         alone: its estimate alone.
+        own: the same without the rig's tolerances, which are common to all recordings.
         along: if it moves in one direction only, its friction in that direction, offset included; else None.
-        tolerances: half widths of parameters from the rig's tolerances, by name.
+        covariances: of its coefficients, in standard errors and in half widths of intervals of 95 % (s, s) each.
         warnings: of its own fit.
     """
 
     gathered: Gathered
     terms: tuple[str, ...]
-    names: tuple[str, ...]
     solution: Solution
     alone: Alone
+    own: Mapping[str, Parameter]
     along: Parameter | None
-    tolerances: Mapping[str, float]
+    covariances: tuple[Array, Array]
     warnings: tuple[str, ...]
 
     @classmethod
     def of(cls, gathered: Gathered, rig: Rig) -> Member:
         """The fit of one recording alone.
 
-        Raises:
-            InputError: rig and recording do not fit together.
+        A parameter that it does not determine alone is as much wider than by its own fit as friction along one
+        direction is.
         """
-        kind, origin = rig.axis_kind, gathered.rows.origin
-        terms = (INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []))
-        names = tuple(kind.parameter(term) for term in terms)
-        # no offset was fitted to a recording in one direction: it is in the friction
-        tolerances = {term: gathered.tolerance.get(term, gathered.tolerance[COULOMB]) for term in terms}
-        reaches = {kind.parameter(term): reach for term, reach in tolerances.items()}
-        reaches |= {"load_moment_of_inertia": tolerances[INERTIA]}
+        kind, terms = rig.axis_kind, (INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []))
+        solution, one_way = gathered.solved(rig.offset), gathered.equations.one_way is not None
+        bare = gathered.solved(offset=False) if one_way else solution
         found, reason = None, ""
         try:
-            found = estimated_alone(gathered, rig)
+            found = estimated_alone(gathered, bare, rig)
         except RefusedEstimateError as refusal:
             found, reason = refusal.estimate, str(refusal)
         except UndeterminedError as refusal:
             reason = str(refusal)
         known = {} if found is None else found.parameters
         kept = {name: one for name, one in known.items() if name != kind.inertia or one.ci95[0] * one.ci95[1] > 0.0}
-        return cls(
-            gathered,
-            terms,
-            names,
-            gathered.solved(rig.offset),
-            Alone(origin, kept, reason),
-            _along(gathered, kind),
-            reaches,
-            () if found is None else found.warnings,
-        )
+        own, along, wider = dict(kept), None, (1.0, solution.reach)
+        names = {kind.parameter(term): term for term in terms} | {"load_moment_of_inertia": INERTIA}
+        for name in own.keys() & names.keys():
+            own[name] = _without(own[name], _tolerance(gathered, names[name]))
+        if one_way:
+            along = parameter_of(bare, COULOMB, kind, gathered.effort_unit)
+            along = along.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
+            error = max(bare.of(COULOMB, bare.errors), 1e-300)
+            wider = along.std_error / error, along.half_width / error
+        at = [solution.names.index(term) for term in terms]
+        covariance = solution.covariance[np.ix_(at, at)]
+        scales = []
+        for term, variance in zip(terms, np.diag(covariance).tolist(), strict=True):
+            one, error = own.get(kind.parameter(term)), math.sqrt(max(variance, 1e-300))
+            scales.append(wider if one is None else (one.std_error / error, one.half_width / error))
+        standard, half = (covariance * np.outer(scale, scale) for scale in np.array(scales).T)
+        warnings = () if found is None else found.warnings
+        alone = Alone(gathered.rows.origin, kept, reason)
+        return cls(gathered, terms, solution, alone, own, along, (standard, half), warnings)
 
-    @property
-    def _shared(self) -> list[int]:
+    @cached_property
+    def _at(self) -> list[int]:
+        """Places of the shared terms among the columns of its own fit (s,)."""
         return [self.solution.names.index(term) for term in self.terms]
-
-    @property
-    def equations(self) -> NormalEquations:
-        """Of the fitted columns."""
-        return self.solution.equations
 
     @property
     def theta(self) -> Array:
         """Coefficients of the shared terms in its own fit (s,)."""
-        return self.solution.theta[self._shared]
+        return self.solution.theta[self._at]
 
     @cached_property
     def matrix(self) -> Array:
@@ -262,7 +190,7 @@ class Member:
 
         A column with less power than expected from its noise carries no information.
         """
-        equations, shared, held = self.equations, self._shared, self.solution.held
+        equations, shared, held = self.solution.equations, self._at, self.solution.held
         whole, gram, noise = equations.matrix, equations.total, equations.count * equations.noise
         rest = {k: name for k, name in enumerate(equations.names) if k not in shared}
         own = [k for k, name in rest.items() if not (held and name == MISALIGNMENT)]
@@ -272,91 +200,44 @@ class Member:
         power, ways = np.linalg.eigh((whole[np.ix_(shared, shared)] - beside.T @ taken) / np.outer(scale, scale))
         return (ways * np.maximum(power, 0.0)) @ ways.T * np.outer(scale, scale)
 
-    @cached_property
-    def own(self) -> dict[str, Parameter]:
-        """Its estimate alone, without the rig's tolerances, which are common to all recordings."""
-        found = dict(self.alone.parameters)
-        for name, reach in self.tolerances.items():
-            if name in found:
-                before = found[name]
-                half = math.sqrt(max(before.half_width**2 - reach**2, 0.0))
-                error = math.sqrt(max(before.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
-                found[name] = replace(before, std_error=error, ci95=(before.value - half, before.value + half))
-        return found
-
-    @cached_property
-    def known(self) -> Array:
-        """Its information about these: `matrix` over the mean variance implied by its covariance (s, s)."""
-        covariance, _ = self.covariance
-        return self.matrix * len(self.terms) / max(float(np.trace(self.matrix @ covariance)), 1e-300)
-
-    @cached_property
-    def covariance(self) -> tuple[Array, Array]:
-        """Covariance of `theta` in standard errors, and in half widths of intervals of 95 % (s, s) each.
-
-        A parameter that it does not determine alone is as much wider than by its own fit as friction along one
-        direction is.
-        """
-        found = self.solution.covariance[np.ix_(self._shared, self._shared)]
-        errors = np.sqrt(np.maximum(np.diag(found), 1e-300)).tolist()
-        wider = 1.0, self.solution.reach
-        if self.along is not None:
-            bare = self.gathered.solved(offset=False)
-            error = max(bare.of(COULOMB, bare.errors), 1e-300)
-            wider = self.along.std_error / error, self.along.half_width / error
-        scales = np.array(
-            [
-                (self.own[name].std_error / error, self.own[name].half_width / error) if name in self.own else wider
-                for name, error in zip(self.names, errors, strict=True)
-            ]
-        )
-        standard, half = (found * np.outer(scale, scale) for scale in scales.T)
-        return standard, half
+    def left(self, theta: Array) -> float:
+        """Sum of its squared residuals by other coefficients (s,) - the effort's unit squared."""
+        away = theta - self.theta
+        return self.solution.power + float(away @ self.matrix @ away)
 
 
-def _along(gathered: Gathered, kind: AxisKind) -> Parameter | None:
-    """Friction, offset included, of a recording that moves in one direction only."""
-    if gathered.one_way is None:
-        return None
-    bare = gathered.solved(offset=False)
-    alone = parameter_of(bare, COULOMB, kind, gathered.effort_unit)
-    return alone.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
+def _tolerance(gathered: Gathered, term: str) -> float:
+    """Half width of a coefficient from the rig's tolerances; of an offset that was not fitted it is in the friction."""
+    return gathered.tolerance.get(term, gathered.tolerance[COULOMB])
 
 
-@dataclass(frozen=True, eq=False)
-class Joint:
-    """Joint estimate of the shared terms.
+def _without(found: Parameter, reach: float) -> Parameter:
+    """A parameter less an independent error of such a half width at 95 %."""
+    half = math.sqrt(max(found.half_width**2 - reach**2, 0.0))
+    error = math.sqrt(max(found.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
+    return replace(found, std_error=error, ci95=(found.value - half, found.value + half))
 
-    Attributes:
-        theta: (s,).
-        errors: standard errors (s,).
-        reaches: half widths of the intervals of 95 % (s,).
-    """
 
-    theta: Array
-    errors: Array
-    reaches: Array
+def _jointly(members: Sequence[Member], excesses: Sequence[Excess]) -> tuple[Array, Array, Array]:
+    """Coefficients of recordings that vary beyond their own errors, standard errors, half widths at 95 % (s,) each."""
+    between = np.array([found.variance for found in excesses])
+    known = np.array([_information(each) for each in members])
+    known = np.linalg.solve(np.eye(between.size) + known * between, known)
+    moment = np.einsum("kij,kj->i", known, np.array([each.theta for each in members]))
+    theta, inverse = solved(known.sum(axis=0), moment, np.zeros_like(known[0]))
+    wide = between * np.array([found.reach for found in excesses]) ** 2
+    variance, reached = np.zeros(theta.size), np.zeros(theta.size)
+    for share, each in zip(inverse @ known, members, strict=True):
+        error, half_width = (np.diag(share @ found @ share.T) for found in each.covariances)
+        variance += error + share**2 @ between
+        reached += half_width + share**2 @ wide
+    return theta, np.sqrt(variance), np.sqrt(reached)
 
-    @classmethod
-    def of(cls, members: Sequence[Member], excesses: Sequence[Excess]) -> Joint:
-        """Joint fit of recordings that vary beyond their own errors in each quantity (s,)."""
-        between = np.array([found.variance for found in excesses])
-        known = np.array([member.known for member in members])
-        known = np.linalg.solve(np.eye(between.size) + known * between, known)
-        moment = np.einsum("kij,kj->i", known, np.array([member.theta for member in members]))
-        theta, inverse = solved(known.sum(axis=0), moment, np.zeros_like(known[0]))
-        wide = between * np.array([found.reach for found in excesses]) ** 2
-        variance, reached = np.zeros(theta.size), np.zeros(theta.size)
-        for share, member in zip(inverse @ known, members, strict=True):
-            error, half_width = (np.diag(share @ found @ share.T) for found in member.covariance)
-            variance += error + share**2 @ between
-            reached += half_width + share**2 @ wide
-        return cls(theta, np.sqrt(variance), np.sqrt(reached))
 
-    def left(self, members: Sequence[Member]) -> float:
-        """Sum of squared residuals of all recordings, each with its own shift and hum - the effort's unit squared."""
-        away = [self.theta - member.theta for member in members]
-        return sum(m.solution.power + float(d @ m.matrix @ d) for m, d in zip(members, away, strict=True))
+def _information(member: Member) -> Array:
+    """What a recording tells of the shared terms (s, s): its matrix over the mean variance that is implied."""
+    implied = float(np.trace(member.matrix @ member.covariances[0]))
+    return member.matrix * len(member.terms) / max(implied, 1e-300)
 
 
 def _require_distinct(gathered: Sequence[Gathered]) -> None:
@@ -389,20 +270,8 @@ def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
         if name in member.own:
             groups.setdefault("both", []).append(member.own[name])
         elif term == COULOMB and member.along is not None:
-            groups.setdefault(str(member.gathered.one_way), []).append(member.along)
+            groups.setdefault(str(member.gathered.equations.one_way), []).append(member.along)
     return excess(list(groups.values()))
-
-
-def _residual(members: Sequence[Member], left: float, unit: str) -> Residual:
-    """Residual of the joint fit over all recordings."""
-    counts = np.array([member.equations.count for member in members])
-    floors = [member.solution.floor.coloured for member in members]
-    return Residual(
-        rms=math.sqrt(left / counts.sum()),
-        noise_floor=math.sqrt(float(counts @ np.square(floors)) / counts.sum()),
-        relative=math.sqrt(left / sum(member.gathered.measured[0] for member in members)),
-        unit=unit,
-    )
 
 
 def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind: AxisKind) -> Iterator[str]:
@@ -420,17 +289,16 @@ def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind
         )
 
 
-def _offset(gathered: Sequence[Gathered], members: Sequence[Member], rig: Rig) -> Iterator[str]:
+def _offset(members: Sequence[Member], rig: Rig) -> Iterator[str]:
     """A warning of an offset that is not fitted, which runs of one direction each attribute to friction."""
     if rig.offset or all(member.along is None for member in members):
         return
     kind, asked = rig.axis_kind, rig.model_copy(update={"offset": True})
-    members = [Member.of(one, asked) for one in gathered]
-    excesses = [_excess(members, kind, term) for term in members[0].terms]
-    joint = Joint.of(members, excesses)
-    value, reach = float(joint.theta[-1]), float(joint.reaches[-1])
+    members = [Member.of(each.gathered, asked) for each in members]
+    theta, _, reaches = _jointly(members, [_excess(members, kind, term) for term in members[0].terms])
+    value, reach = float(theta[-1]), float(reaches[-1])
     if abs(value) > reach:
-        unit = kind.parameter_unit(OFFSET, gathered[0].effort_unit)
+        unit = kind.parameter_unit(OFFSET, members[0].gathered.effort_unit)
         yield (
             f"the recordings hold a {kind.in_words(OFFSET)} of {value:.3g} ± {reach:.2g} {unit}, which was not fitted: "
             "set `offset = true` in the rig, or give --offset"
@@ -445,35 +313,3 @@ def _between(members: Sequence[Member], kind: AxisKind) -> dict[str, Between]:
     }
     found.pop(kind.parameter(MISALIGNMENT), None)
     return {name: between(values) for name, values in found.items() if len(values) > 1}
-
-
-def identify(
-    trace: Given | Iterator[Trace] | Sequence[Given | Iterator[Trace]],
-    rig: Rig | str | Path,
-    cutoff: float | None = None,
-) -> Estimate:
-    """Inertia, viscous and Coulomb friction (and offset, if the rig asks for it) of a recording, or of several.
-
-    Each recording goes through the gate, is laid out in rows through one filter, and is summed up in normal equations
-    at the cut-off at which the estimate stands still; these are solved, alone or together, with intervals that count
-    correlated residuals, misfit, tolerances and what the recording hints at. What is not determined is refused.
-
-    Args:
-        trace: the recording, or its file, arrays by their names or a data frame; an iterator over its consecutive
-            parts, for one that does not fit into memory; or a list (tuple) of several of one axis, which are fitted
-            together.
-        rig: what is known about the axis, or its file, or a shipped rig's name.
-        cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz.
-
-    Raises:
-        RefusedEstimateError: the recordings leave one of them undetermined; the error carries the others.
-        UndeterminedError: they determine none, or one of several recordings never moves clearly.
-        InputError: no recording, one that is given twice, a signal is missing, efforts in different units, rig and
-            trace do not fit together, or a check of a recording fails.
-    """
-    rig = rig_of(rig)
-    every = trace if isinstance(trace, list | tuple) else [cast("Given", trace)]
-    recordings = [one if isinstance(one, Iterator) else trace_of(one, rig) for one in every]
-    gathered = [gather(one, rig, cutoff) for one in recordings]
-    found = estimated_alone(gathered[0], rig) if len(gathered) == 1 else estimated_together(gathered, rig)
-    return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))

@@ -18,10 +18,9 @@ from bench.effects.effect import Contact, Effect, FiltersMotion
 from bench.effects.shape import is_pitch
 from bench.effects.signals import Base, Signals
 from bench.fit.fit import Fit, least_squares
-from bench.fit.layout import lay_out
-from bench.fit.normal_equations import block_edges, solved
+from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
-from bench.fit.solution import estimated, misfit
+from bench.fit.solution import block_edges, estimated, misfit, solved
 from bench.parameter import Parameter
 
 #: Step of a numerical derivative, relative.

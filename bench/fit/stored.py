@@ -12,8 +12,7 @@ from bench.arrays import Array, rms
 from bench.effects.effect import Occasional
 from bench.effects.present import named
 from bench.fit.fit import ROUNDS, Fit
-from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import AROUND, HUM, lay_out, not_reaching
+from bench.fit.hypothesis import AROUND, HUM, Hypothesis, Term, lay_out, not_reaching
 from bench.fit.rows import Rows
 
 #: Stands for a recording where an event comes at the same time of every one.

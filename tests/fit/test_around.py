@@ -8,8 +8,7 @@ import pytest
 from bench.arrays import rms
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import AROUND
+from bench.fit.hypothesis import AROUND, Hypothesis, Term
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
