@@ -19,15 +19,13 @@ from bench.fit.hypothesis import (
     Hypothesis,
     Layout,
     Term,
-    by_model,
     delays,
     lay_out,
     not_reaching,
+    seen_beside,
     seen_by,
-    terms_interact,
+    settled,
     with_found_strengths,
-    with_friction,
-    with_load,
 )
 from bench.fit.rows import Rows
 from bench.fit.solution import Floor, bounded, solved
@@ -176,12 +174,7 @@ class Fit:
     @cached_property
     def beside(self) -> Rows:
         """The recording as one term more would see it."""
-        seen = with_friction(self._modelled, self.hypothesis, len(self.terms))
-        return with_load(seen, ((term, self.strengths(index)) for index, term in enumerate(self.terms)))
-
-    @cached_property
-    def _modelled(self) -> Rows:
-        return by_model(seen_by(self.rows, self.hypothesis), self.residual)
+        return seen_beside(self.rows, self.hypothesis, self.residual, self.strengths)
 
     @property
     def stretches(self) -> list[Signals]:
@@ -256,43 +249,40 @@ class Fit:
 
     @cached_property
     def _against(self) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
-        return self._modelled.against(self._targets, delays(self.rows, self.hypothesis)[1])
+        return self.beside.against(self._targets, delays(self.rows, self.hypothesis)[1])
 
 
 def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
     """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
     layout = lay_out(rows, hypothesis)
     missing = _without_copies(layout, hypothesis)
-    layout = lay_out(rows, hypothesis, missing) if missing else layout
-    theta, held = _balanced(layout, None)
+    if missing:
+        layout = lay_out(rows, hypothesis, missing)
+    theta, held = _balanced(layout)
     for _ in range(ROUNDS):
-        found = with_found_strengths(hypothesis, theta, layout.owners)
-        after = not_reaching(hypothesis, layout, theta)
-        settled = (not terms_interact(found) or _alike(found, hypothesis)) and _settled(missing, after)
-        hypothesis, missing = found, after
-        if settled:
+        before, missing_before = hypothesis, missing
+        hypothesis = with_found_strengths(before, theta, layout.owners)
+        missing = not_reaching(hypothesis, layout, theta)
+        if settled(hypothesis, before) and _settled(missing_before, missing):
             break
         layout = lay_out(rows, hypothesis, missing)
-        theta, held = _balanced(layout, None)
-    every = np.ones(layout.effort.size, dtype=bool)
-    fitted = Fit(rows, hypothesis, layout, theta, held, every)
+        theta, held = _balanced(layout)
+    fitted = Fit(rows, hypothesis, layout, theta, held, np.ones(layout.effort.size, dtype=bool))
     determined = _determined(fitted)
-    if determined is None or determined.all():
+    if determined.all():
         return fitted
-    theta, held = _balanced(layout, determined)
-    return Fit(rows, hypothesis, layout, theta, held, determined)
+    return Fit(rows, hypothesis, layout, *_balanced(layout, determined), determined)
 
 
-def _determined(fitted: Fit) -> NDArray[np.bool_] | None:
+def _determined(fitted: Fit) -> NDArray[np.bool_]:
     """Rows whose modelled torque would be the same within what the recording does not tell (m,)."""
-    determined = None
+    determined = fitted.determined
     for index, term in enumerate(fitted.terms):
         if isinstance(term.effect, Contact):
             torque, lags = term.effect.open_torque, delays(fitted.rows, fitted.hypothesis)
             made_of = (torque, term.shape, lags, fitted.beside.motion)
             moved = fitted.rows.memory.get(made_of, partial(torque, fitted, term.shape))
-            sure = moved * abs(fitted.strengths(index)[0]) < OPEN_SHARE * fitted.floor
-            determined = sure if determined is None else determined & sure
+            determined = determined & (moved * abs(fitted.strengths(index)[0]) < OPEN_SHARE * fitted.floor)
     return determined
 
 
@@ -313,24 +303,13 @@ def _settled(missing: Mapping[int, Array], after: Mapping[int, Array]) -> bool:
     return all(rms(now - missing[index]) <= least for index, now in after.items())
 
 
-def _alike(found: Hypothesis, before: Hypothesis) -> bool:
-    """Whether levels and loads have settled."""
-    for new, old in zip(found.terms, before.terms, strict=True):
-        for values, others in ((new.level, old.level), (new.load or (), old.load or ()), (new.pull, old.pull)):
-            if len(values) != len(others) or not np.allclose(values, others, rtol=1e-3, atol=1e-6):
-                return False
-    return True
-
-
-def _balanced(layout: Layout, determined: NDArray[np.bool_] | None) -> tuple[Array, tuple[int, ...]]:
+def _balanced(layout: Layout, determined: NDArray[np.bool_] | slice = slice(None)) -> tuple[Array, tuple[int, ...]]:
     """Least squares (p,) within bounds, and the places of what is held at one.
 
     Torque and speed are not further apart in time than they were latched: a larger shift is a lag, which is an effect.
     """
-    sure = slice(None) if determined is None else determined
-    columns, effort = layout.columns[sure], layout.effort[sure]
-    noise = columns.shape[0] * layout.noise
-    return bounded(columns.T @ columns, columns.T @ effort, noise, layout.bounds)
+    columns, effort = layout.columns[determined], layout.effort[determined]
+    return bounded(columns.T @ columns, columns.T @ effort, columns.shape[0] * layout.noise, layout.bounds)
 
 
 def least_squares(columns: Array, effort: Array, noise: Array) -> Array:

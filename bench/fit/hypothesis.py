@@ -17,7 +17,7 @@ recording wherever a step could be seen. What is left is noise (see `bench.fit.s
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -400,14 +400,18 @@ def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows
     return seen.with_signals(change)
 
 
-def by_model(rows: Rows, left: Array) -> Rows:
-    """The recording with the modelled torque in the place of the measured, whose residual (m,) is given - N*m (N).
+def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, strengths: Callable[[int], list[float]]) -> Rows:
+    """The recording as one term more would see it, by what is left (m,) - N*m (N) - and the strengths of each term.
 
-    Columns made of the measured torque would hold what a model leaves of it, and so explain it by itself: errors in the
-    variables, for which the modelled torque is the instrument (W. A. Fuller, Measurement Error Models, 1987, 1.4).
+    It sees the modelled torque in the place of the measured. Columns made of the measured torque would hold what a
+    model leaves of it, and so explain it by itself: errors in the variables, for which the modelled torque is the
+    instrument (W. A. Fuller, Measurement Error Models, 1987, 1.4).
     """
-    time = rows.time
-    return rows.with_signals(lambda s: replace(s, torque=s.torque - np.interp(s.time + s.began, time, left)))
+    seen = seen_by(rows, hypothesis).with_signals(
+        lambda s: replace(s, torque=s.torque - np.interp(s.time + s.began, rows.time, left))
+    )
+    seen = with_friction(seen, hypothesis, len(hypothesis.terms))
+    return with_load(seen, ((term, strengths(index)) for index, term in enumerate(hypothesis.terms)))
 
 
 def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[int, Array]:
@@ -455,13 +459,22 @@ def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[n
     return hypothesis.with_terms(seen(term, theta[owners == index]) for index, term in enumerate(hypothesis.terms))
 
 
-def terms_interact(hypothesis: Hypothesis) -> bool:
-    """Whether the columns of a term depend on the strengths of another: on a load, or on friction that multiplies."""
-    levels = len(hypothesis.of_kind(FrictionLevel))
-    scaled = levels > 1 and hypothesis.of_kind(ScalesFriction)
-    carried = levels > 0 and hypothesis.of_kind(CarriesFriction)
-    loaded = any(term.load is not None for term in hypothesis.terms) or hypothesis.of_kind(FollowsLoad)
-    return bool(scaled or carried or loaded)
+def settled(found: Hypothesis, before: Hypothesis) -> bool:
+    """Whether no column of a term depends on a strength of another that is not as before.
+
+    They depend on a load, or on friction that multiplies.
+    """
+    levels = len(found.of_kind(FrictionLevel))
+    scaled = levels > 1 and found.of_kind(ScalesFriction)
+    carried = levels > 0 and found.of_kind(CarriesFriction)
+    loaded = any(term.load is not None for term in found.terms) or found.of_kind(FollowsLoad)
+    if not (scaled or carried or loaded):
+        return True
+    now, then = (
+        [value for term in each.terms for value in (*term.level, *(term.load or ()), *term.pull)]
+        for each in (found, before)
+    )
+    return len(now) == len(then) and np.allclose(now, then, rtol=1e-3, atol=1e-6)
 
 
 def outer_loads(hypothesis: Hypothesis) -> list[int]:
