@@ -1,5 +1,13 @@
 """The default estimator: least squares of the torque balance without effects, of a recording or of several together.
 
+A recording's first part decides on filter and hum, all of its parts are summed up. An estimate has to be independent of
+the filter's cut-off, so a decade of cut-offs is tried. What the model of a rigid axis lacks - a drive that reacts to
+noise of its speed, coarse signals, a soft coupling - is mostly at high frequency, and biases the estimate the more of
+it the filter passes. So an estimate is accepted only if it agrees with those at all lower cut-offs within their errors
+(O. V. Lepski, Theory of Probability and its Applications 35(3), 1991, 454-466). Of the accepted ones the highest is
+taken, the most precise on sound recordings, unless another has a clearly narrower interval. If some were rejected, the
+interval includes the bias that may remain.
+
 Of several, what one does not determine another may:
 
     theta = (sum of B_k)**-1 * sum of B_k*theta_k,   B_k = (I + A_k*D)**-1 * A_k
@@ -16,7 +24,10 @@ and D.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -28,16 +39,49 @@ import numpy as np
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
+from bench.effects.catalogue import catalogue
 from bench.errors import InputError, UndeterminedError
-from bench.fit.determined import sound
-from bench.fit.estimate import Alone, Estimate, RefusedEstimateError
-from bench.fit.gathered import Gathered, estimated_alone, gather, parameter_of, summed_up
-from bench.fit.hypothesis import BASE
-from bench.fit.solution import NormalEquations, Solution, join, solved
+from bench.fit.determined import left_open, require_inertia, sound
+from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
+from bench.fit.fit import fit, hint
+from bench.fit.hum import mains, passes
+from bench.fit.hypothesis import BASE, Name, lay_out, plain
+from bench.fit.rows import Rows, known_of
+from bench.fit.solution import (
+    NOISE_ALONE,
+    SURE,
+    NormalEquations,
+    Solution,
+    equations_of,
+    join,
+    solution_of,
+    solve,
+    solved,
+)
+from bench.gate.check import Check
+from bench.gate.gate import PARTS, gate, joined, passed, require
 from bench.parameter import Parameter
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
+from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
+
+#: Cut-offs tried below the highest, relative to it: a decade in four steps.
+BELOW = 10.0 ** -np.arange(0.25, 1.01, 0.25)
+#: Ratio to the interval at the highest accepted cut-off below which another interval counts as narrower; on 100
+#: recordings of rigid axes the smallest ratio was 0.70.
+NARROWER = 0.6
+#: Share of a value by which filters of different widths may differ without any noise.
+ROUNDING = 1e-4
+#: Terms of the axis, in whose order all numbers here stand.
+TERMS = (INERTIA, VISCOUS, COULOMB)
+TELLS = "bench diagnose may tell why"
+#: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
+#: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
+A_DELAY = 0.25
+
+#: Normal equations, number of samples and checks of a part of a recording.
+Summed = tuple[NormalEquations, int, tuple[Check, ...]]
 
 
 def identify(
@@ -73,6 +117,337 @@ def identify(
     else:
         found = estimated_together(gathered, rig)
     return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
+
+
+@dataclass(frozen=True, eq=False)
+class Gathered:
+    """A recording summed up.
+
+    Attributes:
+        solution: of all of it, with the rows of its first part, at whose filter the others are taken.
+        effort_unit: N*m, N, or what the rig allows.
+        samples_read: of all parts.
+        measured: sum of the squares of the measured effort over all rows - its unit squared -, and its sum.
+        doubt: possible bias of J, K_w and K_0, as they move with the filter's cut-off.
+        hinted: by how much the effect that the recording hints at would move them; empty without one.
+        tolerance: half widths of coefficients from the rig's tolerances.
+        warnings: about the cut-off.
+        checks: of all parts.
+    """
+
+    solution: Solution
+    effort_unit: str
+    samples_read: int
+    measured: tuple[float, float]
+    doubt: Mapping[str, float]
+    hinted: Mapping[str, float]
+    tolerance: Mapping[Name, float]
+    warnings: tuple[str, ...]
+    checks: tuple[Check, ...]
+
+    @property
+    def rows(self) -> Rows:
+        """Of its first part, which determines filter and noise floor."""
+        return self.solution.rows
+
+    @property
+    def equations(self) -> NormalEquations:
+        """Of every column and, last, a constant."""
+        return self.solution.whole
+
+    def solved(self, offset: bool) -> Solution:
+        """Its solution with or without a constant."""
+        found = self.solution
+        if offset == (OFFSET in found.names):
+            return found
+        return solve(found.rows, found.hypothesis, found.laid, found.whole, offset)
+
+
+def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
+    """A recording, or its consecutive parts, summed up at a cut-off - Hz -, or at the one the data choose.
+
+    Raises:
+        UndeterminedError: the recording is too short, or never moves clearly.
+        InputError: a signal is missing, rig and recording do not fit together, or a check of the recording fails.
+    """
+    parts = iter([trace] if isinstance(trace, Trace) else trace)
+    gated = passed(next(parts), rig)
+    first = gated.trace
+    found, chosen = choose(first, rig, cutoff)
+
+    def summed(part: Trace) -> Summed:
+        sound = gate(part, rig, PARTS)
+        rows = Rows.of(sound.trace, rig, conditioning=found.rows.conditioning, begins=float(first.time[0]))
+        return equations_of(rows, lay_out(rows, found.hypothesis)), len(sound.trace), sound.checks
+
+    others = list(_in_parallel(summed, parts))
+    checks = joined([gated.checks, *(checked for _, _, checked in others)])
+    require(checks, first)
+    whole = found
+    if others:
+        equations = join([found.whole, *(each for each, _, _ in others)])
+        offset = rig.offset and equations.one_way is None
+        whole = solve(found.rows, found.hypothesis, found.laid, equations, offset)
+    return Gathered(
+        solution=whole,
+        effort_unit=rig.net_effort(first)[1],
+        samples_read=len(first) + sum(read for _, read, _ in others),
+        measured=_measured(whole.whole, None if others else found.rows),
+        doubt=dict(zip(TERMS, chosen.doubt.tolist(), strict=True)),
+        hinted=_by_hint(found),
+        tolerance=_by_tolerance(first, rig, found),
+        warnings=chosen.warnings,
+        checks=checks,
+    )
+
+
+def _in_parallel(work: Callable[[Trace], Summed], parts: Iterable[Trace]) -> Iterator[Summed]:
+    """Results of `work` on each part, in order, on one thread a core; NumPy releases the interpreter lock.
+
+    At most two parts a core are in memory, so a recording may be larger than it.
+    """
+    cores, waiting = os.cpu_count() or 1, deque[Future[Summed]]()
+    with ThreadPoolExecutor(cores) as pool:
+        for part in parts:
+            waiting.append(pool.submit(work, part))
+            if len(waiting) >= 2 * cores:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+
+
+def _measured(equations: NormalEquations, rows: Rows | None) -> tuple[float, float]:
+    """Sum of the squares of the measured effort, and its sum; `rows`: all that there are, if they are in memory.
+
+    Beside a robot that is what its motor gave, not the small part that its own inertia and friction are to explain.
+    """
+    if rows is not None and rows.stretches[0].signals.known:
+        effort = rows.effort + rows.table(known_of)[:, 0]
+        return float(effort @ effort), float(effort.sum())
+    return float(equations.power.sum()), float(equations.moment[:, equations.names.index(OFFSET)].sum())
+
+
+def _by_hint(found: Solution) -> dict[str, float]:
+    """By how much the effect that a recording hints at would move J, K_w and K_0 of its solution; empty without one."""
+    fitted = fit(found.rows, found.hypothesis)
+    beside = hint(fitted, catalogue().values())
+    return {} if beside is None else {term: beside.value(term) - fitted.value(term) for term in TERMS}
+
+
+def _by_tolerance(first: Trace, rig: Rig, found: Solution) -> dict[Name, float]:
+    """Half widths at 95 % of coefficients by their names from the rig's tolerances, taken for independent."""
+    moved = np.zeros(found.theta.size)
+    for other in rig.within_tolerance():
+        rows = Rows.of(first, other, conditioning=found.rows.conditioning)
+        moved = np.hypot(moved, solution_of(rows, found.hypothesis, OFFSET in found.names).theta - found.theta)
+    return dict(zip(found.names, moved.tolist(), strict=True))
+
+
+def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chosen]:
+    """The solution of a recording, or of its first part, at the chosen cut-off, unless one is given - Hz.
+
+    Raises:
+        UndeterminedError: the recording is too short, or never moves clearly.
+        InputError: a signal is missing, or rig and recording do not fit together.
+    """
+    rows = Rows.of(first, rig, cutoff=cutoff)
+    highest = solution_of(rows, plain(rows), rig.offset)
+    hum = mains(rows, highest.residual)
+    if hum:
+        highest = solution_of(rows, replace(highest.hypothesis, hum=hum), rig.offset)
+    return (highest, Chosen(0, np.zeros(3))) if cutoff is not None else steady(highest, rig)
+
+
+def steady(highest: Solution, rig: Rig) -> tuple[Solution, Chosen]:
+    """The solution at the cut-off at which J, K_w and K_0 stand still, of one at the highest and those below it."""
+    every = [(found, Tried.of(found, rig.axis_kind)) for found in (highest, *_lower(highest, rig))]
+    usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
+    if not usable:
+        return highest, Chosen(0, np.zeros(3))
+    chosen = among([tried for _, tried in usable], rig.axis_kind)
+    return usable[chosen.place][0], chosen
+
+
+def _lower(highest: Solution, rig: Rig) -> Iterator[Solution]:
+    """Solutions at lower cut-offs, until the filter is too long for the motion."""
+    rows = highest.rows
+    for share in BELOW:
+        smooth = GaussianFilter.from_cutoff(rows.conditioning.filter.cutoff * float(share), rows.scope.sample_period)
+        try:
+            through = rows.through(smooth)
+        except UndeterminedError:
+            return
+        hum = tuple(line for line in highest.hypothesis.hum if passes(line, smooth.width))
+        yield solution_of(through, replace(highest.hypothesis, step=plain(through).step, hum=hum), rig.offset)
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """An estimate at one cut-off: J, K_w and K_0, nan where undetermined.
+
+    Attributes:
+        cutoff: half-power frequency - Hz.
+        theta, by_noise: values, and half widths of their intervals of 95 % as noise alone makes them (3,).
+        misfit: half widths from what stands above the noise (3,); asked only where they may decide, as they take long.
+    """
+
+    cutoff: float
+    theta: Array
+    by_noise: Array
+    misfit: Callable[[], Array]
+
+    @classmethod
+    def of(cls, found: Solution, kind: AxisKind) -> Tried:
+        """The estimate of a solution."""
+        unknown = left_open(found.whole, kind)
+        places = [found.names.index(term) for term in TERMS]
+        known = np.where([term in unknown for term in TERMS], np.nan, 1.0)
+        by_noise = found.reach * found.errors[places] * known
+        cutoff = found.rows.conditioning.filter.cutoff
+        return cls(cutoff, found.theta[places] * known, by_noise, lambda: found.misfit[places])
+
+    @cached_property
+    def half_widths(self) -> Array:
+        """Of the intervals of 95 % (3,)."""
+        return np.hypot(self.by_noise, self.misfit())
+
+    def agrees(self, other: Tried) -> bool:
+        """Whether the parameters that both determine agree within their intervals."""
+        away = np.abs(self.theta - other.theta) - ROUNDING * np.abs(self.theta)
+        if not np.any(away > np.hypot(self.by_noise, other.by_noise)):  # nan: undetermined
+            return True
+        return not np.any(away > np.hypot(self.half_widths, other.half_widths))
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The chosen of several cut-offs, and what the others imply.
+
+    Attributes:
+        place: of the chosen one.
+        doubt: possible bias of J, K_w and K_0 (3,) as the estimate moves with the cut-off; 0 at the highest.
+        warnings: that the estimate moves with the cut-off.
+    """
+
+    place: int
+    doubt: Array
+    warnings: tuple[str, ...] = ()
+
+
+def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
+    """The choice among estimates that determine the inertia, from high to low cut-off."""
+    accepted = [usable[-1]]
+    for tried in usable[-2::-1]:
+        if not all(tried.agrees(lower) for lower in accepted):
+            break
+        accepted.append(tried)
+    rejected = usable[: len(usable) - len(accepted)]
+    if not rejected and all(one.by_noise[0] >= NARROWER * usable[0].half_widths[0] for one in usable[1:]):
+        return Chosen(0, np.zeros(3))
+    beyond = rejected[-1] if rejected else accepted[-1]
+    doubts = [_doubt(tried, beyond, accepted[:k]) for k, tried in enumerate(accepted)]
+    wide = [float(np.hypot(tried.half_widths[0], off[0])) for tried, off in zip(accepted, doubts, strict=True)]
+    best = int(np.argmin(wide))
+    if not rejected and wide[best] >= NARROWER * wide[-1]:
+        best = len(accepted) - 1
+    warnings = (_moves(accepted[best], usable, kind),) if rejected else ()
+    return Chosen(len(usable) - 1 - best, doubts[best], warnings)
+
+
+def _doubt(taken: Tried, beyond: Tried, lower: Sequence[Tried]) -> Array:
+    """Possible bias of J, K_w and K_0 (3,): at most what they moved, and what lower cut-offs allow."""
+    moved = np.abs(beyond.theta - taken.theta)
+    room = [np.abs(other.theta - taken.theta) + other.half_widths for other in lower]
+    return np.nan_to_num(np.fmin.reduce([moved, *room]))
+
+
+def _moves(taken: Tried, usable: Sequence[Tried], kind: AxisKind) -> str:
+    """That a quantity moves with the cut-off, and how."""
+    away = [np.abs(tried.theta - taken.theta) / np.hypot(tried.half_widths, taken.half_widths) for tried in usable]
+    term = int(np.argmax(np.nan_to_num(away).max(axis=0)))
+    course = ", ".join(f"{tried.theta[term]:.4g} at {tried.cutoff:.3g} Hz" for tried in usable)
+    return (
+        f"{kind.parameter(TERMS[term])} moves with the filter's cut-off ({course}): taken at {taken.cutoff:.3g} Hz, "
+        f"its interval counts what it may still be off; {TELLS}"
+    )
+
+
+def estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
+    """Estimate from a solution of a recording, without a constant where it moves in one direction only.
+
+    Raises:
+        RefusedEstimateError: it determines only some parameters.
+        UndeterminedError: it determines none.
+    """
+    kind, unit, parameters = rig.axis_kind, gathered.effort_unit, {}
+    require_inertia(gathered.equations, kind)
+    for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
+        margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
+        parameter = parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
+        parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
+    estimate = summed_up([gathered], [found], parameters, found.power, rig)
+    remaining = tuple(_remaining(estimate))
+    estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *remaining))
+    return sound(estimate, gathered.equations, rig, (*gathered.warnings, *remaining))
+
+
+def parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
+    """A coefficient of a solution with the interval that its covariance gives it."""
+    value, error = found.of(term, found.theta), found.of(term, found.errors)
+    interval = (value - found.reach * error, value + found.reach * error)
+    return Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
+
+
+def summed_up(
+    gathered: Sequence[Gathered],
+    solutions: Sequence[Solution],
+    parameters: Mapping[str, Parameter],
+    left: float,
+    rig: Rig,
+) -> Estimate:
+    """The estimate of recordings, with what explains them; `left`: their squared residuals - the effort's unit squared.
+
+    Raises:
+        UndeterminedError: no effort at all.
+    """
+    kind, counts = rig.axis_kind, np.array([one.equations.count for one in gathered])
+    squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
+    if squares == 0.0:
+        reason = "the effort is zero throughout"
+        raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
+    count = int(counts.sum())
+    floor = math.sqrt(float(counts @ np.square([found.floor.coloured for found in solutions])) / count)
+    filters = [one.rows.conditioning.filter for one in gathered]
+    return Estimate(
+        estimator="regression",
+        parameters={**parameters, **load_inertia(parameters, rig)},
+        residual=Residual(math.sqrt(left / count), floor, math.sqrt(left / squares), gathered[0].effort_unit),
+        samples_read=sum(one.samples_read for one in gathered),
+        samples_used=int(counts @ [smooth.stride for smooth in filters]),
+        cutoff=min(smooth.cutoff for smooth in filters),
+        source=" and ".join(sorted({one.rows.conditioning.source for one in gathered})),
+        explained=1.0 - left / max(squares - total**2 / count, 1e-300),
+        checks=joined([one.checks for one in gathered]),
+    )
+
+
+def _remaining(estimate: Estimate) -> Iterator[str]:
+    """What share is explained, where more than noise is left."""
+    residual = estimate.residual
+    if residual.rms > NOISE_ALONE * residual.noise_floor:
+        yield (
+            f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
+            f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
+        )
+
+
+def _shifted(found: Solution) -> Iterator[str]:
+    (shift, error), period = found.shift, found.rows.scope.sample_period
+    if abs(shift) > period and abs(shift) > SURE * error and found.shift_explains > A_DELAY:
+        yield (
+            f"current and speed are {shift * 1e3:.3g} ms apart, more than a sample ({period * 1e3:.3g} ms): "
+            "a lag in the drive or its filters, which bench diagnose can tell"
+        )
 
 
 def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:

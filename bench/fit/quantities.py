@@ -62,10 +62,9 @@ class Uncertain:
     def base(self, units: Mapping[str, str]) -> dict[str, Parameter]:
         """J, K_w and K_0 with their intervals; `units` by their names, in this order."""
         deviation = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))[: self.fitted.theta.size]
-        places = zip((INERTIA, VISCOUS, COULOMB), units.items(), strict=True)
         return {
             name: self.parameter(self.fitted.value(term), float(deviation[self.fitted.owners == term][0]), unit)
-            for term, (name, unit) in places
+            for term, (name, unit) in zip((INERTIA, VISCOUS, COULOMB), units.items(), strict=True)
         }
 
     def quantities(self, index: int, unit_of: Callable[[Effect, str], str]) -> dict[str, Parameter]:
@@ -85,30 +84,18 @@ class Uncertain:
             base = Base(*(float(point[:size][owners == name][0]) for name in (INERTIA, VISCOUS, COULOMB)))
             return term.effect.report(point[:size][owners == index].tolist(), tuple(shape), base)
 
-        deviations = self._deviations(values)
-        positive = term.effect.positive
-        return {
-            name: self.parameter(value, deviations[name], unit_of(term.effect, name), name in positive)
-            for name, value in values(self.values).items()
-        }
-
-    def _deviations(self, values: Callable[[Array], Mapping[str, float]]) -> dict[str, float]:
-        gradient: dict[str, list[float]] = {name: [] for name in values(self.values)}
-        for k, number in enumerate(self.values):
-            step = STEP * max(abs(float(number)), 1e-9)
-            up, down = self.values.copy(), self.values.copy()
-            up[k] += step
-            down[k] -= step
-            high, low = values(up), values(down)
-            for name, slopes in gradient.items():
-                slopes.append((high[name] - low[name]) / (2.0 * step))
-        found = {name: np.array(slopes) for name, slopes in gradient.items()}
-        return {name: float(np.sqrt(max(g @ self.covariance @ g, 0.0))) for name, g in found.items()}
+        steps, found = STEP * np.maximum(np.abs(self.values), 1e-9), {}
+        sides = [(values(self.values + step), values(self.values - step)) for step in np.diag(steps)]
+        for name, value in values(self.values).items():
+            slopes = np.array([high[name] - low[name] for high, low in sides]) / (2.0 * steps)
+            deviation = float(np.sqrt(max(slopes @ self.covariance @ slopes, 0.0)))
+            found[name] = self.parameter(value, deviation, unit_of(term.effect, name), name in term.effect.positive)
+        return found
 
 
 def uncertain(fitted: Fit) -> Uncertain:
     """Free numbers of a fit with their covariance; where not all rows are determined, as in a robust search."""
-    slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in _free(term.effect, fitted.rows))
+    slots = _free_shapes(fitted)
     covariance, reach = _by_residual(fitted, slots)
     place = fitted.theta.size
     covariance[place:, place:] += np.diag(_known(fitted, slots) ** 2)
@@ -174,11 +161,14 @@ def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
     return np.array([errors[index][k] for index, k in slots])
 
 
-def _free(effect: Effect, rows: Rows) -> list[int]:
-    """Places of the shapes that are free numbers of the fit: not those that are whole, nor those that follow."""
-    return [
-        k for k, shape in enumerate(effect.shapes) if shape.step and (not shape.whole or is_pitch(shape, rows.scope))
-    ]
+def _free_shapes(fitted: Fit) -> tuple[tuple[int, int], ...]:
+    """(Term, place in its shape) of what is a free number of the fit: none that is whole, or that follows."""
+    return tuple(
+        (index, k)
+        for index, term in enumerate(fitted.terms)
+        for k, shape in enumerate(term.effect.shapes)
+        if shape.step and (not shape.whole or is_pitch(shape, fitted.scope))
+    )
 
 
 def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:

@@ -35,8 +35,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
-from bench.effects.effect import Coupling
-from bench.fit.hypothesis import DIGIT, Hypothesis, Layout, Name, delays, effort_lag
+from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out, of_motion
 from bench.fit.rows import ONE_WAY, Rows
 
 #: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
@@ -324,6 +323,13 @@ class Solution:
         return (without - beside) / above if above > 0.0 else 0.0
 
 
+def solution_of(rows: Rows, hypothesis: Hypothesis, offset: bool) -> Solution:
+    """The solution of a hypothesis; with a constant, if it is asked for and the axis moves in both directions."""
+    laid = lay_out(rows, hypothesis)
+    equations = equations_of(rows, laid)
+    return solve(rows, hypothesis, laid, equations, offset and equations.one_way is None)
+
+
 def solve(rows: Rows, hypothesis: Hypothesis, laid: Layout, equations: NormalEquations, offset: bool) -> Solution:
     """Least squares; the shift of torque against speed is limited to a tick unless a larger one is significant.
 
@@ -542,15 +548,12 @@ class Floor:
             omega: angular frequencies - rad/s (k,).
             source: power there of the noise of the signal that speed is taken from - its unit squared (k,).
         """
-        conditioning, owners, s = self.rows.conditioning, self.layout.owners, 1j * omega
+        conditioning, s = self.rows.conditioning, 1j * omega
         moving, _ = delays(self.rows, self.hypothesis)
-        inertia, viscous, shift = (float(self.theta[owners == name][0]) for name in (INERTIA, VISCOUS, MISALIGNMENT))
-        kinetic = inertia * s + viscous
-        for index, term in enumerate(self.hypothesis.terms):
-            if isinstance(term.effect, Coupling):
-                transfer = term.effect.noise_of_motion(term.shape, omega)
-                kinetic = kinetic + self.theta[owners == index][0] * s * transfer
+        transfers = of_motion(self.hypothesis, self.layout.owners, omega)
+        kinetic = sum(self.theta[place] * transfer for place, transfer in transfers.items())
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
+        shift = self.theta[BASE.index(MISALIGNMENT)]
         effort = conditioning.effort_noise**2 * _square((1.0 + shift * s) * (1.0 + effort_lag(self.hypothesis) * s))
         rate = (1.0 + moving * s) * s
         both = 2.0 * conditioning.known_shared * (kinetic * rate.conj()).real
