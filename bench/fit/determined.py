@@ -22,7 +22,6 @@ RECORD = {
     INERTIA: "a motion that accelerates and brakes hard several times",
     VISCOUS: "a motion with at least two clearly different speeds in each direction",
     COULOMB: "a motion in both directions, several seconds each",
-    OFFSET: "a motion in both directions, several seconds each",
 }
 
 #: Why a motion does not show a term, as far as it goes without a number.
@@ -30,15 +29,14 @@ PLAINLY = {
     INERTIA: "it hardly accelerates",
     VISCOUS: "its speed hardly varies",
     COULOMB: "it hardly moves in both directions",
-    OFFSET: "it hardly moves in both directions",
 }
 
 LOAD = "load_moment_of_inertia"
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
 PUSHING = (
-    "signals that are sound throughout: a sign that turns, a drop-out or a delay makes friction negative; else ask "
+    "signals that are sound throughout: a sign that turns, a drop-out or a delay makes friction negative; "
+    "else ask bench diagnose what acts beside friction"
 )
-PUSHING += "bench diagnose what acts beside friction"
 LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
 SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
 EXPLAINED = "a motion in which inertia and friction take most of the effort, and ask bench diagnose what else acts"
@@ -58,9 +56,9 @@ def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     """Raise UndeterminedError if the rows are too few or do not determine the inertia."""
-    refusal = _refusals(equations, kind).get(INERTIA)
-    if refusal is not None:
-        raise refusal
+    refused = _refusals(equations, kind)
+    if INERTIA in refused:
+        raise refused[INERTIA]
 
 
 def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
@@ -134,18 +132,13 @@ def negative_friction(
     parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]
 ) -> dict[str, UndeterminedError]:
     """Why a friction is none, by name, with what else is suspicious: its interval lies below zero."""
-    found = {
-        term: parameters[kind.parameter(term)] for term in (VISCOUS, COULOMB) if kind.parameter(term) in parameters
-    }
-    return {
-        kind.parameter(term): UndeterminedError(
-            kind.in_words(term),
-            "; ".join([f"it comes out negative, {one.value:.3g} {one.unit} (at most {one.ci95[1]:.3g})", *suspicions]),
-            PUSHING,
-        )
-        for term, one in found.items()
-        if one.ci95[1] < 0.0
-    }
+    refused = {}
+    for term in (VISCOUS, COULOMB):
+        name, one = kind.parameter(term), parameters.get(kind.parameter(term))
+        if one is not None and one.ci95[1] < 0.0:
+            reason = f"it comes out negative, {one.value:.3g} {one.unit} (at most {one.ci95[1]:.3g})"
+            refused[name] = UndeterminedError(words(name), "; ".join([reason, *suspicions]), PUSHING)
+    return refused
 
 
 def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: Sequence[str]) -> Estimate:

@@ -176,11 +176,6 @@ class Layout:
     noise: Array
     bounds: Mapping[int, tuple[float, float]]
 
-    @property
-    def of_effects(self) -> NDArray[np.bool_]:
-        """Which columns are those of an effect (p,)."""
-        return np.array([isinstance(owner, int) for owner in self.owners])
-
 
 def plain(rows: Rows) -> Hypothesis:
     """The hypothesis without an effect: with the effort's last digit where half a step of it could be seen."""

@@ -196,7 +196,7 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
 
     def refitted(change: Callable[[Signals], Signals]) -> Array:
         layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis, fitted.missing)
-        columns = np.where(layout.of_effects, layout.columns, fitted.columns)
+        columns = np.where([isinstance(owner, int) for owner in layout.owners], layout.columns, fitted.columns)
         return least_squares(columns, fitted.effort, layout.noise) - plain
 
     def older(s: Signals) -> Signals:

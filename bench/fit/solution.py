@@ -410,38 +410,31 @@ def left_out(columns: Array, residual: Array) -> Array:
     accelerate, nor all that are slow.
     """
     scale = np.sqrt(np.sum(columns**2, axis=0))
-    scaled = columns / np.where(scale > 0.0, scale, 1.0)
-    power = scaled**2
-    accelerated, moved = np.argsort(power[:, 0]), np.argsort(power[:, 1])
-    cuts = [(accelerated, power[:, 0], LEVELS), (moved, power[:, 1], LEVELS)]
+    scale = np.where(scale > 0.0, scale, 1.0)
+    table = np.column_stack([columns / scale, residual])
+    power = table[:, :-1] ** 2
+    cuts = [(np.argsort(power[:, k]), power[:, k], LEVELS) for k in (0, 1)]
     cuts.append((np.arange(residual.size), np.sum(power, axis=1), QUARTERS))
-    reaches = _without_each(scaled, residual, [(order, _parts(mass[order], count)) for order, mass, count in cuts])
-    return reaches / np.where(scale > 0.0, scale, 1.0)
+    reaches = [_without_each(table[order], _edges(mass[order], count)) for order, mass, count in cuts]
+    return np.max(reaches, axis=0) / scale
 
 
-def _parts(power: Array, count: int) -> list[slice]:
-    """Rows (m,) in their order cut into parts equal in the weighted mean of their shares of rows and of power."""
+def _edges(power: Array, count: int) -> NDArray[np.intp]:
+    """First rows, and the end, of parts (m,) equal in the weighted mean of their shares of rows and of power."""
     rows = np.arange(1, power.size + 1) / power.size
     share = rows + (1.0 / (MOST * count)) * (np.cumsum(power) / max(float(np.sum(power)), 1e-300) - rows)
-    edges = [0, *np.searchsorted(share, np.arange(1, count) / count).tolist(), power.size]
-    return [slice(start, stop) for start, stop in pairwise(edges) if stop > start]
+    return np.unique(np.r_[0, np.searchsorted(share, np.arange(1, count) / count), power.size])
 
 
-def _without_each(columns: Array, residual: Array, cuts: list[tuple[NDArray[np.intp], list[slice]]]) -> Array:
-    """The furthest reach of intervals (p,) by coefficients without each part of the rows (m,) in their order."""
-    counts = [len(parts) for _, parts in cuts]
-    if min(counts) < 2:
-        return np.full(columns.shape[1], np.inf)
-    table = np.column_stack([columns, residual])
-    sums = np.array([table[order[part]].T @ table[order[part]] for order, parts in cuts for part in parts])
+def _without_each(table: Array, edges: NDArray[np.intp]) -> Array:
+    """Reach of intervals (p,) by coefficients without each part of the rows of columns and residual (m, p + 1)."""
+    count = edges.size - 1
+    if count < 2:
+        return np.full(table.shape[1] - 1, np.inf)
+    sums = np.array([table[start:stop].T @ table[start:stop] for start, stop in pairwise(edges.tolist())])
     grams, scores = sums[:, :-1, :-1], sums[:, :-1, -1]
-    whole = np.repeat([part.sum(axis=0) for part in np.split(grams, np.cumsum(counts)[:-1])], counts, axis=0)
-    moved = np.einsum("gij,gj->gi", symmetric_inverse(whole - grams, 1e-10), scores) ** 2
-    reaches = [
-        scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * squares.sum(axis=0))
-        for count, squares in zip(counts, np.split(moved, np.cumsum(counts)[:-1]), strict=True)
-    ]
-    return np.max(reaches, axis=0)
+    moved = np.einsum("gij,gj->gi", symmetric_inverse(grams.sum(axis=0) - grams, 1e-10), scores)
+    return scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * (moved**2).sum(axis=0))
 
 
 def long_run_covariance(scores: Array) -> tuple[Array, float]:
@@ -466,10 +459,9 @@ def _bandwidth(scores: Array) -> float:
         return 1.0
     now, before = scores[1:], scores[:-1]
     power = np.sum(before**2, axis=0)
-    rho = np.clip(np.sum(now * before, axis=0) / np.where(power > 0.0, power, 1.0), -0.97, 0.97)
-    variance = np.mean((now - rho * before) ** 2, axis=0)
-    scale = np.where(power > 0.0, power, 1.0)
-    relative = (variance / scale) ** 2
+    power = np.where(power > 0.0, power, 1.0)
+    rho = np.clip(np.sum(now * before, axis=0) / power, -0.97, 0.97)
+    relative = (np.mean((now - rho * before) ** 2, axis=0) / power) ** 2
     ratio = np.sum(4.0 * rho**2 * relative / (1.0 - rho) ** 8) / max(np.sum(relative / (1.0 - rho) ** 4), 1e-300)
     return float(np.clip(WIDENED * 1.3221 * (ratio * scores.shape[0]) ** 0.2, 1.0, max(1.0, scores.shape[0] / 4.0)))
 
@@ -500,7 +492,7 @@ class Floor:
     @cached_property
     def white(self) -> float:
         """Of its white part alone - N*m (N)."""
-        return self._rms(self._lines(self._omega))
+        return self._rms(self._behind_filter(self._omega)[1])
 
     @cached_property
     def coloured(self) -> float:
@@ -508,10 +500,10 @@ class Floor:
         excess, corner = self._colour()
         if not excess:
             return self.white
-        omega = self._omega
-        return self._rms(self._lines(omega) + self._white(omega) * excess / (1.0 + (omega / corner) ** 2))
+        white, lines = self._behind_filter(self._omega)
+        return self._rms(lines + white * excess / (1.0 + (self._omega / corner) ** 2))
 
-    @property
+    @cached_property
     def _omega(self) -> Array:
         return np.linspace(0.0, np.pi / self.rows.conditioning.filter.sample_period, 2048)
 
@@ -525,19 +517,15 @@ class Floor:
         cut = float(self.theta[self.layout.owners == DIGIT].sum())
         return rounding(self.rows, self.hypothesis.step, self.layout.effort - self.residual, cut)
 
-    def _white(self, omega: Array) -> Array:
-        """Density of white noise behind the filter."""
-        return self._density(omega, np.full(omega.size, self.rows.conditioning.source_noise**2))
-
-    def _lines(self, omega: Array) -> Array:
-        """The same with what rounding leaves."""
-        return self._density(omega, self.rows.conditioning.source_power(omega))
-
-    def _density(self, omega: Array, source: Array) -> Array:
-        return np.exp(-((omega * self.rows.conditioning.filter.width) ** 2)) * self.power(omega, source)
+    def _behind_filter(self, omega: Array) -> Array:
+        """Density at angular frequencies (k,) of white noise, and of it with the lines that rounding leaves (2, k)."""
+        conditioning = self.rows.conditioning
+        white = np.full(omega.size, conditioning.source_noise**2)
+        power = self.power(omega, np.stack([white, conditioning.source_power(omega)]))
+        return np.exp(-((omega * conditioning.filter.width) ** 2)) * power
 
     def power(self, omega: Array, source: Array) -> Array:
-        """Power of noise of effort and speed in the torque balance before the filter - (N*m)**2 (N**2) - (k,).
+        """Power of noise of effort and speed in the torque balance before the filter - (N*m)**2 (N**2) - (..., k).
 
         s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2 + s_p**2*|s*(1 + lag*s)|**2
 
@@ -546,7 +534,7 @@ class Floor:
 
         Args:
             omega: angular frequencies - rad/s (k,).
-            source: power there of the noise of the signal that speed is taken from - its unit squared (k,).
+            source: power there of the noise of the signal that speed is taken from - its unit squared (..., k).
         """
         conditioning, s = self.rows.conditioning, 1j * omega
         moving, _ = delays(self.rows, self.hypothesis)
@@ -569,14 +557,14 @@ class Floor:
         count, length = windows.shape
         period = smooth.stride * smooth.sample_period
         omega = np.pi / period * np.arange(length // 2 + 1) / max(length // 2, 1)
-        white = self._white(omega) / smooth.stride
+        white, lines = self._behind_filter(omega) / smooth.stride
         read = np.flatnonzero(white > HEARD * white.max())
         read = read[read >= LOWEST]
         if not count or read.size < LOWEST:
             return 0.0, 1.0
         taper = np.hanning(length)
         spectra = np.abs(np.fft.rfft(windows * taper, axis=1)[:, read]) ** 2 / np.sum(taper**2)
-        known = np.maximum(white, np.convolve(self._lines(omega), HANN, "same") / smooth.stride)[read]
+        known = np.maximum(white, np.convolve(lines, HANN, "same"))[read]
         # of exponential variables, what the quiet quantile is to their mean, from expected order statistics
         quiet = np.interp(QUIET * (count - 1), np.arange(count), np.cumsum(1.0 / np.arange(count, 0, -1)))
         ratio = np.quantile(spectra, QUIET, axis=0) / quiet / known

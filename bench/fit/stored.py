@@ -54,9 +54,7 @@ class Balance:
         if self.recording != rows.origin:
             theta[np.isin(layout.owners, (AROUND, HUM))] = 0.0
         if self.recording not in (EVERY, rows.origin):
-            terms = enumerate(self.hypothesis.terms)
-            occasional = [index for index, term in terms if isinstance(term.effect, Occasional)]
-            theta[np.isin(layout.owners, occasional)] = 0.0
+            theta[np.isin(layout.owners, self.hypothesis.of_kind(Occasional))] = 0.0
         for _ in range(ROUNDS):
             if not (missing := not_reaching(self.hypothesis, layout, theta)):
                 break
