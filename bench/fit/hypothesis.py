@@ -48,7 +48,7 @@ from bench.effects.effect import (
     Repeatable,
 )
 from bench.effects.signals import Signals
-from bench.fit.rows import Rows, known_of
+from bench.fit.rows import Rows, effort_of, known_of
 from bench.trace.filter import Column
 from bench.trace.motion import SIGN_REACH
 
@@ -209,7 +209,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | N
             owners += [AROUND] * parts[-1].shape[1]
     columns = np.concatenate(parts, axis=1) if len(parts) > 1 else parts[0]
     held_by = np.array(owners, dtype=object)
-    effort = seen.kept(_effort, lag=late)[:, 0] if late else seen.effort
+    effort = seen.kept(effort_of, lag=late)[:, 0] if late else seen.effort
     if (moving or late) and seen.stretches[0].signals.known:
         # as the motion tells it, whose lag is undone; all of it of an effort that was made anew
         known = seen.kept(known_of, lag=moving)[:, 0]
@@ -221,10 +221,6 @@ def _axis(signals: Signals) -> list[Column]:
     """Those of BASE."""
     source, order = (signals.position, 1) if signals.source == "position" else (signals.velocity, 0)
     return [[(source, order + 1)], [(source, order)], [(signals.sign, 0)], [(-signals.effort, 1)]]
-
-
-def _effort(signals: Signals) -> list[Column]:
-    return [[(signals.effort, 0)]]
 
 
 def _cut_off(signals: Signals) -> list[Column]:

@@ -46,7 +46,7 @@ from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, 
 from bench.fit.fit import fit, hint
 from bench.fit.hum import mains, passes
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
-from bench.fit.rows import Rows, known_of
+from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
     NOISE_ALONE,
     SURE,
@@ -222,7 +222,7 @@ def _measured(equations: NormalEquations, rows: Rows | None) -> tuple[float, flo
     Beside a robot that is what its motor gave, not the small part that its own inertia and friction are to explain.
     """
     if rows is not None and rows.stretches[0].signals.known:
-        effort = rows.effort + rows.table(known_of)[:, 0]
+        effort = rows.kept(effort_of)[:, 0]
         return float(effort @ effort), float(effort.sum())
     return float(equations.power.sum()), float(equations.moment[:, equations.names.index(OFFSET)].sum())
 

@@ -102,7 +102,6 @@ class Rows:
         conditioning: source, noises and filter.
         origin: of the recording.
         scope: what it is able to show.
-        effort: filtered motor torque at the used rows, less what is known to act - N*m (N) - (m,).
         made_by, motion: what tells its signals, and its motion alone, from those reported; () as reported.
         memory: columns made before.
         still: whether what follows the motion behind a coupling is kept while the motion is corrected a little.
@@ -112,7 +111,6 @@ class Rows:
     conditioning: Conditioning
     origin: str
     scope: Scope
-    effort: Array
     made_by: Hashable = ()
     motion: Hashable = ()
     memory: Memory = field(default_factory=Memory, compare=False)
@@ -182,7 +180,7 @@ class Rows:
         if not any(part.used.any() for part in stretches):
             reason = f"no filtered sample of {origin} moves clearly in one direction"
             raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, scope.kind))
-        rows = cls(stretches, conditioning, origin, scope, _explained(stretches, conditioning.filter))
+        rows = cls(stretches, conditioning, origin, scope)
         return replace(rows, scope=rows._shown())
 
     def _shown(self) -> Scope:
@@ -211,22 +209,17 @@ class Rows:
         stretches = tuple(replace(p, signals=change(p.signals)) for p in self.stretches)
         pairs = [(new.signals, old.signals) for new, old in zip(stretches, self.stretches, strict=True)]
         moved = any(new.position is not old.position or new.velocity is not old.velocity for new, old in pairs)
-        effort = self.effort
-        if any(new.effort is not old.effort for new, old in pairs):
-            effort = _explained(stretches, self.conditioning.filter)
-        memory = self.memory if made_by is not None else Memory()
-        made_by = object() if made_by is None else made_by
+        made_by, memory = (object(), Memory()) if made_by is None else (made_by, self.memory)
         motion = made_by if moved and not self.still else self.motion
-        return replace(self, stretches=stretches, effort=effort, made_by=made_by, motion=motion, memory=memory)
+        return replace(self, stretches=stretches, made_by=made_by, motion=motion, memory=memory)
 
     def selected(self, kept: Callable[[Array], NDArray[np.bool_]]) -> Rows:
         """Those of the rows that are kept, by their times (r,) - s."""
         stretches = tuple(
-            replace(part, used=part.used & kept(self._picked(part, _since_first(part.signals))))
+            replace(part, used=part.used & kept(self._picked(part, part.signals.time + part.signals.began)))
             for part in self.stretches
         )
-        chosen = np.concatenate([new.used[old.used] for new, old in zip(stretches, self.stretches, strict=True)])
-        return replace(self, stretches=stretches, effort=self.effort[chosen], memory=Memory())
+        return replace(self, stretches=stretches, memory=Memory())
 
     @property
     def held(self) -> Rows:
@@ -236,7 +229,13 @@ class Rows:
     @cached_property
     def time(self) -> Array:
         """Of the used rows, since the start of the recording, or of the first of several - s - (m,)."""
-        return self.values(_since_first)
+        return self.values(lambda s: s.time + s.began)
+
+    @cached_property
+    def effort(self) -> Array:
+        """Filtered motor torque at the used rows, less what is known to act - N*m (N) - (m,)."""
+        effort = self.kept(effort_of)[:, 0]
+        return effort - self.kept(known_of)[:, 0] if self.stretches[0].signals.known else effort
 
     @property
     def starts(self) -> tuple[float, ...]:
@@ -246,8 +245,7 @@ class Rows:
     def samples(self) -> NDArray[np.int64]:
         """Index into the recording of every used row (m,)."""
         smooth = self.conditioning.filter
-        found = [part.start + smooth.margin + smooth.stride * np.flatnonzero(part.used) for part in self.stretches]
-        return np.concatenate(found)
+        return np.concatenate([part.start + smooth.margin + smooth.stride * part.places for part in self.stretches])
 
     def values(self, pick: Callable[[Signals], Array]) -> Array:
         """Raw values at the used rows (m,)."""
@@ -264,7 +262,10 @@ class Rows:
             columns: of the raw signals of a stretch, or of each stretch.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
         """
-        return _table(self.stretches, self.conditioning.filter, columns, lag)
+        smooth = self.conditioning.filter
+        tables = [columns(part.signals) for part in self.stretches] if callable(columns) else columns
+        parts = [smooth.columns(table, lag, part.places) for table, part in zip(tables, self.stretches, strict=True)]
+        return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
 
     def against(self, targets: Array, lag: float = 0.0) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
         """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself."""
@@ -302,28 +303,14 @@ def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
     )
 
 
+def effort_of(signals: Signals) -> list[Column]:
+    """The motor torque as it is reported, as the one column of a table."""
+    return [[(signals.effort, 0)]]
+
+
 def known_of(signals: Signals) -> list[Column]:
     """The torque that is known to act, as the one column of a table."""
     return [signals.known]
-
-
-def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
-    """Filtered motor torque less what is known to act, at the used rows - N*m (N) - (m,)."""
-    effort = _table(stretches, smooth, lambda s: [[(s.effort, 0)]])[:, 0]
-    if not stretches[0].signals.known:
-        return effort
-    return effort - _table(stretches, smooth, known_of)[:, 0]
-
-
-def _table(stretches: Sequence[Stretch], smooth: GaussianFilter, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
-    tables = [columns(part.signals) for part in stretches] if callable(columns) else columns
-    parts = [smooth.columns(table, lag, part.places) for table, part in zip(tables, stretches, strict=True)]
-    return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
-
-
-def _since_first(signals: Signals) -> Array:
-    """Time since the start of the first of the recordings - s."""
-    return signals.time + signals.began if signals.began else signals.time
 
 
 def _signals(
