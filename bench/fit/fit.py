@@ -5,7 +5,7 @@ The shape of an effect - a Stribeck speed, a lag, a pitch - is searched for the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import chain
@@ -13,9 +13,10 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array, rms, symmetric_inverse
+from bench.arrays import Array, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.acting import Friction
+from bench.effects.catalogue import catalogue
 from bench.effects.effect import (
     Columns,
     ColumnsOf,
@@ -34,20 +35,18 @@ from bench.fit.hypothesis import (
     Layout,
     Term,
     delays,
+    in_line,
     lay_out,
     not_reaching,
     seen_beside,
     seen_by,
-    settled,
-    with_found_strengths,
 )
 from bench.fit.rows import Rows
 from bench.fit.solution import Floor, bounded, solved
 from bench.trace.filter import Column
 
-#: Rounds in which levels of dry friction that multiply, and torque that is copied, are brought in line, and change of
-#: what is left at which they are.
-ROUNDS, IN_LINE = 4, 0.01
+#: Rounds in which levels of dry friction that multiply, and torque that is copied, are brought in line.
+ROUNDS = 4
 #: Share of the noise floor by which a row's torque may hang on what the recording does not tell, an impact's instant.
 OPEN_SHARE = 0.3
 #: Standard errors from which a strength is no longer chance: 3 of 1000 by a normal distribution.
@@ -280,10 +279,8 @@ def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
         layout = lay_out(rows, hypothesis, missing)
     theta, held = _balanced(layout)
     for _ in range(ROUNDS):
-        before, missing_before = hypothesis, missing
-        hypothesis = with_found_strengths(before, theta, layout.owners)
-        missing = not_reaching(hypothesis, layout, theta)
-        if settled(hypothesis, before) and _settled(missing_before, missing):
+        hypothesis, missing, settled = in_line(hypothesis, missing, layout, theta)
+        if settled:
             break
         layout = lay_out(rows, hypothesis, missing)
         theta, held = _balanced(layout)
@@ -315,12 +312,6 @@ def _without_copies(layout: Layout, hypothesis: Hypothesis) -> dict[int, Array]:
     noise = layout.noise[np.ix_(kept, kept)]
     left = layout.effort - layout.columns[:, kept] @ least_squares(layout.columns[:, kept], layout.effort, noise)
     return dict.fromkeys(copies, left)
-
-
-def _settled(missing: Mapping[int, Array], after: Mapping[int, Array]) -> bool:
-    """Whether what is missing of the torque stays as it was, beside what is left."""
-    least = IN_LINE * min(map(rms, after.values()), default=0.0)
-    return all(rms(now - missing[index]) <= least for index, now in after.items())
 
 
 def _balanced(layout: Layout, determined: NDArray[np.bool_] | slice = slice(None)) -> tuple[Array, tuple[int, ...]]:
@@ -395,6 +386,14 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
         if physical and beside.base.inertia > 0.0 and explained(fitted, beside) > least:
             return beside
     return None
+
+
+def by_hint(rows: Rows, hypothesis: Hypothesis) -> dict[str, float]:
+    """By how much the effect that a recording hints at would move J, K_w and K_0; empty without one."""
+    fitted = fit(rows, hypothesis)
+    beside = hint(fitted, catalogue().values())
+    terms = INERTIA, VISCOUS, COULOMB
+    return {} if beside is None else {term: beside.value(term) - fitted.value(term) for term in terms}
 
 
 def free_shapes(term: Term, scope: Scope) -> list[int]:

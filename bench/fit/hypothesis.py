@@ -63,6 +63,8 @@ HUM, DIGIT, AROUND = "hum", "last digit", "around"
 FREQUENCIES, REACH = 400, 4.0
 #: Share of the filtered white noise below which half a step is not seen.
 UNSEEN = 0.1
+#: Change of what copies of torque miss, as share of it, at which they are in line with what is found.
+IN_LINE = 0.01
 #: What the torque passes from its reading to the motion, by kinds of effects that copy it.
 STAGES = (MisreadEffort, TorqueLoss, ScalesTorque, FrictionLevel)
 
@@ -456,11 +458,18 @@ def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[n
     return hypothesis.with_terms(seen(term, theta[owners == index]) for index, term in enumerate(hypothesis.terms))
 
 
-def settled(found: Hypothesis, before: Hypothesis) -> bool:
-    """Whether no column of a term depends on a strength of another that is not as before.
+def in_line(
+    hypothesis: Hypothesis, missing: Mapping[int, Array], layout: Layout, theta: Array
+) -> tuple[Hypothesis, dict[int, Array], bool]:
+    """The hypothesis with the strengths that a fit found, what its copies of torque miss, and if both are as before."""
+    found, after = with_found_strengths(hypothesis, theta, layout.owners), not_reaching(hypothesis, layout, theta)
+    least = IN_LINE * min(map(rms, after.values()), default=0.0)
+    stays = all(rms(now - missing[index]) <= least for index, now in after.items())
+    return found, after, stays and _alike(found, hypothesis)
 
-    They depend on a load, or on friction that multiplies.
-    """
+
+def _alike(found: Hypothesis, before: Hypothesis) -> bool:
+    """Whether no column depends on a strength of another term, by a load or friction that multiplies, that changed."""
     levels = len(found.of_kind(FrictionLevel))
     scaled = levels > 1 and found.of_kind(ScalesFriction)
     carried = levels > 0 and found.of_kind(CarriesFriction)

@@ -39,11 +39,10 @@ import numpy as np
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
-from bench.effects.catalogue import catalogue
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import left_open, require_inertia, sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
-from bench.fit.fit import fit, hint
+from bench.fit.fit import by_hint
 from bench.fit.hum import mains, passes
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
 from bench.fit.rows import Rows, effort_of
@@ -194,7 +193,7 @@ def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Ga
         samples_read=len(first) + sum(read for _, read, _ in others),
         measured=_measured(whole.whole, None if others else found.rows),
         doubt=dict(zip(TERMS, chosen.doubt.tolist(), strict=True)),
-        hinted=_by_hint(found),
+        hinted=by_hint(found.rows, found.hypothesis),
         tolerance=_by_tolerance(first, rig, found),
         warnings=chosen.warnings,
         checks=checks,
@@ -225,13 +224,6 @@ def _measured(equations: NormalEquations, rows: Rows | None) -> tuple[float, flo
         effort = rows.kept(effort_of)[:, 0]
         return float(effort @ effort), float(effort.sum())
     return float(equations.power.sum()), float(equations.moment[:, equations.names.index(OFFSET)].sum())
-
-
-def _by_hint(found: Solution) -> dict[str, float]:
-    """By how much the effect that a recording hints at would move J, K_w and K_0 of its solution; empty without one."""
-    fitted = fit(found.rows, found.hypothesis)
-    beside = hint(fitted, catalogue().values())
-    return {} if beside is None else {term: beside.value(term) - fitted.value(term) for term in TERMS}
 
 
 def _by_tolerance(first: Trace, rig: Rig, found: Solution) -> dict[Name, float]:

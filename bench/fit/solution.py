@@ -536,7 +536,7 @@ class Floor:
             omega: angular frequencies - rad/s (k,).
             source: power there of the noise of the signal that speed is taken from - its unit squared (..., k).
         """
-        conditioning, s = self.rows.conditioning, 1j * omega
+        conditioning, s = self.rows.conditioning, np.asarray(1j * omega, dtype=np.complex128)
         moving, _ = delays(self.rows, self.hypothesis)
         transfers = of_motion(self.hypothesis, self.layout.owners, omega)
         kinetic = sum(self.theta[place] * transfer for place, transfer in transfers.items())
