@@ -144,16 +144,6 @@ class Gathered:
     warnings: tuple[str, ...]
     checks: tuple[Check, ...]
 
-    @property
-    def rows(self) -> Rows:
-        """Of its first part, which determines filter and noise floor."""
-        return self.solution.rows
-
-    @property
-    def equations(self) -> NormalEquations:
-        """Of every column and, last, a constant."""
-        return self.solution.whole
-
     def solved(self, offset: bool) -> Solution:
         """Its solution with or without a constant."""
         found = self.solution
@@ -372,7 +362,7 @@ def estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
         UndeterminedError: it determines none.
     """
     kind, unit, parameters = rig.axis_kind, gathered.effort_unit, {}
-    require_inertia(gathered.equations, kind)
+    require_inertia(gathered.solution.whole, kind)
     for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
         margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
         parameter = parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
@@ -380,7 +370,7 @@ def estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
     estimate = summed_up([gathered], [found], parameters, found.power, rig)
     remaining = tuple(_remaining(estimate))
     estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *remaining))
-    return sound(estimate, gathered.equations, rig, (*gathered.warnings, *remaining))
+    return sound(estimate, gathered.solution.whole, rig, (*gathered.warnings, *remaining))
 
 
 def parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
@@ -402,14 +392,14 @@ def summed_up(
     Raises:
         UndeterminedError: no effort at all.
     """
-    kind, counts = rig.axis_kind, np.array([one.equations.count for one in gathered])
+    kind, counts = rig.axis_kind, np.array([one.solution.whole.count for one in gathered])
     squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
     if squares == 0.0:
         reason = "the effort is zero throughout"
         raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
     count = int(counts.sum())
     floor = math.sqrt(float(counts @ np.square([found.floor.coloured for found in solutions])) / count)
-    filters = [one.rows.conditioning.filter for one in gathered]
+    filters = [one.solution.rows.conditioning.filter for one in gathered]
     return Estimate(
         estimator="regression",
         parameters={**parameters, **load_inertia(parameters, rig)},
@@ -417,7 +407,7 @@ def summed_up(
         samples_read=sum(one.samples_read for one in gathered),
         samples_used=int(counts @ [smooth.stride for smooth in filters]),
         cutoff=min(smooth.cutoff for smooth in filters),
-        source=" and ".join(sorted({one.rows.conditioning.source for one in gathered})),
+        source=" and ".join(sorted({one.solution.rows.conditioning.source for one in gathered})),
         explained=1.0 - left / max(squares - total**2 / count, 1e-300),
         checks=joined([one.checks for one in gathered]),
     )
@@ -451,7 +441,7 @@ def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
     """
     _require_distinct(gathered)
     kind, unit = rig.axis_kind, gathered[0].effort_unit
-    members = [Member.of(one, rig) for one in gathered]
+    members = [_member(one, rig) for one in gathered]
     excesses = {term: _excess(members, kind, term) for term in members[0].terms}
     theta, errors, reaches = _jointly(members, list(excesses.values()))
     parameters = {}
@@ -459,7 +449,8 @@ def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
         found = Parameter(value, kind.parameter_unit(term, unit), error, (value - reach, value + reach))
         tolerance = float(np.mean([_tolerance(one, term) for one in gathered]))
         parameters[kind.parameter(term)] = found.widened(tolerance)
-    left = sum(each.left(theta) for each in members)
+    away = [theta - each.theta for each in members]
+    left = sum(each.solution.power + float(d @ each.matrix @ d) for each, d in zip(members, away, strict=True))
     estimate = replace(
         summed_up(gathered, [each.solution for each in members], parameters, left, rig),
         warnings=(
@@ -486,91 +477,77 @@ class Member:
         gathered: it summed up.
         terms: that all recordings share: J, K_w, K_0 and, where it is fitted, offset (s,).
         solution: its own fit, with these columns and its own shift and hum.
+        theta: coefficients of these in it (s,).
+        matrix: of the normal equations of these, its own shift and hum eliminated (s, s).
+        covariances: of these, in standard errors and in half widths of intervals of 95 % (s, s) each.
         alone: its estimate alone.
         own: the same without the rig's tolerances, which are common to all recordings.
         along: if it moves in one direction only, its friction in that direction, offset included; else None.
-        covariances: of its coefficients, in standard errors and in half widths of intervals of 95 % (s, s) each.
         warnings: of its own fit.
     """
 
     gathered: Gathered
     terms: tuple[str, ...]
     solution: Solution
+    theta: Array
+    matrix: Array
+    covariances: tuple[Array, Array]
     alone: Alone
     own: Mapping[str, Parameter]
     along: Parameter | None
-    covariances: tuple[Array, Array]
     warnings: tuple[str, ...]
 
-    @classmethod
-    def of(cls, gathered: Gathered, rig: Rig) -> Member:
-        """The fit of one recording alone.
 
-        A parameter that it does not determine alone is as much wider than by its own fit as friction along one
-        direction is.
-        """
-        kind, terms = rig.axis_kind, (INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []))
-        solution, one_way = gathered.solved(rig.offset), gathered.equations.one_way is not None
-        bare = gathered.solved(offset=False) if one_way else solution
-        found, reason = None, ""
-        try:
-            found = estimated_alone(gathered, bare, rig)
-        except RefusedEstimateError as refusal:
-            found, reason = refusal.estimate, str(refusal)
-        except UndeterminedError as refusal:
-            reason = str(refusal)
-        known = {} if found is None else found.parameters
-        kept = {name: one for name, one in known.items() if name != kind.inertia or one.ci95[0] * one.ci95[1] > 0.0}
-        own, along, wider = dict(kept), None, (1.0, solution.reach)
-        names = {kind.parameter(term): term for term in terms} | {"load_moment_of_inertia": INERTIA}
-        for name in own.keys() & names.keys():
-            own[name] = _without(own[name], _tolerance(gathered, names[name]))
-        if one_way:
-            along = parameter_of(bare, COULOMB, kind, gathered.effort_unit)
-            along = along.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
-            error = max(bare.of(COULOMB, bare.errors), 1e-300)
-            wider = along.std_error / error, along.half_width / error
-        at = [solution.names.index(term) for term in terms]
-        covariance = solution.covariance[np.ix_(at, at)]
-        scales = []
-        for term, variance in zip(terms, np.diag(covariance).tolist(), strict=True):
-            one, error = own.get(kind.parameter(term)), math.sqrt(max(variance, 1e-300))
-            scales.append(wider if one is None else (one.std_error / error, one.half_width / error))
-        standard, half = (covariance * np.outer(scale, scale) for scale in np.array(scales).T)
-        warnings = () if found is None else found.warnings
-        alone = Alone(gathered.rows.origin, kept, reason)
-        return cls(gathered, terms, solution, alone, own, along, (standard, half), warnings)
+def _member(gathered: Gathered, rig: Rig) -> Member:
+    """One recording fitted alone.
 
-    @cached_property
-    def _at(self) -> list[int]:
-        """Places of the shared terms among the columns of its own fit (s,)."""
-        return [self.solution.names.index(term) for term in self.terms]
+    A parameter that it does not determine alone is as much wider than by its own fit as friction along one direction.
+    """
+    kind, terms = rig.axis_kind, (INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []))
+    solution, one_way = gathered.solved(rig.offset), gathered.solution.whole.one_way is not None
+    bare = gathered.solved(offset=False) if one_way else solution
+    found, reason = None, ""
+    try:
+        found = estimated_alone(gathered, bare, rig)
+    except RefusedEstimateError as refusal:
+        found, reason = refusal.estimate, str(refusal)
+    except UndeterminedError as refusal:
+        reason = str(refusal)
+    known, warnings = ({}, ()) if found is None else (found.parameters, found.warnings)
+    kept = {name: one for name, one in known.items() if name != kind.inertia or one.ci95[0] * one.ci95[1] > 0.0}
+    own, along, wider = dict(kept), None, (1.0, solution.reach)
+    names = {kind.parameter(term): term for term in terms} | {"load_moment_of_inertia": INERTIA}
+    for name in own.keys() & names.keys():
+        own[name] = _without(own[name], _tolerance(gathered, names[name]))
+    if one_way:
+        along = parameter_of(bare, COULOMB, kind, gathered.effort_unit)
+        along = along.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
+        error = max(bare.of(COULOMB, bare.errors), 1e-300)
+        wider = along.std_error / error, along.half_width / error
+    at = [solution.names.index(term) for term in terms]
+    covariance, scales = solution.covariance[np.ix_(at, at)], []
+    for term, variance in zip(terms, np.diag(covariance).tolist(), strict=True):
+        one, error = own.get(kind.parameter(term)), math.sqrt(max(variance, 1e-300))
+        scales.append(wider if one is None else (one.std_error / error, one.half_width / error))
+    standard, half = (covariance * np.outer(scale, scale) for scale in np.array(scales).T)
+    theta, matrix, alone = solution.theta[at], _eliminated(solution, at), Alone(solution.rows.origin, kept, reason)
+    return Member(gathered, terms, solution, theta, matrix, (standard, half), alone, own, along, warnings)
 
-    @property
-    def theta(self) -> Array:
-        """Coefficients of the shared terms in its own fit (s,)."""
-        return self.solution.theta[self._at]
 
-    @cached_property
-    def matrix(self) -> Array:
-        """Matrix of the normal equations of these, its own shift and hum eliminated, positive semidefinite (s, s).
+def _eliminated(solution: Solution, kept: list[int]) -> Array:
+    """Matrix of normal equations of some columns, all other columns eliminated, positive semidefinite (s, s).
 
-        A column with less power than expected from its noise carries no information.
-        """
-        equations, shared, held = self.solution.equations, self._at, self.solution.held
-        whole, gram, noise = equations.matrix, equations.total, equations.count * equations.noise
-        rest = {k: name for k, name in enumerate(equations.names) if k not in shared}
-        own = [k for k, name in rest.items() if not (held and name == MISALIGNMENT)]
-        beside = whole[np.ix_(own, shared)]
-        taken, _ = solved(gram[np.ix_(own, own)], beside, noise[np.ix_(own, own)])
-        scale = np.sqrt(np.diag(gram)[shared])
-        power, ways = np.linalg.eigh((whole[np.ix_(shared, shared)] - beside.T @ taken) / np.outer(scale, scale))
-        return (ways * np.maximum(power, 0.0)) @ ways.T * np.outer(scale, scale)
-
-    def left(self, theta: Array) -> float:
-        """Sum of its squared residuals by other coefficients (s,) - the effort's unit squared."""
-        away = theta - self.theta
-        return self.solution.power + float(away @ self.matrix @ away)
+    A column with less power than expected from its noise carries no information.
+    """
+    equations, held = solution.equations, solution.held
+    whole, gram, noise = equations.matrix, equations.total, equations.count * equations.noise
+    rest = {k: name for k, name in enumerate(equations.names) if k not in kept}
+    own = [k for k, name in rest.items() if not (held and name == MISALIGNMENT)]
+    beside = whole[np.ix_(own, kept)]
+    taken, _ = solved(gram[np.ix_(own, own)], beside, noise[np.ix_(own, own)])
+    scale = np.sqrt(np.diag(gram)[kept])
+    power, ways = np.linalg.eigh((whole[np.ix_(kept, kept)] - beside.T @ taken) / np.outer(scale, scale))
+    return (ways * np.maximum(power, 0.0)) @ ways.T * np.outer(scale, scale)
 
 
 def _tolerance(gathered: Gathered, term: str) -> float:
@@ -588,7 +565,9 @@ def _without(found: Parameter, reach: float) -> Parameter:
 def _jointly(members: Sequence[Member], excesses: Sequence[Excess]) -> tuple[Array, Array, Array]:
     """Coefficients of recordings that vary beyond their own errors, standard errors, half widths at 95 % (s,) each."""
     between = np.array([found.variance for found in excesses])
-    known = np.array([_information(each) for each in members])
+    # the information of each: its matrix over the mean variance that its covariance implies
+    implied = [float(np.trace(each.matrix @ each.covariances[0])) / between.size for each in members]
+    known = np.array([each.matrix / max(mean, 1e-300) for each, mean in zip(members, implied, strict=True)])
     known = np.linalg.solve(np.eye(between.size) + known * between, known)
     moment = np.einsum("kij,kj->i", known, np.array([each.theta for each in members]))
     theta, inverse = solved(known.sum(axis=0), moment, np.zeros_like(known[0]))
@@ -601,27 +580,25 @@ def _jointly(members: Sequence[Member], excesses: Sequence[Excess]) -> tuple[Arr
     return theta, np.sqrt(variance), np.sqrt(reached)
 
 
-def _information(member: Member) -> Array:
-    """What a recording tells of the shared terms (s, s): its matrix over the mean variance that is implied."""
-    implied = float(np.trace(member.matrix @ member.covariances[0]))
-    return member.matrix * len(member.terms) / max(implied, 1e-300)
-
-
 def _require_distinct(gathered: Sequence[Gathered]) -> None:
     if not gathered:
         raise InputError("recordings", "found none", "allowed: at least one")
     for one, other in combinations(gathered, 2):
         if one.effort_unit != other.effort_unit:
-            found = f"gives its effort in {other.effort_unit}, {one.rows.origin} in {one.effort_unit}"
-            raise InputError(other.rows.origin, found, "allowed: recordings of one kind of effort; say kT in the rig")
-        if np.array_equal(one.equations.gram, other.equations.gram):
-            found = f"found the same recording as {one.rows.origin}"
-            raise InputError(other.rows.origin, found, "allowed: each recording once; twice would count as two")
+            found = f"gives its effort in {other.effort_unit}, {one.solution.rows.origin} in {one.effort_unit}"
+            raise InputError(
+                other.solution.rows.origin, found, "allowed: recordings of one kind of effort; say kT in the rig"
+            )
+        if np.array_equal(one.solution.whole.gram, other.solution.whole.gram):
+            found = f"found the same recording as {one.solution.rows.origin}"
+            raise InputError(
+                other.solution.rows.origin, found, "allowed: each recording once; twice would count as two"
+            )
 
 
 def _joined(gathered: Sequence[Gathered]) -> NormalEquations:
     """Equations of all recordings in their common columns: J, K_w, K_0, misalignment, constant."""
-    parts = [one.equations.only(lambda name: name in (*BASE, OFFSET)) for one in gathered]
+    parts = [one.solution.whole.only(lambda name: name in (*BASE, OFFSET)) for one in gathered]
     noise = sum((part.count * part.noise for part in parts), np.zeros_like(parts[0].noise))
     return replace(join(parts), noise=noise / sum(part.count for part in parts))
 
@@ -637,7 +614,7 @@ def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
         if name in member.own:
             groups.setdefault("both", []).append(member.own[name])
         elif term == COULOMB and member.along is not None:
-            groups.setdefault(str(member.gathered.equations.one_way), []).append(member.along)
+            groups.setdefault(str(member.gathered.solution.whole.one_way), []).append(member.along)
     return excess(list(groups.values()))
 
 
@@ -661,7 +638,7 @@ def _offset(members: Sequence[Member], rig: Rig) -> Iterator[str]:
     if rig.offset or all(member.along is None for member in members):
         return
     kind, asked = rig.axis_kind, rig.model_copy(update={"offset": True})
-    members = [Member.of(each.gathered, asked) for each in members]
+    members = [_member(each.gathered, asked) for each in members]
     theta, _, reaches = _jointly(members, [_excess(members, kind, term) for term in members[0].terms])
     value, reach = float(theta[-1]), float(reaches[-1])
     if abs(value) > reach:
