@@ -35,11 +35,11 @@ from bench.fit.hypothesis import (
     Layout,
     Term,
     delays,
-    in_line,
     lay_out,
     not_reaching,
     seen_beside,
     seen_by,
+    updated,
 )
 from bench.fit.rows import Rows
 from bench.fit.solution import Floor, bounded, solved
@@ -279,7 +279,7 @@ def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
         layout = lay_out(rows, hypothesis, missing)
     theta, held = _balanced(layout)
     for _ in range(ROUNDS):
-        hypothesis, missing, settled = in_line(hypothesis, missing, layout, theta)
+        hypothesis, missing, settled = updated(hypothesis, missing, layout, theta)
         if settled:
             break
         layout = lay_out(rows, hypothesis, missing)

@@ -306,7 +306,7 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
     gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
     noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = conditioning.effort_noise**2 * gain
     omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
-    transfers = of_motion(hypothesis, owners, omega)
+    transfers = noise_transfers(hypothesis, owners, omega)
     places, spectra = list(transfers), np.stack(list(transfers.values()))
     weight = conditioning.source_power(omega) * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
     weight *= omega ** (2 * order) * (1.0 + (omega * moving) ** 2)
@@ -314,7 +314,9 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
     return noise
 
 
-def of_motion(hypothesis: Hypothesis, owners: NDArray[np.object_], omega: Array) -> dict[int, NDArray[np.complex128]]:
+def noise_transfers(
+    hypothesis: Hypothesis, owners: NDArray[np.object_], omega: Array
+) -> dict[int, NDArray[np.complex128]]:
     """Transfer from speed to columns at angular frequencies - rad/s (k,) -, by the places that these stand at: (k,).
 
     All of them less the speed's own factor, (1j*omega)**order*(1 + 1j*omega*moving).
@@ -419,19 +421,19 @@ def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[i
     That is what no term explains, and what those take that the torque passes before: gains of reading, constant and
     position multiply, and dry friction is caused by the torque that comes of it.
     """
-    copies = hypothesis.of_kind(CopiesTorque)
+    copies, found = hypothesis.of_kind(CopiesTorque), {}
     if not copies:
-        return {}
-    lost, found = layout.effort - layout.columns @ theta, {}
-    for index in sorted(copies, key=lambda index: _stage(hypothesis.terms[index].effect)):
+        return found
+
+    def stage(index: int) -> int:
+        passed = (place for place, kind in enumerate(STAGES) if isinstance(hypothesis.terms[index].effect, kind))
+        return next(passed, STAGES.index(ScalesTorque))
+
+    lost = layout.effort - layout.columns @ theta
+    for index in sorted(copies, key=stage):
         own = layout.owners == index
         found[index], lost = lost, lost + layout.columns[:, own] @ theta[own]
     return found
-
-
-def _stage(effect: Effect) -> int:
-    """Where the torque passes an effect."""
-    return next((stage for stage, kind in enumerate(STAGES) if isinstance(effect, kind)), STAGES.index(ScalesTorque))
 
 
 def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
@@ -458,7 +460,7 @@ def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[n
     return hypothesis.with_terms(seen(term, theta[owners == index]) for index, term in enumerate(hypothesis.terms))
 
 
-def in_line(
+def updated(
     hypothesis: Hypothesis, missing: Mapping[int, Array], layout: Layout, theta: Array
 ) -> tuple[Hypothesis, dict[int, Array], bool]:
     """The hypothesis with the strengths that a fit found, what its copies of torque miss, and if both are as before."""

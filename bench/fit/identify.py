@@ -110,11 +110,11 @@ def identify(
     rig = rig_of(rig)
     every = trace if isinstance(trace, list | tuple) else [cast("Given", trace)]
     recordings = [one if isinstance(one, Iterator) else trace_of(one, rig) for one in every]
-    gathered = [gather(one, rig, cutoff) for one in recordings]
+    gathered = [_gather(one, rig, cutoff) for one in recordings]
     if len(gathered) == 1:
-        found = estimated_alone(gathered[0], gathered[0].solution, rig)
+        found = _estimated_alone(gathered[0], gathered[0].solution, rig)
     else:
-        found = estimated_together(gathered, rig)
+        found = _estimated_together(gathered, rig)
     return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
 
 
@@ -152,13 +152,8 @@ class Gathered:
         return solve(found.rows, found.hypothesis, found.laid, found.whole, offset)
 
 
-def gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
-    """A recording, or its consecutive parts, summed up at a cut-off - Hz -, or at the one the data choose.
-
-    Raises:
-        UndeterminedError: the recording is too short, or never moves clearly.
-        InputError: a signal is missing, rig and recording do not fit together, or a check of the recording fails.
-    """
+def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
+    """A recording, or its consecutive parts, summed up at a cut-off - Hz -, or at the one the data choose."""
     parts = iter([trace] if isinstance(trace, Trace) else trace)
     gated = passed(next(parts), rig)
     first = gated.trace
@@ -354,44 +349,35 @@ def _moves(taken: Tried, usable: Sequence[Tried], kind: AxisKind) -> str:
     )
 
 
-def estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
-    """Estimate from a solution of a recording, without a constant where it moves in one direction only.
-
-    Raises:
-        RefusedEstimateError: it determines only some parameters.
-        UndeterminedError: it determines none.
-    """
+def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
+    """Estimate from a solution of a recording, without a constant where it moves in one direction only."""
     kind, unit, parameters = rig.axis_kind, gathered.effort_unit, {}
     require_inertia(gathered.solution.whole, kind)
     for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
         margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
-        parameter = parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
+        parameter = _parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
         parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
-    estimate = summed_up([gathered], [found], parameters, found.power, rig)
+    estimate = _estimate_of([gathered], [found], parameters, found.power, rig)
     remaining = tuple(_remaining(estimate))
     estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *remaining))
     return sound(estimate, gathered.solution.whole, rig, (*gathered.warnings, *remaining))
 
 
-def parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
+def _parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
     """A coefficient of a solution with the interval that its covariance gives it."""
     value, error = found.of(term, found.theta), found.of(term, found.errors)
     interval = (value - found.reach * error, value + found.reach * error)
     return Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
 
 
-def summed_up(
+def _estimate_of(
     gathered: Sequence[Gathered],
     solutions: Sequence[Solution],
     parameters: Mapping[str, Parameter],
     left: float,
     rig: Rig,
 ) -> Estimate:
-    """The estimate of recordings, with what explains them; `left`: their squared residuals - the effort's unit squared.
-
-    Raises:
-        UndeterminedError: no effort at all.
-    """
+    """The estimate of recordings, with what explains them; `left`: squared residuals - the effort's unit squared."""
     kind, counts = rig.axis_kind, np.array([one.solution.whole.count for one in gathered])
     squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
     if squares == 0.0:
@@ -432,13 +418,8 @@ def _shifted(found: Solution) -> Iterator[str]:
         )
 
 
-def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
-    """Estimate from several recordings of one axis.
-
-    Raises:
-        RefusedEstimateError: together they leave a parameter undetermined; the error carries the others.
-        InputError: no recording, one that is given twice, or efforts in different units.
-    """
+def _estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
+    """Estimate from several recordings of one axis."""
     _require_distinct(gathered)
     kind, unit = rig.axis_kind, gathered[0].effort_unit
     members = [_member(one, rig) for one in gathered]
@@ -452,7 +433,7 @@ def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
     away = [theta - each.theta for each in members]
     left = sum(each.solution.power + float(d @ each.matrix @ d) for each, d in zip(members, away, strict=True))
     estimate = replace(
-        summed_up(gathered, [each.solution for each in members], parameters, left, rig),
+        _estimate_of(gathered, [each.solution for each in members], parameters, left, rig),
         warnings=(
             *(f"{each.alone.origin}: {warning}" for each in members for warning in each.warnings),
             *(f"{each.alone.origin} alone: {each.alone.reason}" for each in members if each.alone.reason),
@@ -508,7 +489,7 @@ def _member(gathered: Gathered, rig: Rig) -> Member:
     bare = gathered.solved(offset=False) if one_way else solution
     found, reason = None, ""
     try:
-        found = estimated_alone(gathered, bare, rig)
+        found = _estimated_alone(gathered, bare, rig)
     except RefusedEstimateError as refusal:
         found, reason = refusal.estimate, str(refusal)
     except UndeterminedError as refusal:
@@ -520,7 +501,7 @@ def _member(gathered: Gathered, rig: Rig) -> Member:
     for name in own.keys() & names.keys():
         own[name] = _without(own[name], _tolerance(gathered, names[name]))
     if one_way:
-        along = parameter_of(bare, COULOMB, kind, gathered.effort_unit)
+        along = _parameter_of(bare, COULOMB, kind, gathered.effort_unit)
         along = along.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
         error = max(bare.of(COULOMB, bare.errors), 1e-300)
         wider = along.std_error / error, along.half_width / error

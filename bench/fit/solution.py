@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
-from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out, of_motion
+from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out, noise_transfers
 from bench.fit.rows import ONE_WAY, Rows
 
 #: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
@@ -492,7 +492,7 @@ class Floor:
     @cached_property
     def white(self) -> float:
         """Of its white part alone - N*m (N)."""
-        return self._rms(self._behind_filter(self._omega)[1])
+        return self._rms(self._densities(self._omega)[1])
 
     @cached_property
     def coloured(self) -> float:
@@ -500,7 +500,7 @@ class Floor:
         excess, corner = self._colour()
         if not excess:
             return self.white
-        white, lines = self._behind_filter(self._omega)
+        white, lines = self._densities(self._omega)
         return self._rms(lines + white * excess / (1.0 + (self._omega / corner) ** 2))
 
     @cached_property
@@ -517,7 +517,7 @@ class Floor:
         cut = float(self.theta[self.layout.owners == DIGIT].sum())
         return rounding(self.rows, self.hypothesis.step, self.layout.effort - self.residual, cut)
 
-    def _behind_filter(self, omega: Array) -> Array:
+    def _densities(self, omega: Array) -> Array:
         """Density at angular frequencies (k,) of white noise, and of it with the lines that rounding leaves (2, k)."""
         conditioning = self.rows.conditioning
         white = np.full(omega.size, conditioning.source_noise**2)
@@ -538,7 +538,7 @@ class Floor:
         """
         conditioning, s = self.rows.conditioning, np.asarray(1j * omega, dtype=np.complex128)
         moving, _ = delays(self.rows, self.hypothesis)
-        transfers = of_motion(self.hypothesis, self.layout.owners, omega)
+        transfers = noise_transfers(self.hypothesis, self.layout.owners, omega)
         kinetic = sum(self.theta[place] * transfer for place, transfer in transfers.items())
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         shift = self.theta[BASE.index(MISALIGNMENT)]
@@ -557,7 +557,7 @@ class Floor:
         count, length = windows.shape
         period = smooth.stride * smooth.sample_period
         omega = np.pi / period * np.arange(length // 2 + 1) / max(length // 2, 1)
-        white, lines = self._behind_filter(omega) / smooth.stride
+        white, lines = self._densities(omega) / smooth.stride
         read = np.flatnonzero(white > HEARD * white.max())
         read = read[read >= LOWEST]
         if not count or read.size < LOWEST:
