@@ -95,10 +95,10 @@ class Uncertain:
 
 def uncertain(fitted: Fit) -> Uncertain:
     """Free numbers of a fit with their covariance; where not all rows are determined, as in a robust search."""
-    slots = _free_shapes(fitted)
-    covariance, reach = _by_residual(fitted, slots)
-    place = fitted.theta.size
-    covariance[place:, place:] += np.diag(_known(fitted, slots) ** 2)
+    slots, place = _free_shapes(fitted), fitted.theta.size
+    known = _known(fitted, slots)
+    covariance, reach = _by_residual(fitted, slots, known)
+    covariance[place:, place:] += np.diag(known**2)
     for index, term in enumerate(fitted.terms):
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
         if own and isinstance(term.effect, Contact):
@@ -110,17 +110,19 @@ def uncertain(fitted: Fit) -> Uncertain:
     return Uncertain(fitted, np.concatenate([fitted.theta, shapes]), covariance, reach, slots)
 
 
-def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> tuple[Array, float]:
+def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) -> tuple[Array, float]:
     """Covariance (p + s, p + s) from the residual, what stands above noise included, and the reach of intervals."""
-    conditioning = fitted.rows.conditioning
-    jacobian, weight = _jacobian(fitted.rows, fitted, slots), _weight(fitted)
+    conditioning, jacobian = fitted.rows.conditioning, _jacobian(fitted.rows, fitted, slots)
+    weight = np.ones(fitted.left.size)
+    if not fitted.determined.all():  # a row that leaves more than noise counts less and less
+        weight = 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
     noise = np.pad(fitted.layout.noise, (0, len(slots)))
     numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
     edges = block_edges(fitted.time, conditioning.filter.width)
     count = np.diff(edges)
     scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers)
-    shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots), (fitted.theta.size, 0))
+    shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots, known), (fitted.theta.size, 0))
     both = np.ix_(shown, shown)
     inverse = np.zeros(noise.shape)
     inverse[both] = solved(((jacobian.T * weight) @ jacobian)[both], numbers[shown], count.sum() * noise[both])[1]
@@ -131,19 +133,11 @@ def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> tuple[Array
     return covariance, reach
 
 
-def _weight(fitted: Fit) -> Array:
-    """Of the rows (m,): where not all are determined, one that leaves more than noise counts less and less."""
-    if fitted.determined.all():
-        return np.ones(fitted.rows.effort.size)
-    return 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
-
-
-def _least(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
+def _least(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) -> Array:
     """Norm of a shape's derivative (s,) below which noise hides it: of an instant that is known by itself; else 0.
 
     None shows one between rows that are not determined: it moves the impacts behind it, which are not there.
     """
-    known = _known(fitted, slots)
     instants = np.array([fitted.terms[index].effect.shapes[k].quantity.instant for index, k in slots], dtype=bool)
     least = np.divide(fitted.floor, known, out=np.zeros(known.size), where=instants & (known > 0.0))
     after = np.clip(np.searchsorted(fitted.time, [fitted.terms[i].shape[k] for i, k in slots]), 1, fitted.time.size - 1)
