@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -274,17 +274,17 @@ class Rows:
         spread = [np.zeros((targets.shape[1], part.used.size)) for part in self.stretches]
         for part, whole, chosen in zip(self.stretches, spread, own, strict=True):
             whole[:, part.places] = chosen
-        back: dict[tuple[int, int], Array] = {}
 
-        def product(number: int, values: Array, order: int) -> Array:
-            if (number, order) not in back:
-                back[number, order] = smooth.backwards(spread[number], values.size, order, lag)
-            return back[number, order] @ values
+        @cache
+        def back(number: int, size: int, order: int) -> Array:
+            return smooth.backwards(spread[number], size, order, lag)
 
         def products(columns: Callable[[Signals], Sequence[Column]]) -> Array:
-            tables = enumerate(columns(part.signals) for part in self.stretches)
-            parts = [[np.sum([product(at, *t) for t in column], axis=0) for column in table] for at, table in tables]
-            return np.sum(np.array(parts), axis=0)
+            found = []
+            for number, part in enumerate(self.stretches):
+                terms = [[back(number, s.size, order) @ s for s, order in each] for each in columns(part.signals)]
+                found.append([np.sum(column, axis=0) for column in terms])
+            return np.sum(np.array(found), axis=0)
 
         return products
 
