@@ -306,28 +306,18 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
     gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
     noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = conditioning.effort_noise**2 * gain
     omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
-    transfers = noise_transfers(hypothesis, owners, omega)
-    places, spectra = list(transfers), np.stack(list(transfers.values()))
-    weight = conditioning.source_power(omega) * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
-    weight *= omega ** (2 * order) * (1.0 + (omega * moving) ** 2)
-    noise[np.ix_(places, places)] = (omega[1] - omega[0]) * ((spectra * weight) @ spectra.conj().T).real
-    return noise
-
-
-def noise_transfers(
-    hypothesis: Hypothesis, owners: NDArray[np.object_], omega: Array
-) -> dict[int, NDArray[np.complex128]]:
-    """Transfer from speed to columns at angular frequencies - rad/s (k,) -, by the places that these stand at: (k,).
-
-    All of them less the speed's own factor, (1j*omega)**order*(1 + 1j*omega*moving).
-    """
+    # all of them less the speed's own factor, (1j * omega) ** order * (1.0 + 1j * omega * moving)
     s = np.asarray(1j * omega, dtype=np.complex128)
     transfers = {BASE.index(INERTIA): s, BASE.index(VISCOUS): np.ones_like(s)}
     for index, term in enumerate(hypothesis.terms):
         if isinstance(term.effect, Coupling):
             place = int(np.flatnonzero(owners == index)[0])
             transfers[place] = s * term.effect.noise_of_motion(term.shape, omega)
-    return transfers
+    places, spectra = list(transfers), np.stack(list(transfers.values()))
+    weight = conditioning.source_power(omega) * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
+    weight *= omega ** (2 * order) * (1.0 + (omega * moving) ** 2)
+    noise[np.ix_(places, places)] = (omega[1] - omega[0]) * ((spectra * weight) @ spectra.conj().T).real
+    return noise
 
 
 def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:

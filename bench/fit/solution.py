@@ -35,7 +35,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
-from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out, noise_transfers
+from bench.effects.effect import Coupling
+from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out
 from bench.fit.rows import ONE_WAY, Rows
 
 #: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
@@ -536,13 +537,17 @@ class Floor:
             omega: angular frequencies - rad/s (k,).
             source: power there of the noise of the signal that speed is taken from - its unit squared (..., k).
         """
-        conditioning, s = self.rows.conditioning, np.asarray(1j * omega, dtype=np.complex128)
+        conditioning, theta, owners = self.rows.conditioning, self.theta, self.layout.owners
         moving, _ = delays(self.rows, self.hypothesis)
-        transfers = noise_transfers(self.hypothesis, self.layout.owners, omega)
-        kinetic = sum(self.theta[place] * transfer for place, transfer in transfers.items())
+        s = np.asarray(1j * omega, dtype=np.complex128)
+        kinetic = theta[BASE.index(INERTIA)] * s + theta[BASE.index(VISCOUS)]
+        for index, term in enumerate(self.hypothesis.terms):
+            if isinstance(term.effect, Coupling):
+                transfer = term.effect.noise_of_motion(term.shape, omega)
+                kinetic = kinetic + theta[owners == index][0] * s * transfer
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
-        shift = self.theta[BASE.index(MISALIGNMENT)]
-        effort = conditioning.effort_noise**2 * _square((1.0 + shift * s) * (1.0 + effort_lag(self.hypothesis) * s))
+        late = (1.0 + theta[BASE.index(MISALIGNMENT)] * s) * (1.0 + effort_lag(self.hypothesis) * s)
+        effort = conditioning.effort_noise**2 * _square(late)
         rate = (1.0 + moving * s) * s
         both = 2.0 * conditioning.known_shared * (kinetic * rate.conj()).real
         known = conditioning.known_noise**2 * _square(rate)
