@@ -22,7 +22,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.effects.effect import Occasional
 from bench.fit.determined import INDEPENDENT_SHARE
 from bench.fit.fit import Fit
-from bench.fit.layout import lay_out
+from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 
 #: Share of a recording that is held out if there is no holdout recording.

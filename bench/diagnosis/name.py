@@ -21,10 +21,8 @@ from bench.effects.effect import Detected, Effect
 from bench.effects.present import Present
 from bench.effects.signals import Axis
 from bench.fit.estimate import load_inertia
-from bench.fit.fit import Fit, fit
+from bench.fit.fit import Fit, fit, hint, unbiased
 from bench.fit.quantities import uncertain
-from bench.fit.shapes import unbiased
-from bench.fit.systematic import hint
 from bench.parameter import Parameter
 
 

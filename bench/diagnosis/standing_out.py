@@ -8,9 +8,8 @@ import numpy as np
 
 from bench.diagnosis.policy import Policy
 from bench.effects.effect import Effect, Occasional, Standout
-from bench.fit.fit import Fit
+from bench.fit.fit import Fit, shaped
 from bench.fit.hypothesis import Term
-from bench.fit.shapes import shaped
 
 
 def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:
