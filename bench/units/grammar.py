@@ -107,13 +107,12 @@ COUNTS, ELECTRICAL = frozenset(_COUNTS.split()), frozenset(_ELECTRICAL.split())
 #: Characters of a unit; no recorder writes a longer one, nor higher powers. `kg*m**2/s**3/A**2` has 17.
 LONGEST, _HIGHEST, _LARGEST_POWER, _DEEPEST = 80, 9, 64, 6
 
-_POWER = r"\s*(?:\^|\*\*)\s*(?:\(\s*(?P<{0}>[+-]?\d+(?:[./]\d+)?)\s*\)|(?P<{0}_bare>[+-]?\d+(?:\.\d+)?)(?![\d.,]))"
 _TOKEN = re.compile(
     r"\s*(?:"
     r"(?P<root>sqrt\s*\(\s*(?P<radicand>\d+(?:\.\d+)?)\s*\))"
-    rf"|(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)(?:{_POWER.format('raised')})?"
-    rf"|(?P<name>[^\W\d]+|%)(?:{_POWER.format('power')}|\((?P<inside>[+-]?\d)\)|(?P<exponent>[+-]?\d)(?![\d.,]))?"
-    rf"|(?P<close>\))(?:{_POWER.format('outer')})?"
+    r"|(?:(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]+|%)|(?P<close>\)))"
+    r"(?:\s*(?:\^|\*\*)\s*(?P<power>\(\s*[+-]?\d+(?:[./]\d+)?\s*\)|[+-]?\d+(?:\.\d+)?(?![\d.,]))"
+    r"|(?<=[^\W\d]|%)(?P<exponent>\([+-]?\d\)|[+-]?\d(?![\d.,])))?"
     r"|(?P<operator>[*/(])"
     r"|(?P<joint>(?<=[^\W\d])[-.](?=[^\W\d]))"
     r")"
@@ -217,33 +216,29 @@ def parse_unit(text: str, wanted: tuple[str, ...] = ()) -> UnitProduct:
 
 def _add(match: re.Match[str], groups: list[UnitProduct], text: str, wanted: tuple[str, ...]) -> None:
     """Take one token into the innermost group."""
+    above, _, below = (match["power"] or match["exponent"] or "1").strip("()").partition("/")
+    exponent = float(above) / float(below or 1)
     if match["operator"] == "(":
         groups.append(UnitProduct())
         if len(groups) > _DEEPEST:
             raise ValueError("brackets in one another")
     elif match["close"]:
         inner = groups.pop()
-        groups[-1].take(inner.factor, inner.powers, _exponent(match["outer"] or match["outer_bare"]))
+        groups[-1].take(inner.factor, inner.powers, exponent)
     elif match["operator"] or match["joint"]:
         groups[-1].sign = -1 if match["operator"] == "/" else 1
     elif match["name"]:
         named = _named(match["name"], text, wanted)
-        exponent = _exponent(match["power"] or match["power_bare"] or match["inside"] or match["exponent"])
         if len(named.powers) > 1 and abs(exponent) > 1:
             raise ValueError(f"of which of {', '.join(named.powers)} it is the power")
         groups[-1].take(named.factor, named.powers, exponent)
     elif match["root"]:
         groups[-1].take(math.sqrt(float(match["radicand"])), {}, 1.0)
     else:
-        number, power = float(match["number"].replace(",", ".")), _exponent(match["raised"] or match["raised_bare"])
-        if abs(power) > _LARGEST_POWER or number == 0.0:
+        number = float(match["number"].replace(",", "."))
+        if abs(exponent) > _LARGEST_POWER or number == 0.0:
             raise ValueError("a number that is none")
-        groups[-1].take(number, {}, power)
-
-
-def _exponent(text: str | None) -> float:
-    above, _, below = (text or "1").partition("/")
-    return float(above) / float(below or 1)
+        groups[-1].take(number, {}, exponent)
 
 
 def _named(name: str, text: str, wanted: tuple[str, ...]) -> UnitProduct:
