@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -327,17 +326,19 @@ def likely_signals(channels: Sequence[Channel]) -> dict[int, Guess]:
 
 def _with_time_unit(given: dict[int, Guess], channels: Sequence[Channel]) -> dict[int, Guess]:
     """A time without a unit takes the one in which position and velocity, both with theirs, agree."""
-    of = {guess.signal: (place, guess) for place, guess in given.items()}
+    of = {guess.signal: place for place, guess in given.items()}
     if not {"time", "position", "velocity"} <= set(of):
         return given
-    place, time = of["time"]
+    place, time = of["time"], given[of["time"]]
     if time.unit is not None or channels[place].moments:
         return given
-    angle, speed = (_in_si(channels[of[name][0]], of[name][1]) for name in ("position", "velocity"))
-    ticks = channels[place].values[:ENOUGH]
-    if angle is None or speed is None or not angle.size == speed.size == ticks.size:
-        return given
-    unit = time_unit(ticks, angle, speed)
+    ticks, moved = channels[place].values[:ENOUGH], []
+    for name in ("position", "velocity"):
+        values, unit = channels[of[name]].values[:ENOUGH], given[of[name]].unit
+        if unit is None or values.size != ticks.size:
+            return given
+        moved.append(values * scale_of(unit, wanted_units(name)).factor)
+    unit = time_unit(ticks, *moved)
     if unit is None:
         return given
     return {**given, place: replace(time, unit=unit, why=(*time.why, f"position and velocity agree in {unit}"))}
@@ -351,13 +352,6 @@ def time_unit(ticks: Array, position: Array, velocity: Array) -> str | None:
     power = float(travelled[plain] @ travelled[plain])
     second = float(travelled[plain] @ step[plain]) / power if power > 0.0 else 0.0
     return next((unit for unit, factor in TIMES.items() if abs(second / factor - 1.0) < AGREEMENT), None)
-
-
-def _in_si(channel: Channel, guess: Guess) -> Array | None:
-    with suppress(UnitError):
-        if guess.unit is not None:
-            return channel.values[:ENOUGH] * scale_of(guess.unit, wanted_units(guess.signal)).factor
-    return None
 
 
 def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Guess]:

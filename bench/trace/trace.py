@@ -309,11 +309,10 @@ def join(traces: Sequence[Trace]) -> Trace:
     names = [name for name in first.signals if all(name in trace for trace in traces)]
     left_out = sorted({name for trace in traces for name in trace.signals} - set(names))
     sampled = [_sampled(trace, names, period) for trace in traces]
-    times, starts, begin = [], [], float(first.time[0])
+    times, starts = [], [float(first.time[0])]
     for time, _ in sampled:
-        starts.append(begin)
-        times.append(begin + (time - time[0]))
-        begin = float(times[-1][-1]) + APART * period
+        times.append(starts[-1] + (time - time[0]))
+        starts.append(float(times[-1][-1]) + APART * period)
     return Trace(
         time=np.concatenate(times),
         signals={name: np.concatenate([signals[name] for _, signals in sampled]) for name in names},
@@ -326,7 +325,7 @@ def join(traces: Sequence[Trace]) -> Trace:
             *(f"{trace.origin} taken every {period:g} s, as others are" for trace in traces if _apart(trace, period)),
             *([f"{', '.join(left_out)}: left out, not every recording holds it"] if left_out else []),
         ),
-        joined=tuple(zip(starts, (trace.origin for trace in traces), strict=True)),
+        joined=tuple(zip(starts, (trace.origin for trace in traces), strict=False)),
     )
 
 
@@ -351,11 +350,12 @@ def _sampled(trace: Trace, names: Sequence[str], period: float) -> tuple[Array, 
     """Times and signals of a recording at a sample period, stretch by stretch; as they are where it has that period."""
     if not _apart(trace, period):
         return trace.time, {name: trace[name] for name in names}
-    times: list[Array] = []
-    signals: dict[str, list[Array]] = {name: [] for name in names}
+    placed = []
     for part in trace.segments:
-        time = trace.time[part]
-        times.append(time[0] + period * np.arange(int((time[-1] - time[0]) / period * (1.0 + 1e-12)) + 1))
-        for name in names:
-            signals[name].append(interpolate(times[-1], time, trace[name][part]))
-    return np.concatenate(times), {name: np.concatenate(values) for name, values in signals.items()}
+        start, stop = trace.time[part][[0, -1]]
+        placed.append((part, start + period * np.arange(int((stop - start) / period * (1.0 + 1e-12)) + 1)))
+    signals = {
+        name: np.concatenate([interpolate(at, trace.time[part], trace[name][part]) for part, at in placed])
+        for name in names
+    }
+    return np.concatenate([at for _, at in placed]), signals
