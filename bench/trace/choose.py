@@ -11,8 +11,8 @@ import numpy as np
 from bench.errors import InputError
 from bench.names import nearest, short
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of
-from bench.units.conversion import UnitScale
+from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of, wanted_units
+from bench.units.conversion import UnitScale, scale_or_none
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
@@ -184,7 +184,8 @@ def _signal(
     stated = unit_of(unit or channel.unit)
     usual = recording.usual_units.get(signal) if stated is None and not channel.moments else None
     scale = _scale(signal, channel, stated or usual)
-    if named and not channel.moments and None not in (unit, own) and not _means(str(own), signal, scale):
+    contrary = own is not None and scale_or_none(own, wanted_units(signal)) != scale
+    if named and unit is not None and not channel.moments and contrary:
         notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
     return SignalColumn(channel, scale, sign, usual)
 
@@ -200,14 +201,6 @@ def _scale(signal: str, channel: Channel, unit: str | None) -> UnitScale:
         return scale_in(signal, unit, channel.place())
     except InputError as error:
         raise InputError(error.where, error.found, f"{error.allowed}; {line} says which") from error
-
-
-def _means(unit: str, signal: str, scale: UnitScale) -> bool:
-    """Whether a signal's unit is worth as much; what is no unit of it is not."""
-    try:
-        return scale_in(signal, unit, "") == scale
-    except InputError:
-        return False
 
 
 def _named(recording: Recording, signal: str, name: str) -> Channel | None:
@@ -238,10 +231,10 @@ def _differ(signal: str, one: Channel, other: Channel) -> bool:
     """Whether two columns of one signal are two signals; where one of them cannot be read, the other is it."""
     if other is one or signal == "time" or {one.defect, other.defect} != {None} or one.values.size != other.values.size:
         return False
-    try:
-        ours, theirs = (c.values * scale_in(signal, c.unit or "", "").factor for c in (one, other))
-    except InputError:
+    scale, scale_too = (scale_or_none(channel.unit or "", wanted_units(signal)) for channel in (one, other))
+    if scale is None or scale_too is None:
         return False
+    ours, theirs = one.values * scale.factor, other.values * scale_too.factor
     both = np.isfinite(ours) & np.isfinite(theirs)
     return bool(both.any()) and float(np.std((ours - theirs)[both])) > SAME * float(np.std(ours[both]))
 

@@ -274,7 +274,16 @@ class Motion:
 
 def motion(trace: Trace, effort: Array, conditioning: Conditioning) -> Motion:
     """Filter a recording; stretches shorter than the filter's two margins are left out."""
-    parts = [_filtered(trace, effort, conditioning, block) for block in _blocks(trace, conditioning)]
+    smooth, order = conditioning.filter, conditioning.order
+    parts = []
+    for block in _blocks(trace, conditioning):
+        source, torque = trace[conditioning.source][block], effort[block]
+        speed = raw_speed(source, conditioning.source, trace.sample_period)
+        sign = known_sign(speed, conditioning.sign_threshold)  # of raw samples, and filtered as they are
+        made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
+        rows = smooth.columns([[term] for term in made])
+        rows[-1][np.abs(rows[-1]) < 1.0 - ONE_SIGN] = 0.0
+        parts.append((trace.time[block][smooth.margin : source.size - smooth.margin : smooth.stride], *rows))
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)] if parts else [np.empty(0)] * 6
     return Motion(*columns, conditioning=conditioning)
 
@@ -286,21 +295,6 @@ def _blocks(trace: Trace, conditioning: Conditioning) -> Iterator[slice]:
     for segment in trace.segments:
         for start in range(segment.start, segment.stop - 2 * margin, step):
             yield slice(start, min(start + step + 2 * margin, segment.stop))
-
-
-def _filtered(trace: Trace, effort: Array, conditioning: Conditioning, block: slice) -> tuple[Array, ...]:
-    """Columns of one block: products and signs are formed on raw samples and filtered afterwards."""
-    smooth, order = conditioning.filter, conditioning.order
-    source = trace[conditioning.source][block]
-    speed = raw_speed(source, conditioning.source, trace.sample_period)
-    sign = known_sign(speed, conditioning.sign_threshold)
-    torque = effort[block]
-    made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
-    rows = smooth.columns([[term] for term in made])
-    direction = rows[-1]
-    direction[np.abs(direction) < 1.0 - ONE_SIGN] = 0.0
-    time = trace.time[block][smooth.margin : (block.stop - block.start) - smooth.margin : smooth.stride]
-    return time, *rows
 
 
 def known_column(trace: Trace, part: slice) -> Column:

@@ -111,12 +111,12 @@ def _read_numpy(source: Source) -> Recording:
         loaded = np.load(BytesIO(source.content), allow_pickle=False)
         lone = isinstance(loaded, np.ndarray)
         arrays = {"": loaded} if lone else {name: _array(loaded, name) for name in loaded.files}
-    texts = [one for one in arrays.values() if one is not None and one.dtype.kind == "U" and one.ndim == 1]
+    texts = [one for one in arrays.values() if one.dtype.kind == "U" and one.ndim == 1]
     names = {one.size: [str(text) for text in one] for one in texts}
     for name, value in arrays.items():
         if is_samples(value):
             channels.extend(channels_of(name, value, source.path, names=names))
-        elif value is not None and value.ndim == 0:
+        elif value.ndim == 0:
             metadata[name] = str(value)
     if lone and loaded.dtype.names is None:
         channels = [replace(channel, name=f"column {number}") for number, channel in enumerate(channels, 1)]

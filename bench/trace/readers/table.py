@@ -23,8 +23,7 @@ from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.arrow import channels_of_table, compute, floats, seconds, speaks_of_moment
 from bench.trace.signals import signal_of, unit_of
 from bench.trace.source import FileFormat, Source, decode, no_samples, utf8
-from bench.units.conversion import is_unit, scale_of
-from bench.units.grammar import UnitError
+from bench.units.conversion import is_unit, scale_or_none
 
 BLANKS = " "
 SEPARATORS = ("\t", ";", ",", BLANKS)
@@ -368,10 +367,7 @@ def _may_be_time(label: str) -> bool:
     name, unit = split_label(label)
     if signal_of(name) not in (None, "time"):
         return False
-    try:
-        return unit_of(unit) is None or scale_of(str(unit), ("s",)) is not None
-    except UnitError:
-        return False
+    return unit_of(unit) is None or scale_or_none(str(unit), ("s",)) is not None
 
 
 def _separator(shown: list[str]) -> tuple[str, int]:
