@@ -53,9 +53,13 @@ def recording_of(
         found = "found a column of it and a sample_period" if timed else "found no column of it and no sample_period"
         raise InputError(f"{origin}: time", found, "allowed: one of them")
     if sample_period is not None:
+        where = f"{origin}: sample_period"
+        period = parse(sample_period, "s", where) if isinstance(sample_period, str) else float(sample_period)
+        if not (math.isfinite(period) and period > 0.0):
+            allowed = "allowed: a positive time, in s where no unit is stated"
+            raise InputError(where, f"found {sample_period}", allowed)
         samples = max((channel.values.size for channel in channels), default=0)
-        times = np.arange(samples, dtype=np.float64) * _period(sample_period, origin)
-        channels.append(Channel("time", "s", times, origin))
+        channels.append(Channel("time", "s", np.arange(samples, dtype=np.float64) * period, origin))
     return Recording(tuple(channels), FORMAT, origin)
 
 
@@ -106,11 +110,3 @@ def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> N
             usual = "s" if signal == "time" else SI_UNITS[signal][0]
             allowed = f'allowed: units={{"{channel.name}": "{usual}"}} or another unit of it'
             raise InputError(f"{channel.origin}: {channel.name}", "has no unit", allowed)
-
-
-def _period(given: float | str, origin: str) -> float:
-    where = f"{origin}: sample_period"
-    period = parse(given, "s", where) if isinstance(given, str) else float(given)
-    if not (math.isfinite(period) and period > 0.0):
-        raise InputError(where, f"found {given}", "allowed: a positive time, in s where no unit is stated")
-    return period

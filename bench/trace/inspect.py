@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -199,14 +199,14 @@ def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
     except InputError as error:
         if how.columns:
             raise
-        columns = _columns(recording, {}, how)
+        columns = tuple(_columns(recording, {}, how))
         return Inspection(origin, kind, columns, axes, str(error), metadata=dict(metadata), notes=recording.notes)
     assert trace.time_base is not None  # a trace that was read has one
     base = asdict(trace.time_base)
     return Inspection(
         origin=origin,
         format=kind,
-        columns=_columns(recording, chosen, how),
+        columns=tuple(_columns(recording, chosen, how)),
         axes=axes,
         asks=None,
         samples=len(trace),
@@ -243,37 +243,33 @@ def _resolution(values: Array) -> float | None:
     return float(steps.min()) if steps.size else None
 
 
-def _columns(
-    recording: Recording, chosen: Mapping[str, SignalColumn], how: ReadingOptions
-) -> tuple[ColumnSummary, ...]:
+def _columns(recording: Recording, chosen: Mapping[str, SignalColumn], how: ReadingOptions) -> Iterator[ColumnSummary]:
     """Every column of the axis in numbers, with what it is read as or likely to be."""
     channels = of_axis(recording, how.axis)
     read = {id(choice.channel): signal for signal, choice in chosen.items()}
-    guesses = {place: guess for place, guess in likely_signals(channels).items() if guess.signal not in chosen}
-    return tuple(_column(channel, read.get(id(channel)), guesses.get(place)) for place, channel in enumerate(channels))
-
-
-def _column(channel: Channel, read: str | None, guess: Guess | None) -> ColumnSummary:
-    numbers = channel.values[np.isfinite(channel.values)]
-    signal, why, suggestion = read, (), None
-    if read is None and guess is not None:
-        unit = "" if channel.moments else f" [{guess.unit or '?'}]"  # of which only the user knows it
-        signal, why = guess.signal, guess.why
-        suggestion = f"{signal} = {json.dumps(channel.name + unit, ensure_ascii=False)}"
-    return ColumnSummary(
-        name=channel.name,
-        unit=channel.unit,
-        axis=channel.axis,
-        count=int(numbers.size),
-        minimum=float(numbers.min()) if numbers.size else None,
-        maximum=float(numbers.max()) if numbers.size else None,
-        resolution=_resolution(numbers),
-        rate=_rate(channel),
-        signal=signal,
-        read=read is not None,
-        why=why if channel.defect is None else (str(channel.defect.found),),
-        suggestion=suggestion,
-    )
+    guesses = likely_signals(channels)
+    for place, channel in enumerate(channels):
+        numbers = channel.values[np.isfinite(channel.values)]
+        signal, why, suggestion = read.get(id(channel)), (), None
+        guess = guesses.get(place)
+        if signal is None and guess is not None and guess.signal not in chosen:
+            unit = "" if channel.moments else f" [{guess.unit or '?'}]"  # of which only the user knows it
+            signal, why = guess.signal, guess.why
+            suggestion = f"{signal} = {json.dumps(channel.name + unit, ensure_ascii=False)}"
+        yield ColumnSummary(
+            name=channel.name,
+            unit=channel.unit,
+            axis=channel.axis,
+            count=int(numbers.size),
+            minimum=float(numbers.min()) if numbers.size else None,
+            maximum=float(numbers.max()) if numbers.size else None,
+            resolution=_resolution(numbers),
+            rate=_rate(channel),
+            signal=signal,
+            read=id(channel) in read,
+            why=why if channel.defect is None else (str(channel.defect.found),),
+            suggestion=suggestion,
+        )
 
 
 def _rate(channel: Channel) -> float | None:

@@ -237,9 +237,10 @@ def _find(clock: Clock, duplicates: int) -> _RegularTimes:
     time = clock.time
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} different times", "allowed: at least two")
-    exact = _exact(time)
-    if exact is not None:
-        return _RegularTimes(time, None, TimeBase(*exact, duplicates=duplicates))
+    period = float(time[-1] - time[0]) / (time.size - 1)
+    spread = float(np.ptp(time - period * np.arange(time.size))) / period
+    if spread <= EXACT:
+        return _RegularTimes(time, None, TimeBase(period, spread, duplicates=duplicates))
     step = np.diff(time)
     period = float(np.median(step))
     contiguous = step[step <= LONGEST_STEP * period]
@@ -267,16 +268,6 @@ def _find(clock: Clock, duplicates: int) -> _RegularTimes:
     measured = np.concatenate([np.isin(all_of, count) for all_of, count in zip(every, counts, strict=True)])
     placed = [start + line * all_of for start, all_of in zip(starts, every, strict=True)]
     return _RegularTimes(np.concatenate(placed), None if measured.all() else measured, found)
-
-
-def _exact(time: Array) -> tuple[float, float] | None:
-    """Period - s - and jitter - share of it - of times that follow one line through their ends exactly; None if not."""
-    period = float(time[-1] - time[0]) / (time.size - 1)
-    off = np.arange(time.size, dtype=np.float64)
-    off *= -period
-    off += time
-    spread = float(off.max() - off.min()) / period
-    return (period, spread) if spread <= EXACT else None
 
 
 def _line(segments: list[Array], counts: list[Array], guess: float) -> tuple[float, list[float], float]:
