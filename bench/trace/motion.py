@@ -5,7 +5,7 @@ The filter is chosen from the recording itself: source of speed, noise, cut-off.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -32,8 +32,6 @@ ENOUGH, PIECE = 2**17, 2**13
 #: Share of the fastest stretch's RMS speed above which a stretch moves. Where the axis stands, coarse signals hide
 #: their noise and effort is unrelated to motion.
 MOVES = 0.1
-#: Samples filtered at once, margins included: long enough that these cost little, short enough for the cache.
-BLOCK = 2**15
 #: A filtered sign further than this from +-1 has seen speeds of the other sign, or of none.
 ONE_SIGN = 1e-3
 
@@ -276,25 +274,17 @@ def motion(trace: Trace, effort: Array, conditioning: Conditioning) -> Motion:
     """Filter a recording; stretches shorter than the filter's two margins are left out."""
     smooth, order = conditioning.filter, conditioning.order
     parts = []
-    for block in _blocks(trace, conditioning):
-        source, torque = trace[conditioning.source][block], effort[block]
-        speed = raw_speed(source, conditioning.source, trace.sample_period)
-        sign = known_sign(speed, conditioning.sign_threshold)  # of raw samples, and filtered as they are
-        made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
-        rows = smooth.columns([[term] for term in made])
-        rows[-1][np.abs(rows[-1]) < 1.0 - ONE_SIGN] = 0.0
-        parts.append((trace.time[block][smooth.margin : source.size - smooth.margin : smooth.stride], *rows))
+    for part in trace.segments:
+        source, torque = trace[conditioning.source][part], effort[part]
+        if source.size > 2 * smooth.margin:
+            speed = raw_speed(source, conditioning.source, trace.sample_period)
+            sign = known_sign(speed, conditioning.sign_threshold)
+            made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
+            rows = smooth.columns([[term] for term in made])
+            rows[-1][np.abs(rows[-1]) < 1.0 - ONE_SIGN] = 0.0
+            parts.append((trace.time[part][smooth.margin : source.size - smooth.margin : smooth.stride], *rows))
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)] if parts else [np.empty(0)] * 6
     return Motion(*columns, conditioning=conditioning)
-
-
-def _blocks(trace: Trace, conditioning: Conditioning) -> Iterator[slice]:
-    """Blocks of each segment, overlapping by two margins so that their rows join without a gap."""
-    margin = conditioning.filter.margin
-    step = BLOCK - 2 * margin if 4 * margin < BLOCK else BLOCK
-    for segment in trace.segments:
-        for start in range(segment.start, segment.stop - 2 * margin, step):
-            yield slice(start, min(start + step + 2 * margin, segment.stop))
 
 
 def known_column(trace: Trace, part: slice) -> Column:

@@ -118,11 +118,7 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
 
 
 def _without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock, Mapping[str, Array], int]:
-    """The clock and its signals without samples at a time already taken, and how many those were.
-
-    Raises:
-        InputError: time runs backwards, or more than 1 % of samples repeat a time with other values.
-    """
+    """The clock and its signals without samples at a time already taken, and how many those were."""
     time = clock.time
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} samples", "allowed: at least two")
@@ -219,12 +215,9 @@ def counted(count: int, what: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _RegularTimes:
-    """The regular time base found in a clock.
+    """Times of a clock, regular within each segment - s - (m,) -, which of them were measured, and what it was like.
 
-    Attributes:
-        time: regular within each segment - s - (m,).
-        measured: which of them are measured samples, in order - (m,); None: each is, unless it was resampled.
-        found: what the clock was like.
+    Measured is each where `measured` is None, unless it was resampled.
     """
 
     time: Array

@@ -228,12 +228,7 @@ def _variables(content: dict, prefix: str = "") -> Iterator[tuple[str, object]]:
 
 
 def _check_structure(content: bytes, where: str) -> None:
-    """Walk through all elements.
-
-    Raises:
-        ValueError: a type that is none, a length beyond the file, parts missing from a matrix, or cells in cells in ...
-        InputError: it expands to more than it may; names `where`.
-    """
+    """Walk through all elements; ValueError where they are damaged, InputError where they expand too far."""
     if content[126:128] not in (b"IM", b"MI"):
         raise ValueError("no byte order in the header")
     order = "<" if content[126:128] == b"IM" else ">"

@@ -213,12 +213,9 @@ def _arrow_table(text: bytes, kinds: Sequence[pa.DataType], layout: TableLayout,
 
 
 def parsed(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[pa.Table, int | None, tuple[str, ...]]:
-    """Columns as their kinds say, all as text where a cell is not as its kind; line of the first row; and notes.
+    """Columns as their kinds say, all as text where a cell is not as its kind; and what the user should know.
 
-    The line is None where not every line from there on is a row.
-
-    Raises:
-        InputError: a line with too few or too many cells, or a quote that is not closed.
+    Between them the line of the first row, None where not every line from there on is a row; raises as `read_lines`.
     """
     try:
         table = _arrow_table(text, [TYPES[kind] for kind in layout.kinds], layout, EMPTY)
