@@ -163,21 +163,18 @@ def _signal(
     recording: Recording, whole: Recording, signal: str, columns: Mapping[str, str], notes: list[str]
 ) -> SignalColumn | None:
     """The channel of a signal, by a column's name of the whole recording's; None where there is none."""
-    given = columns.get(signal)
-    channel, unit, sign = None, None, 1.0
+    given, named, unit = columns.get(signal), None, None
     if given is not None:
-        sign = -1.0 if given.strip().startswith("-") else 1.0
         name, unit = split_label(given.strip().removeprefix("-"))
-        channel = _named(recording, signal, name) or _named(whole, signal, name)
-    named = channel is not None
+        named = _named(recording, signal, name) or _named(whole, signal, name)
+    channel = named or _known(recording, signal)
     if channel is None:
-        channel, sign, unit = _known(recording, signal), 1.0, None
-        if channel is None and given is not None:
-            raise missing(recording, f"column '{given.strip().lstrip('-')}'")
-        if channel is None:
-            return None
         if given is not None:
-            notes.append(f"{signal} read from '{channel.label}', as the file has no '{given}'")
+            raise missing(recording, f"column '{given.strip().lstrip('-')}'")
+        return None
+    if named is None and given is not None:
+        notes.append(f"{signal} read from '{channel.label}', as the file has no '{given}'")
+        unit = None
     if channel.defect is not None:
         raise channel.defect
     own = unit_of(channel.unit)
@@ -185,9 +182,10 @@ def _signal(
     usual = recording.usual_units.get(signal) if stated is None and not channel.moments else None
     scale = _scale(signal, channel, stated or usual)
     contrary = own is not None and scale_or_none(own, wanted_units(signal)) != scale
-    if named and unit is not None and not channel.moments and contrary:
+    if named is not None and unit is not None and not channel.moments and contrary:
         notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
-    return SignalColumn(channel, scale, sign, usual)
+    inverted = named is not None and str(given).strip().startswith("-")
+    return SignalColumn(channel, scale, -1.0 if inverted else 1.0, usual)
 
 
 def _scale(signal: str, channel: Channel, unit: str | None) -> UnitScale:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -118,9 +118,9 @@ def read_lines(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[
     if not filled.all():
         first = first if filled[: filled.sum()].all() else None
         table = table.filter(pa.array(filled))
-    by_line = _joint_of_line(table, layout)
-    if by_line is not None:
-        return tuple(_of_joints(table, layout, path, *by_line)), notes
+    of_joints = _of_joints(table, layout, path)
+    if of_joints is not None:
+        return of_joints, notes
     unnamed = [label == f"column {number}" for number, label in enumerate(layout.labels, 1)]
     kept: list[Channel] = []
     for label, column, kind, plain in zip(layout.labels, table.columns, layout.kinds, unnamed, strict=True):
@@ -134,36 +134,35 @@ def read_lines(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[
     return tuple(kept), notes
 
 
-def _joint_of_line(table: pa.Table, layout: TableLayout) -> tuple[int, np.ndarray, list[str]] | None:
-    """Column that names the joint of each line, where they take turns: its place, which one (n,), and their names."""
-    for place, (label, column, kind) in enumerate(zip(layout.labels, table.columns, layout.kinds, strict=True)):
+def _of_joints(table: pa.Table, layout: TableLayout, path: str) -> tuple[Channel, ...] | None:
+    """Channels of joints that take turns in the lines, `joint.column` or `joint`, each with times of its own; else None.
+
+    A column of texts, or of such a name, tells the joint of each line.
+    """
+    columns = list(zip(layout.labels, table.columns, layout.kinds, strict=True))
+    for label, column, kind in columns:
         if kind == "text" or _NUMBERED.search(label):
             encoded = compute().dictionary_encode(column.combine_chunks())
             which = encoded.indices.fill_null(0).to_numpy(zero_copy_only=False)
             names = [f"{name:g}" if isinstance(name, float) else str(name) for name in encoded.dictionary.to_pylist()]
             turns = len(names)
-            if not 2 <= turns <= MOST_JOINTS or which.size < 4 * turns:
-                continue
-            again, other = which[turns:] == which[:-turns], which[turns:] != which[turns - 1 : -1]
-            if float(np.mean(again & other)) >= IN_TURN:
-                return place, which, names
-    return None
-
-
-def _of_joints(
-    table: pa.Table, layout: TableLayout, path: str, place: int, which: np.ndarray, names: Sequence[str]
-) -> Iterator[Channel]:
-    """Channels of each joint out of lines that are of one each, with times of their own: `joint.column`, or `joint`."""
-    kinds = zip(layout.labels, table.columns, layout.kinds, strict=True)
-    others = [(label, column) for k, (label, column, kind) in enumerate(kinds) if k != place and kind != "text"]
-    alone = sum(signal_of(split_label(label)[0]) != "time" for label, _ in others) == 1
+            if 2 <= turns <= MOST_JOINTS and which.size >= 4 * turns:
+                again, other = which[turns:] == which[:-turns], which[turns:] != which[turns - 1 : -1]
+                if float(np.mean(again & other)) >= IN_TURN:
+                    break
+    else:
+        return None
+    others = [(name, cells) for name, cells, kind in columns if cells is not column and kind != "text"]
+    alone = sum(signal_of(split_label(name)[0]) != "time" for name, _ in others) == 1
+    found: list[Channel] = []
     for k, joint in enumerate(names):
         own = pa.array(which == k)
-        channels = [channel_of_cells(label, cells.filter(own), layout.decimal, path, None) for label, cells in others]
+        channels = [channel_of_cells(name, cells.filter(own), layout.decimal, path, None) for name, cells in others]
         time = next((channel for channel in channels if signal_of(channel.name) == "time"), None)
         for channel in channels:
             if channel is not time:
-                yield replace(channel, name=joint if alone else f"{joint}.{channel.name}", time=time)
+                found.append(replace(channel, name=joint if alone else f"{joint}.{channel.name}", time=time))
+    return tuple(found)
 
 
 def as_lists(cells: pa.ChunkedArray) -> pa.ChunkedArray | None:
