@@ -135,7 +135,7 @@ def read_lines(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[
 
 
 def _of_joints(table: pa.Table, layout: TableLayout, path: str) -> tuple[Channel, ...] | None:
-    """Channels of joints that take turns in the lines, `joint.column` or `joint`, each with times of its own; else None.
+    """Channels of joints that take turns in the lines, `joint.column` or `joint`, with times of their own; else None.
 
     A column of texts, or of such a name, tells the joint of each line.
     """
@@ -159,9 +159,11 @@ def _of_joints(table: pa.Table, layout: TableLayout, path: str) -> tuple[Channel
         own = pa.array(which == k)
         channels = [channel_of_cells(name, cells.filter(own), layout.decimal, path, None) for name, cells in others]
         time = next((channel for channel in channels if signal_of(channel.name) == "time"), None)
-        for channel in channels:
-            if channel is not time:
-                found.append(replace(channel, name=joint if alone else f"{joint}.{channel.name}", time=time))
+        found += [
+            replace(channel, name=joint if alone else f"{joint}.{channel.name}", time=time)
+            for channel in channels
+            if channel is not time
+        ]
     return tuple(found)
 
 
