@@ -127,13 +127,11 @@ def of_axis(recording: Recording, axis: str | None) -> tuple[Channel, ...]:
         return tuple(channel for channel in recording.channels if channel.axis in (axis, None))
     parts = [channel for channel in recording.channels if axis.lower() in channel.name.lower().split(".")]
     if parts:
-        return (*parts, *(channel for channel in recording.channels if channel not in parts and _serves_all(channel)))
+        others = [channel for channel in recording.channels if channel not in parts]
+        times = [one for one in others if signal_of(one.name) == "time" or is_index(one.name) or "." not in one.name]
+        return (*parts, *times)
     found = f"no axis '{axis}'{nearest(axis, list(axes))}"
     raise InputError(recording.origin, found, f"found: {', '.join(axes) or 'one axis without a name'}")
-
-
-def _serves_all(channel: Channel) -> bool:
-    return signal_of(channel.name) == "time" or is_index(channel.name) or "." not in channel.name
 
 
 def axes_of(channels: Iterable[Channel]) -> tuple[str, ...]:

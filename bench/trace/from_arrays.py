@@ -68,7 +68,14 @@ def _channels(signals: Arrays, origin: str) -> Iterator[Channel]:
     if isinstance(signals, Mapping):
         found = (_channel(label, values, origin) for label, values in signals.items())
     else:
-        table = _table(signals, origin)
+        try:
+            table = pa.table(signals)
+        except TypeError as error:
+            allowed = "allowed: arrays by their names, or a data frame"
+            raise InputError(origin, f"found {type(signals).__name__}", allowed) from error
+        except pa.ArrowException as error:
+            said = f"the data frame cannot be read ({' '.join(str(error).split())})"
+            raise InputError(origin, said, "allowed: columns of one type each; drop the others") from error
         found = (channel_of(*column, origin) for column in zip(table.schema, table.columns, strict=True))
     return (replace(channel, values=channel.values.copy()) for channel in found)
 
@@ -85,18 +92,6 @@ def _channel(label: str, values: ArrayLike, origin: str) -> Channel:
     except (ValueError, pa.ArrowException):  # rows of different lengths; objects that Arrow has no type for
         found = "what is no number"
     return replace(channel, defect=InputError(channel.place(), f"found {found}", "allowed: one number a sample"))
-
-
-def _table(frame: ArrowStream, origin: str) -> pa.Table:
-    try:
-        return pa.table(frame)
-    except TypeError as error:
-        allowed = "allowed: arrays by their names, or a data frame"
-        raise InputError(origin, f"found {type(frame).__name__}", allowed) from error
-    except pa.ArrowException as error:
-        reason = " ".join(str(error).split())
-        found = f"the data frame cannot be read ({reason})"
-        raise InputError(origin, found, "allowed: columns of one type each; drop the others") from error
 
 
 def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> None:

@@ -136,16 +136,10 @@ class Inspection:
         columns: of the file, in its order.
         axes: of the file.
         asks: why the file cannot be read as it is, and what to write; None if it can.
-        samples: on the regular time base.
-        segments: stretches between holes.
+        samples, segments: on the regular time base, and its stretches between holes.
         start, duration: of the recording - s.
         rate: sample rate - Hz.
-        jitter: largest deviation of a step from whole sample periods - share of the period.
-        holes: (start, duration) of each - s.
-        duplicates: samples dropped because their time stood already in the recording.
-        interpolated: samples placed between measured ones.
-        resampled: whether jittering samples were interpolated onto regular times.
-        steps: between which four of five steps are, where they are not regular - s.
+        jitter, holes, duplicates, interpolated, resampled, steps: as of `bench.trace.time_base.TimeBase`.
         signals: in the order of `bench.trace.signals`.
         dropped: columns that are no known signal.
         metadata: what the file says about itself.

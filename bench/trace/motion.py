@@ -209,19 +209,17 @@ def _least_cutoff(signs: Sequence[Array], sample_period: float) -> float:
 
     A filter of width s loses 3.1*s at both ends of each run of one sign, where its reach spans a reversal.
     """
-    runs = np.concatenate([_runs(sign) for sign in signs]) * sample_period
+    found = []
+    for sign in signs:
+        edges = np.r_[0, np.flatnonzero(np.diff(sign) != 0.0) + 1, sign.size]
+        found.append(np.diff(edges)[sign[edges[:-1]] != 0.0])
+    runs = np.sort(np.concatenate(found)) * sample_period
     widths = LEAST_WIDTH * sample_period * 1.1 ** np.arange(80)
-    runs, lost = np.sort(runs), 2.0 * SIGN_REACH * widths
+    lost = 2.0 * SIGN_REACH * widths
     longer = np.searchsorted(runs, lost)
     kept = np.append(np.cumsum(runs[::-1])[::-1], 0.0)[longer] - lost * (runs.size - longer)
     widest = float(widths[np.flatnonzero(kept >= KEPT * kept[0])[-1]])
     return GaussianFilter(widest, sample_period).cutoff
-
-
-def _runs(sign: Array) -> NDArray[np.int64]:
-    """Samples of each run of one known sign."""
-    starts = np.r_[0, np.flatnonzero(np.diff(sign) != 0.0) + 1]
-    return np.diff(np.r_[starts, sign.size])[sign[starts] != 0.0]
 
 
 def _coherence(pairs: Sequence[tuple[Array, Array]], sample_period: float, order: int) -> tuple[Array, Array]:
