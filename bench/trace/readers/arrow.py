@@ -35,7 +35,7 @@ MOST_PLACES = 256
 _MOMENT = (
     r"^\s*(?:(?P<date>\d{1,4}[-./]\d{1,2}[-./]\d{1,4})[T ]+)?(?:(?P<hour>\d{1,2}):)?(?P<minute>\d{1,2}):"
     r"(?P<second>\d{2})(?:[.,:](?P<fraction>\d{1,12}))?\s*(?P<half>[AaPp]\.?[Mm]\.?)?\s*"
-    r"(?P<zone>Z|UTC|[+-]\d{2}:?\d{2})?\s*$"
+    r"(?:Z|UTC|(?P<zone>[+-])(?P<hours>\d{2}):?(?P<minutes>\d{2}))?\s*$"
 )
 _PATTERN = re.compile(_MOMENT)
 _DAY = 86400.0
@@ -204,10 +204,9 @@ def seconds(texts: pa.ChunkedArray | pa.Array) -> Array | None:
     part = {name: pc.struct_field(parts, name).fill_null("") for name in _PATTERN.groupindex}
     hour, half = _number(part["hour"]), np.char.upper(_words(part["half"]))
     hour = np.where(half == "", hour, hour % 12 + 12 * np.char.startswith(half, "P"))
-    names, which = np.unique(_words(part["zone"]), return_inverse=True)
-    ahead = np.array([_ahead(name) for name in names])[which]
+    ahead = 3600.0 * _number(part["hours"]) + 60.0 * _number(part["minutes"])  # of UTC
     clock = _number(part["minute"]) * 60.0 + _number(part["second"]) + _number(part["fraction"], "0.", "0")
-    clock = clock + 3600.0 * hour - ahead
+    clock = clock + 3600.0 * hour - np.where(_words(part["zone"]) == "-", -ahead, ahead)
     dates = _words(part["date"])[known]
     if (dates != "").all():
         _, first, which = np.unique(dates, return_index=True, return_inverse=True)
@@ -225,9 +224,3 @@ def _number(digits: pa.Array, before: str = "0", after: str = "") -> Array:
 
 def _words(texts: pa.Array) -> np.ndarray:
     return texts.to_numpy(zero_copy_only=False).astype(str)
-
-
-def _ahead(zone: str) -> float:
-    """Seconds by which the clock of a time zone is ahead of UTC."""
-    digits = zone.replace(":", "")
-    return float(f"{digits[0]}1") * (3600 * int(digits[1:3]) + 60 * int(digits[3:5])) if zone[:1] in ("+", "-") else 0.0
