@@ -187,9 +187,10 @@ def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
     """See `inspect`."""
     origin, kind, axes, metadata = recording.origin, recording.format, axes_of(recording.channels), recording.metadata
     try:
-        chosen, notes = choose(recording, how)
-        found = in_si(chosen, recording, how)
-        trace = on_time_base(found, recording, chosen, (*recording.notes, *notes))
+        chosen, assumed = choose(recording, how)
+        notes = [*recording.notes, *assumed]
+        sampled = in_si(chosen, recording, how, notes)
+        trace = on_time_base(sampled, chosen, recording, notes)
     except InputError as error:
         if how.columns:
             raise
@@ -210,7 +211,7 @@ def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
         rate=1.0 / base.pop("sample_period"),
         **base,
         signals=tuple(
-            _summary(name, trace.units[name], chosen[name].channel.label, values, found.signals[name].values)
+            _summary(name, trace.units[name], chosen[name].channel.label, values, sampled[name].values)
             for name, values in trace.signals.items()
         ),
         dropped=tuple(unused(chosen, recording)),

@@ -24,7 +24,7 @@ from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, choose, reading_options
-from bench.trace.in_si import InSI, in_si
+from bench.trace.in_si import SampledSignal, in_si
 from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
 from bench.trace.time_base import HOLE, TimeBase, interpolate, regular
 from bench.trace.wraps import Wraps
@@ -207,15 +207,16 @@ def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | N
             finite; times that run backwards or stand twice too often.
     """
     how = reading_options(given)
-    chosen, notes = choose(recording, how)
-    return on_time_base(in_si(chosen, recording, how), recording, chosen, (*recording.notes, *notes))
+    chosen, assumed = choose(recording, how)
+    notes = [*recording.notes, *assumed]
+    return on_time_base(in_si(chosen, recording, how, notes), chosen, recording, notes)
 
 
 def on_time_base(
-    found: InSI, recording: Recording, chosen: Mapping[str, SignalColumn], notes: tuple[str, ...]
+    sampled: Mapping[str, SampledSignal], chosen: Mapping[str, SignalColumn], recording: Recording, notes: Sequence[str]
 ) -> Trace:
-    """Trace of the signals `found` in the `chosen` columns of a recording; raises as `regular`."""
-    base = regular(found.signals)
+    """Trace of the signals `sampled` in the `chosen` columns of a recording; raises as `regular`."""
+    base = regular(sampled)
     metadata = {**recording.metadata, "format": recording.format}
     dropped = unused(chosen, recording)
     if dropped:
@@ -223,12 +224,12 @@ def on_time_base(
     return Trace(
         time=base.time,
         signals=base.signals,
-        units=found.units,
+        units={name: chosen[name].scale.unit for name in sampled},
         origin=recording.origin,
         metadata=metadata,
         time_base=base.time_base,
-        notes=(*notes, *found.notes, *base.notes),
-        wraps=found.wraps,
+        notes=(*notes, *base.notes),
+        wraps=sampled["position"].wraps if "position" in sampled else None,
     )
 
 

@@ -10,7 +10,7 @@ whether that was done: where the header names a scaling, the unit is open (Beckh
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
@@ -51,8 +51,8 @@ def _read(source: Source) -> Recording:
             exact = pa.types.is_decimal(column.type)
             time = (cells.values + (_first(column) - start)) / 1e4 if exact else cells.values
         elif number > 0:
-            channel = _described(name, number, header, source)
-            channels.append(_sampled(replace(channel, line=first), time, cells.values))
+            column = {row[0]: row[number] for row in header if len(row) > number}
+            channels.append(_channel(name, column, time, cells))
     return Recording(with_shared_times(channels), TWINCAT.format, source.path, _metadata(header))
 
 
@@ -95,33 +95,26 @@ def _first(column: pa.ChunkedArray) -> int:
     return int(next(iter(column.drop_null()[:1].to_pylist()), 0))
 
 
-def _described(name: str, number: int, header: list[list[str]], source: Source) -> Channel:
-    """The channel without its samples; its unit is open where the header names a scaling."""
-    column = {cells[0]: cells[number] for cells in header if len(cells) > number}
-    unit = column.get("Unit", "(None)")
-    scaling = [
-        f"{key} {column[key]}" for key, plain in _NO_SCALING.items() if column.get(key, plain) not in (plain, "")
-    ]
-    if not scaling:
-        return Channel(name, unit, np.empty(0), source.path)
+def _channel(name: str, head: Mapping[str, str], time: Array, cells: Channel) -> Channel:
+    """The channel of a column with its head's entries: samples where both time and value stand; one alone is a defect.
+
+    Its unit is open where the head names a scaling.
+    """
+    unit = head.get("Unit", "(None)")
+    scaling = [f"{key} {head[key]}" for key, plain in _NO_SCALING.items() if head.get(key, plain) not in (plain, "")]
     reason = f"has an open unit: the header names '{unit}' and {', '.join(scaling)}, not whether values are scaled"
-    return Channel(name, None, np.empty(0), source.path, open_unit=reason)
-
-
-def _sampled(channel: Channel, time: Array, values: Array) -> Channel:
-    """The channel with samples where both time and value stand; one without the other is a defect."""
+    every = replace(cells, name=name, unit=None if scaling else unit, open_unit=reason if scaling else None)
     present = ~np.isnan(time)
     rows = np.flatnonzero(present)
-    first = channel.line or 0
     gapless = rows.size > 0 and rows[-1] - rows[0] == rows.size - 1
-    line = first + int(rows[0]) if gapless else None
-    clock = Channel("time", "ms", time[present], channel.origin, line=line)
-    lonely = present != ~np.isnan(values)
+    line = (every.line or 0) + int(rows[0]) if gapless else None
+    lonely = present != ~np.isnan(every.values)
     defect = None
     if lonely.any():
-        place = channel.place(int(np.argmax(lonely)))
+        place = every.place(int(np.argmax(lonely)))
         defect = InputError(place, "found a time or a value alone", "allowed: both; the file may be truncated")
-    return replace(channel, values=values[present], line=line, time=clock, defect=defect)
+    clock = Channel("time", "ms", time[present], every.origin, line=line)
+    return replace(every, values=every.values[present], line=line, time=clock, defect=defect)
 
 
 def _metadata(header: list[list[str]]) -> dict[str, str]:
