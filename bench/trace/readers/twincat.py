@@ -51,8 +51,8 @@ def _read(source: Source) -> Recording:
             exact = pa.types.is_decimal(column.type)
             time = (cells.values + (_first(column) - start)) / 1e4 if exact else cells.values
         elif number > 0:
-            column = {row[0]: row[number] for row in header if len(row) > number}
-            channels.append(_channel(name, column, time, cells))
+            head = {row[0]: row[number] for row in header if len(row) > number}
+            channels.append(_channel(name, head, time, cells))
     return Recording(with_shared_times(channels), TWINCAT.format, source.path, _metadata(header))
 
 
@@ -102,8 +102,11 @@ def _channel(name: str, head: Mapping[str, str], time: Array, cells: Channel) ->
     """
     unit = head.get("Unit", "(None)")
     scaling = [f"{key} {head[key]}" for key, plain in _NO_SCALING.items() if head.get(key, plain) not in (plain, "")]
-    reason = f"has an open unit: the header names '{unit}' and {', '.join(scaling)}, not whether values are scaled"
-    every = replace(cells, name=name, unit=None if scaling else unit, open_unit=reason if scaling else None)
+    reason = None
+    if scaling:
+        reason = f"has an open unit: the header names '{unit}' and {', '.join(scaling)}, not whether values are scaled"
+        unit = None
+    every = Channel(name, unit, cells.values, cells.origin, line=cells.line, open_unit=reason)
     present = ~np.isnan(time)
     rows = np.flatnonzero(present)
     gapless = rows.size > 0 and rows[-1] - rows[0] == rows.size - 1
