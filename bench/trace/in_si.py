@@ -88,13 +88,13 @@ def in_si(
     _one_kind_of_axis(units, recording)
     if not units:
         raise missing(recording, "position or velocity", "map them in the rig's [trace.columns]")
-    clocks: dict[int, Clock] = {}
+    clocks: dict[Channel | None, Clock] = {}
     signals: dict[str, SampledSignal] = {}
     for name in units:
         channel = chosen[name].channel
-        if id(channel.time) not in clocks:
-            clocks[id(channel.time)] = _clock_of(channel, chosen.get("time"), how, notes)
-        clock, values = clocks[id(channel.time)], _values(chosen[name])
+        if channel.time not in clocks:
+            clocks[channel.time] = _clock_of(channel, chosen.get("time"), how, notes)
+        clock, values = clocks[channel.time], _values(chosen[name])
         if values.size != clock.time.size:
             allowed = f"allowed: {clock.time.size}, as its time has"
             raise InputError(channel.place(), f"found {values.size} values", allowed)

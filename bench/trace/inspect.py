@@ -241,12 +241,11 @@ def _resolution(values: Array) -> float | None:
 def _columns(recording: Recording, chosen: Mapping[str, SignalColumn], how: ReadingOptions) -> Iterator[ColumnSummary]:
     """Every column of the axis in numbers, with what it is read as or likely to be."""
     channels = of_axis(recording, how.axis)
-    read = {id(choice.channel): signal for signal, choice in chosen.items()}
+    read = {choice.channel: signal for signal, choice in chosen.items()}
     guesses = likely_signals(channels)
-    for place, channel in enumerate(channels):
+    for channel in channels:
         numbers = channel.values[np.isfinite(channel.values)]
-        signal, why, suggestion = read.get(id(channel)), (), None
-        guess = guesses.get(place)
+        signal, guess, why, suggestion = read.get(channel), guesses.get(channel), (), None
         if signal is None and guess is not None and guess.signal not in chosen:
             unit = "" if channel.moments else f" [{guess.unit or '?'}]"  # of which only the user knows it
             signal, why = guess.signal, guess.why
@@ -261,7 +260,7 @@ def _columns(recording: Recording, chosen: Mapping[str, SignalColumn], how: Read
             resolution=_resolution(numbers),
             rate=_rate(channel),
             signal=signal,
-            read=id(channel) in read,
+            read=channel in read,
             why=why if channel.defect is None else (str(channel.defect.found),),
             suggestion=suggestion,
         )
@@ -293,46 +292,42 @@ class Guess:
 
 
 @np.errstate(over="ignore", invalid="ignore")  # implausible magnitudes give no reasons
-def likely_signals(channels: Sequence[Channel]) -> dict[int, Guess]:
-    """What each channel is likely to be, by its place in the file; no two of an axis are the same signal."""
-    numeric = {
-        place: channel for place, channel in enumerate(channels) if channel.defect is None and channel.values.size > 1
-    }
-    times = [place for place, channel in numeric.items() if _rises(channel.values)]
-    derived = _derivatives({place: channel for place, channel in numeric.items() if place not in times})
+def likely_signals(channels: Sequence[Channel]) -> dict[Channel, Guess]:
+    """What each channel is likely to be; no two of an axis are the same signal."""
+    numeric = [channel for channel in channels if channel.defect is None and channel.values.size > 1]
+    times = {channel for channel in numeric if _rises(channel.values)}
+    derived = _derivatives([channel for channel in numeric if channel not in times])
     found = [
-        (guess, place)
-        for place, channel in numeric.items()
-        for guess in _guesses(channel, derived.get(place), place in times)
+        (guess, channel) for channel in numeric for guess in _guesses(channel, derived.get(channel), channel in times)
     ]
-    given: dict[int, Guess] = {}
+    given: dict[Channel, Guess] = {}
     taken: set[tuple[str, str | None]] = set()
-    for guess, place in sorted(found, key=lambda pair: -pair[0].weight):
-        key = (guess.signal, channels[place].axis)
-        if place not in given and key not in taken:
-            given[place] = guess
+    for guess, channel in sorted(found, key=lambda pair: -pair[0].weight):
+        key = (guess.signal, channel.axis)
+        if channel not in given and key not in taken:
+            given[channel] = guess
             taken.add(key)
-    return _with_time_unit(given, channels)
+    return _with_time_unit(given)
 
 
-def _with_time_unit(given: dict[int, Guess], channels: Sequence[Channel]) -> dict[int, Guess]:
+def _with_time_unit(given: dict[Channel, Guess]) -> dict[Channel, Guess]:
     """A time without a unit takes the one in which position and velocity, both with theirs, agree."""
-    of = {guess.signal: place for place, guess in given.items()}
+    of = {guess.signal: channel for channel, guess in given.items()}
     if not {"time", "position", "velocity"} <= set(of):
         return given
-    place, time = of["time"], given[of["time"]]
-    if time.unit is not None or channels[place].moments:
+    clock, time = of["time"], given[of["time"]]
+    if time.unit is not None or clock.moments:
         return given
-    ticks, moved = channels[place].values[:ENOUGH], []
+    ticks, moved = clock.values[:ENOUGH], []
     for name in ("position", "velocity"):
-        values, unit = channels[of[name]].values[:ENOUGH], given[of[name]].unit
+        values, unit = of[name].values[:ENOUGH], given[of[name]].unit
         if unit is None or values.size != ticks.size:
             return given
         moved.append(values * scale_of(unit, wanted_units(name)).factor)
     unit = time_unit(ticks, *moved)
     if unit is None:
         return given
-    return {**given, place: replace(time, unit=unit, why=(*time.why, f"position and velocity agree in {unit}"))}
+    return {**given, clock: replace(time, unit=unit, why=(*time.why, f"position and velocity agree in {unit}"))}
 
 
 def time_unit(ticks: Array, position: Array, velocity: Array) -> str | None:
@@ -413,17 +408,20 @@ def _rises(values: Array) -> bool:
     return steps.size > 0 and bool((steps >= 0).all()) and float(np.median(steps)) > 0.0
 
 
-def _derivatives(columns: Mapping[int, Channel]) -> dict[int, tuple[str, str]]:
-    """Place -> signal and reason, of pairs of which one is the other's derivative."""
-    found: dict[int, tuple[str, str]] = {}
-    long = {place: c for place, c in columns.items() if c.values.size >= 64 and not is_index(c.name)}
-    smooth = {place: _smoothed(np.nan_to_num(channel.values[:ENOUGH])) for place, channel in long.items()}
-    for place, channel in long.items():
+def _derivatives(columns: Sequence[Channel]) -> dict[Channel, tuple[str, str]]:
+    """Signal and reason of pairs of which one is the other's derivative."""
+    found: dict[Channel, tuple[str, str]] = {}
+    smooth = {
+        channel: _smoothed(np.nan_to_num(channel.values[:ENOUGH]))
+        for channel in columns
+        if channel.values.size >= 64 and not is_index(channel.name)
+    }
+    for channel in smooth:
         rate = _rate_of(channel.values[:ENOUGH])
-        for other, second in long.items() if rate.size else ():
-            alike = other != place and second.values.size == channel.values.size and second.axis == channel.axis
-            if alike and abs(correlation(rate, smooth[other])) > DERIVATIVE:
-                found[place] = ("position", f"its derivative is '{second.name}'")
+        for other in smooth if rate.size else ():
+            alike = other.values.size == channel.values.size and other.axis == channel.axis
+            if alike and other is not channel and abs(correlation(rate, smooth[other])) > DERIVATIVE:
+                found[channel] = ("position", f"its derivative is '{other.name}'")
                 found[other] = ("velocity", f"is the derivative of '{channel.name}'")
     return found
 

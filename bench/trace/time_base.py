@@ -83,18 +83,16 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
         InputError: fewer than two samples, time running backwards, or more than 1 % of samples at times already taken.
     """
     leader = next((name for name in LEADING if name in signals), next(iter(signals)))
-    clocks = {id(signal.clock): signal.clock for signal in signals.values()}
-    of_clock = {key: {n: s.values for n, s in signals.items() if id(s.clock) == key} for key in clocks}
-    cleaned = {key: _without_duplicates(clocks[key], of_clock[key]) for key in clocks}
-    lead = id(signals[leader].clock)
-    clock, values, duplicates = cleaned[lead]
+    of_clock: dict[Clock, dict[str, Array]] = {}
+    for name, signal in signals.items():
+        of_clock.setdefault(signal.clock, {})[name] = signal.values
+    cleaned = {recorded: _without_duplicates(recorded, values) for recorded, values in of_clock.items()}
+    clock, values, duplicates = cleaned.pop(signals[leader].clock)
     base = _find(clock, duplicates)
     placed = {name: _on_own_base(base, clock.time, array) for name, array in values.items()}
     notes = _notes(base, clock)
     time, valid = base.time, np.ones(base.time.size, dtype=bool)
-    for key, (other, others, _) in cleaned.items():
-        if key == lead:
-            continue
+    for other, others, _ in cleaned.values():
         for name, array in others.items():
             placed[name], known = _on_foreign_base(time, base, clock, other, array)
             valid &= known

@@ -235,8 +235,8 @@ def on_time_base(
 
 def unused(chosen: Mapping[str, SignalColumn], recording: Recording) -> list[str]:
     """Labels of the columns that are no signal of the trace."""
-    used = {id(choice.channel) for choice in chosen.values()}
-    return [channel.label for channel in recording.channels if id(channel) not in used]
+    used = {choice.channel for choice in chosen.values()}
+    return [channel.label for channel in recording.channels if channel not in used]
 
 
 def require_plausible(trace: Trace) -> None:
