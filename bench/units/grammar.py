@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 #: Signs replaced before anything is read, and after them texts, in this order.
@@ -149,7 +148,7 @@ class UnitProduct:
     powers: dict[str, float] = field(default_factory=dict)
     sign: int = 1
 
-    def take(self, factor: float, powers: Mapping[str, float], exponent: float) -> None:
+    def take(self, other: UnitProduct, exponent: float) -> None:
         """Multiply by, or behind a `/` divide by, a power of another product.
 
         Raises:
@@ -157,8 +156,8 @@ class UnitProduct:
             ValueError: a power that no unit has.
         """
         exponent *= self.sign
-        self.factor, self.sign = self.factor * factor**exponent, 1
-        for name, power in powers.items():
+        self.factor, self.sign = self.factor * other.factor**exponent, 1
+        for name, power in other.powers.items():
             raised = self.powers.pop(name, 0.0) + power * exponent
             if abs(power * exponent) > _HIGHEST:
                 raise ValueError(f"{name} to the power of {raised:g}")
@@ -216,29 +215,29 @@ def parse_unit(text: str, wanted: tuple[str, ...] = ()) -> UnitProduct:
 
 def _add(match: re.Match[str], groups: list[UnitProduct], text: str, wanted: tuple[str, ...]) -> None:
     """Take one token into the innermost group."""
-    above, _, below = (match["power"] or match["exponent"] or "1").strip("()").partition("/")
-    exponent = float(above) / float(below or 1)
     if match["operator"] == "(":
         groups.append(UnitProduct())
         if len(groups) > _DEEPEST:
             raise ValueError("brackets in one another")
-    elif match["close"]:
-        inner = groups.pop()
-        groups[-1].take(inner.factor, inner.powers, exponent)
-    elif match["operator"] or match["joint"]:
+        return
+    if match["operator"] or match["joint"]:
         groups[-1].sign = -1 if match["operator"] == "/" else 1
+        return
+    if match["close"]:
+        taken = groups.pop()
     elif match["name"]:
-        named = _named(match["name"], text, wanted)
-        if len(named.powers) > 1 and abs(exponent) > 1:
-            raise ValueError(f"of which of {', '.join(named.powers)} it is the power")
-        groups[-1].take(named.factor, named.powers, exponent)
+        taken = _named(match["name"], text, wanted)
     elif match["root"]:
-        groups[-1].take(math.sqrt(float(match["radicand"])), {}, 1.0)
+        taken = UnitProduct(math.sqrt(float(match["radicand"])))
     else:
-        number = float(match["number"].replace(",", "."))
-        if abs(exponent) > _LARGEST_POWER or number == 0.0:
-            raise ValueError("a number that is none")
-        groups[-1].take(number, {}, exponent)
+        taken = UnitProduct(float(match["number"].replace(",", ".")))
+    above, _, below = (match["power"] or match["exponent"] or "1").strip("()").partition("/")
+    exponent = float(above) / float(below or 1)
+    if match["name"] and len(taken.powers) > 1 and abs(exponent) > 1:
+        raise ValueError(f"of which of {', '.join(taken.powers)} it is the power")
+    if match["number"] and (abs(exponent) > _LARGEST_POWER or taken.factor == 0.0):
+        raise ValueError("a number that is none")
+    groups[-1].take(taken, exponent)
 
 
 def _named(name: str, text: str, wanted: tuple[str, ...]) -> UnitProduct:
