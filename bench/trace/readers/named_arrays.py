@@ -233,55 +233,54 @@ def _check_structure(content: bytes, where: str) -> None:
         raise ValueError("no byte order in the header")
     order = "<" if content[126:128] == b"IM" else ">"
     left = most = bounds().most(len(content))
-    for kind, begin, end in _elements(content, order, _HEADER, len(content)):
+    for kind, data in _elements(memoryview(content)[_HEADER:], order):
         if kind == _MATRIX:
-            _check_matrix(content, order, begin, end)
+            _check_matrix(data, order)
         elif kind == _COMPRESSED:
             stream = zlib.decompressobj()
-            data = stream.decompress(content[begin:end], left + 1)
-            left -= len(data)
+            unpacked = stream.decompress(data, left + 1)
+            left -= len(unpacked)
             if left < 0:
                 raise too_much(where, len(content), f"more than {shown(most)}")
             if not stream.eof:
                 raise ValueError("a compressed element is cut off")
-            for inner, first, last in _elements(data, order, 0, len(data)):
+            for inner, part in _elements(memoryview(unpacked), order):
                 if inner == _COMPRESSED:
                     raise ValueError("a compressed element in a compressed element")
                 if inner == _MATRIX:
-                    _check_matrix(data, order, first, last)
+                    _check_matrix(part, order)
 
 
-def _elements(data: bytes, order: str, start: int, stop: int) -> Iterator[tuple[int, int, int]]:
-    """Type, begin and end of the data of each element."""
-    while start < stop:
-        if start + 8 > stop:
+def _elements(data: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
+    """Type and data of each element."""
+    start = 0
+    while start < len(data):
+        if start + 8 > len(data):
             raise ValueError("an element is cut off")
         kind, size = struct.unpack_from(f"{order}II", data, start)
         begin = start + 8
         if kind >> 16:  # a small element: its length in the upper half of the type, its data inside the tag
             kind, size, begin = kind & 0xFFFF, kind >> 16, start + 4
-        if kind not in _TYPES or begin + size > stop:
+        if kind not in _TYPES or begin + size > len(data):
             raise ValueError(f"an element of type {kind} and {size} bytes")
-        yield kind, begin, begin + size
+        yield kind, data[begin : begin + size]
         start = begin + size + (0 if kind == _COMPRESSED else -size % (4 if begin == start + 4 else 8))
 
 
-def _check_matrix(data: bytes, order: str, begin: int, end: int, depth: int = 0) -> None:
+def _check_matrix(data: memoryview, order: str, depth: int = 0) -> None:
     if depth > _DEEPEST:
         raise ValueError(f"more than {_DEEPEST} matrices in one another")
-    parts = list(_elements(data, order, begin, end))
+    parts = list(_elements(data, order))
     if not parts:
         return  # an empty cell
-    kind, first, last = parts[0]
-    if kind not in _NUMBERS or last - first != 8:
+    kind, flags = parts[0]
+    if kind not in _NUMBERS or len(flags) != 8:
         raise ValueError("a matrix without flags")
-    (flags,) = struct.unpack_from(f"{order}I", data, first)
-    wanted = _PARTS.get(flags & 0xFF, 0)
-    right = len(parts) == wanted + bool(flags & _COMPLEX) and all(
-        kind in _TYPES - {_MATRIX, _COMPRESSED} for kind, _, _ in parts
-    )
+    (flag,) = struct.unpack_from(f"{order}I", flags)
+    wanted = _PARTS.get(flag & 0xFF, 0)
+    right = len(parts) == wanted + bool(flag & _COMPLEX) and not {kind for kind, _ in parts} & {_MATRIX, _COMPRESSED}
     if wanted and not right:
         raise ValueError(f"a matrix of {len(parts)} parts")
-    for kind, first, last in parts:
+    for kind, part in parts:
         if kind == _MATRIX:
-            _check_matrix(data, order, first, last, depth + 1)
+            _check_matrix(part, order, depth + 1)
