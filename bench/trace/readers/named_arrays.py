@@ -206,11 +206,7 @@ MAT = FileFormat(
 
 
 def load_mat(content: bytes, where: str) -> dict[str, Any]:
-    """Variables of a MAT file up to version 7, structs as dictionaries.
-
-    Raises:
-        InputError: truncated, damaged, or of more than a file may expand to; names `where`.
-    """
+    """Variables of a MAT file up to version 7, structs as dictionaries; InputError where it is damaged or too large."""
     from scipy.io import loadmat  # 0.05 s, for one format of ten
 
     with reading(where, "MAT"):

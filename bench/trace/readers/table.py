@@ -97,13 +97,7 @@ TABLE = FileFormat("CSV table", (".csv", ".txt", ".tsv", ".dat", ".log", ".asc",
 
 
 def read_lines(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[tuple[Channel, ...], tuple[str, ...]]:
-    """Channels of lines of samples, of whatever preamble they stand under, and what the user should know.
-
-    Args:
-        text: the lines, as UTF-8.
-        line: number of the first of them in the file.
-        layout: of them.
-        path: of the file.
+    """Channels of lines of samples, the first of which has the number `line`, and what the user should know.
 
     Raises:
         InputError: too many columns, a line with too few or too many cells, or a quote that is not closed; names
@@ -179,13 +173,6 @@ def as_lists(cells: pa.ChunkedArray) -> pa.ChunkedArray | None:
 
 def read_timed(lines: Sequence[str], line: int, labels: Sequence[str], separator: str, path: str) -> list[Channel]:
     """Channels of lines of numbers whose column called `time` is the time of the others; a decimal comma is a point.
-
-    Args:
-        lines: of samples, without what stands above them.
-        line: number of the first of them in the file.
-        labels: of the columns, with their units.
-        separator: of them.
-        path: of the file.
 
     Raises:
         InputError: as `read_lines`, no column of that name, or a text among the times.
