@@ -151,10 +151,9 @@ def _require(
             advice = 'give its sample_period = "1 ms" in the rig\'s [trace], or its column: time = "column [unit]"'
             raise missing(recording, "column 'time'", advice)
     for group in ENOUGH:
-        if not any(signal in chosen for signal in group):
-            for signal in group:
-                if signal in faults:
-                    raise faults[signal]
+        found = [faults[signal] for signal in group if signal in faults]
+        if found and not any(signal in chosen for signal in group):
+            raise found[0]
 
 
 def _signal(

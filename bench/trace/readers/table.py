@@ -392,8 +392,8 @@ def _is_sample(cells: list[str], kinds: Sequence[str]) -> bool:
     if len(cells) != len(kinds):
         return False
     numeric = [cell for cell, kind in zip(cells, kinds, strict=True) if kind != "text"]
-    numbers = sum(cell in EMPTY or is_number(cell) or _LIST.fullmatch(cell) is not None for cell in numeric)
-    return numbers > 0.5 * len(numeric) and any(is_number(cell) or _LIST.fullmatch(cell) for cell in numeric)
+    values = sum(is_number(cell) or _LIST.fullmatch(cell) is not None for cell in numeric)
+    return values > 0 and values + sum(cell in EMPTY for cell in numeric) > 0.5 * len(numeric)
 
 
 def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
@@ -418,13 +418,12 @@ def _with_unit(name: str, unit: str) -> str:
 
 def _header_row(line: str, separator: str, width: int) -> list[str] | None:
     """Cells of a line of names; None where it is none: another count of cells, or numbers among them."""
-    for text in (line, _LEADING.sub("", line)):
-        for row in _cuts(text, separator):
-            row = row[:-1] if len(row) == width + 1 and not row[-1] else row
-            row = [*row, ""] if len(row) == width - 1 and separator != BLANKS and row[0] else row
-            row[:1] = [_LEADING.sub("", row[0])] if row else []
-            if len(row) == width and any(row) and not any(map(is_number, row)):
-                return row
+    for row in (*_cuts(line, separator), *_cuts(_LEADING.sub("", line), separator)):
+        row = row[:-1] if len(row) == width + 1 and not row[-1] else row
+        row = [*row, ""] if len(row) == width - 1 and separator != BLANKS and row[0] else row
+        row[:1] = [_LEADING.sub("", row[0])] if row else []
+        if len(row) == width and any(row) and not any(map(is_number, row)):
+            return row
     return None
 
 
