@@ -10,7 +10,6 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
@@ -19,9 +18,8 @@ from bench.arrays import Array, correlation, rms
 from bench.errors import InputError
 from bench.structured import json_text
 from bench.trace.channel import Channel, Recording
-from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis, reading_options
+from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis
 from bench.trace.in_si import in_si
-from bench.trace.read import read_recording
 from bench.trace.signals import REFERENCE, SI_UNITS, WORDS, is_index, scale_in, signal_of, unit_of, wanted_units
 from bench.trace.trace import on_time_base, unused
 from bench.units.conversion import is_unit, scale_of
@@ -173,18 +171,13 @@ class Inspection:
         return tuple(column.suggestion for column in self.columns if column.suggestion is not None)
 
 
-def inspect(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Inspection:
-    """Look into a recording; path and columns as for `bench.trace.read.read`.
+def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
+    """Look into a recording.
 
     Raises:
-        InputError: no table or container that the bench knows; a column that the rig names is not there, or has no
-            unit. A file that needs a rig to be read is no error here.
+        InputError: a column that the options name is not there, or has no unit. A recording that needs a rig to be read
+            is no error here.
     """
-    return inspect_recording(read_recording(path), reading_options(columns))
-
-
-def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
-    """See `inspect`."""
     origin, kind, axes, metadata = recording.origin, recording.format, axes_of(recording.channels), recording.metadata
     try:
         chosen, assumed = choose(recording, how)
