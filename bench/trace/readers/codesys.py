@@ -104,15 +104,21 @@ def _variable(element: ElementTree.Element, units: Mapping[str, str | None], tim
 def _list(element: ElementTree.Element, tag: str, place: str) -> Array:
     """Numbers of a list, TRUE and FALSE as 1 and 0 - (n,); InputError naming the place of one that is none."""
     text = (element.findtext(tag) or "").strip()
-    numbers: list[float] = []
-    for sample, cell in enumerate(text.split(",") if text else ()):
-        word = cell.strip()
-        try:
-            numbers.append(float({"true": "1", "false": "0"}.get(word.lower(), word)))
-        except ValueError as error:
-            found = f"found {short(word)!r}" if word else "found an empty cell"
-            raise InputError(f"{place}, {tag}, sample {sample}", found, "allowed: a number") from error
-    return np.array(numbers)
+    texts = text.split(",") if text else []
+    try:
+        return np.array(texts, dtype=np.float64)
+    except ValueError:
+        numbers = [_number(text, f"{place}, {tag}, sample {sample}") for sample, text in enumerate(texts)]
+        return np.array(numbers, dtype=np.float64)
+
+
+def _number(text: str, place: str) -> float:
+    word = text.strip()
+    try:
+        return float({"true": "1", "false": "0"}.get(word.lower(), word))
+    except ValueError as error:
+        found = f"found {short(word)!r}" if word else "found an empty cell"
+        raise InputError(place, found, "allowed: a number") from error
 
 
 def _read_csv(source: Source) -> Recording:
