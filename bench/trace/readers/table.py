@@ -406,14 +406,14 @@ def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
         rows.append(row)
     names = rows[0] if rows else [""] * width
     if len(rows) == 2 and _is_unit_row(rows[0]) and not _is_unit_row(rows[1]):
-        names = [_with_unit(name, unit) for name, unit in zip(rows[1], map(_bare, rows[0]), strict=True)]
+        units = [unit_of(_bare(cell)) for cell in rows[0]]
+        names = [
+            f"{name} [{unit}]" if unit is not None and split_label(name)[1] is None else name
+            for name, unit in zip(rows[1], units, strict=True)
+        ]
     return tuple(
         name if split_label(name)[0] else f"column {number} {name}".strip() for number, name in enumerate(names, 1)
     )
-
-
-def _with_unit(name: str, unit: str) -> str:
-    return f"{name} [{unit}]" if unit_of(unit) is not None and split_label(name)[1] is None else name
 
 
 def _header_row(line: str, separator: str, width: int) -> list[str] | None:
