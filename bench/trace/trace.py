@@ -310,10 +310,11 @@ def join(traces: Sequence[Trace]) -> Trace:
     names = [name for name in first.signals if all(name in trace for trace in traces)]
     left_out = sorted({name for trace in traces for name in trace.signals} - set(names))
     sampled = [_sampled(trace, names, period) for trace in traces]
-    times, starts = [], [float(first.time[0])]
+    times, starts, begin = [], [], float(first.time[0])
     for time, _ in sampled:
-        times.append(starts[-1] + (time - time[0]))
-        starts.append(float(times[-1][-1]) + APART * period)
+        starts.append(begin)
+        times.append(begin + (time - time[0]))
+        begin = float(times[-1][-1]) + APART * period
     return Trace(
         time=np.concatenate(times),
         signals={name: np.concatenate([signals[name] for _, signals in sampled]) for name in names},
@@ -326,7 +327,7 @@ def join(traces: Sequence[Trace]) -> Trace:
             *(f"{trace.origin} taken every {period:g} s, as others are" for trace in traces if _apart(trace, period)),
             *([f"{', '.join(left_out)}: left out, not every recording holds it"] if left_out else []),
         ),
-        joined=tuple(zip(starts, (trace.origin for trace in traces), strict=False)),
+        joined=tuple(zip(starts, (trace.origin for trace in traces), strict=True)),
     )
 
 
