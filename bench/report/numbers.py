@@ -91,9 +91,9 @@ def sentence(text: str) -> str:
 
 
 def listed(texts: Iterable[str]) -> str:
-    """Texts in a row: `a, b and c`."""
-    *first, last = texts
-    return f"{', '.join(first)} and {last}" if first else last
+    """Texts in a row: `a, b and c`; empty of none."""
+    found = list(texts)
+    return " and ".join(filter(None, (", ".join(found[:-1]), *found[-1:])))
 
 
 def effort_word(unit: str) -> str:
