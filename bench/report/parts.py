@@ -44,7 +44,6 @@ def recordings_table(
     """What each of several recordings tells alone, and where the next is to be expected; none where there is only one.
 
     Args:
-        recordings: with what each determines alone; () of one.
         between: how they differ, by name of a quantity.
         parameters: of all together, whose units these have.
     """
@@ -75,7 +74,7 @@ def noise_band(x: Sequence[float], floor: float) -> Series:
     return Series(name="noise floor", style="band", colour="floor", x=ends, low=(-floor, -floor), high=(floor, floor))
 
 
-def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
+def checks_section(checks: Sequence[Check], warnings: Sequence[str], detail: bool = True) -> Section:
     """What was checked before anything was fitted, and what a user should know."""
     applicable = [check for check in checks if check.status != "not_applicable"]
     advised = any(check.advice and check.status in ("warn", "fail") for check in applicable)
@@ -89,7 +88,7 @@ def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
     headings = ("check", "status", "found~", *(["advice~"] if advised else []))
     notes = (Points(items=tuple(warnings)),) if warnings else ()
     tables = (table(caption, headings, rows, marked),) if applicable else ()
-    return section("checks", "Checks and warnings", *notes, *tables, detail=True)
+    return section("checks", "Checks and warnings", *notes, *tables, detail=detail)
 
 
 def model_section(model: Path) -> Section:
