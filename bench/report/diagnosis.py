@@ -13,7 +13,6 @@ from typing import Any
 from bench.axis_kind import ARMATURE, KINDS, AxisKind
 from bench.diagnosis.add import NULL
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.show import Course, Shrunk
@@ -101,7 +100,6 @@ def _(account: Where) -> dict[str, Any]:
 
 
 def _before_after(result: object, *names: str) -> dict[str, Any]:
-    """These pairs of a result."""
     pairs = {name: getattr(result, name) for name in names}
     return {name: pair and {"before": pair[0], "after": pair[1]} for name, pair in pairs.items()}
 
@@ -203,7 +201,6 @@ def _kind(found: Diagnosis) -> AxisKind:
 
 
 def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[doc.File]:
-    """The model, and all numbers."""
     tables = {"torque_balance": found.balance.table()}
     toml = tables_toml(_kind(found), tables) if found.model is None else model_toml(found.model, tables)
     about = "the model with all that was found, for bench replay"
@@ -232,24 +229,20 @@ def verdict_sentence(found: Diagnosis) -> str:
     return f"{gone}, but {words(found.because[0])}."
 
 
-def _named(effect: NamedEffect) -> str:
-    """An effect with its quantities; a phase says nothing to a reader."""
-    angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
-    values = [f"{words(name)} {brief(found)}" for name, found in effect.parameters.items() if name not in angles]
-    return words(effect.name) + (f" ({', '.join(values)})" if values else "")
-
-
 def _sensors(found: Diagnosis) -> list[str]:
-    """Names of sensors' faults."""
     return [words(effect.name) for effect in found.effects if isinstance(effect.effect, Sensing)]
 
 
 def _answers(found: Diagnosis) -> dict[str, str]:
-    of_axis = _kind(found).inertia
+    of_axis, missing = _kind(found).inertia, []
+    for effect in found.effects:  # a phase says nothing to a reader
+        angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
+        values = [f"{words(name)} {brief(one)}" for name, one in effect.parameters.items() if name not in angles]
+        missing.append(words(effect.name) + (f" ({', '.join(values)})" if values else ""))
     inertia = ARMATURE if ARMATURE in found.parameters else of_axis
     known = found.parameters.get(inertia)
     return {
-        "What was missing?": sentence("; ".join(map(_named, found.effects))) or "No effect of the catalogue.",
+        "What was missing?": sentence("; ".join(missing)) or "No effect of the catalogue.",
         "How sure?": _sure(found),
         "Does it move like the axis now?": _moves(found),
         f"{sentence(words(inertia))}?": f"{brief(known)} (95 %)"
@@ -372,7 +365,6 @@ def _over_time(found: Diagnosis, course: Course) -> doc.TimeGraph:
 
 
 def _where(found: Diagnosis) -> doc.Section:
-    """The gap over the coordinates."""
     rows = []
     for one in found.where:
         between = " and ".join(map(number, one.region))

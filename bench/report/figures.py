@@ -68,7 +68,7 @@ ROLES: dict[str, dict[str, Any]] = {
 @in_style
 def drawn(picture: doc.Picture) -> Figure:
     """The figure of a picture: its rows from top to bottom, the parts of a row beside each other."""
-    heights = [max(map(height, row)) for row in picture.rows]
+    heights = [max(drawing(part)[0] for part in row) for row in picture.rows]
     figure = Figure(figsize=(WIDTH, TITLE + sum(heights)), layout="constrained")
     title_figure(figure, picture.title)
     rows = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
@@ -76,7 +76,7 @@ def drawn(picture: doc.Picture) -> Figure:
         row = [row[0], *(_unnamed(part, row[0]) for part in row[1:])]
         widths = [0.4 if isinstance(part, doc.Table) else 1.0 for part in row]
         for beside, part in zip(place.subfigures(1, len(row), width_ratios=widths, squeeze=False)[0], row, strict=True):
-            draw(beside, part)
+            drawing(part)[1](beside, part)
     return figure
 
 
@@ -89,18 +89,8 @@ def _unnamed(part: doc.Drawable, first: doc.Drawable) -> doc.Drawable:
     return part.model_copy(update={"spans": tuple(span.model_copy(update={"name": ""}) for span in part.spans)})
 
 
-def height(part: doc.Drawable) -> float:
-    """Height that a part takes - inch."""
-    return _drawing(part)[0]
-
-
-def draw(figure: Figure | SubFigure, part: doc.Drawable) -> None:
-    """Draw a part into a figure, in the style that is set."""
-    _drawing(part)[1](figure, part)
-
-
-def _drawing(part: doc.Drawable) -> tuple[float, Callable[..., None]]:
-    """Height of a part - inch -, and what draws it into a figure."""
+def drawing(part: doc.Drawable) -> tuple[float, Callable[..., None]]:
+    """Height that a part takes - inch -, and what draws it into a figure, in the style that is set."""
     match part:
         case doc.Table():
             return 0.4 + 2.0 * LINE * len(part.rows), _write

@@ -440,7 +440,6 @@ def parameters(result: Plain) -> dict[str, Parameter]:
 
 
 def _recording_verdict(found: Plain) -> str:
-    """The headline of a recording."""
     names = listed(words(one["name"]) for one in found.get("effects") or ())
     if found["status"] != "done":
         return f"{sentence(words(found['status']))}: no result."

@@ -113,11 +113,6 @@ class Plotted:
         """Models that say something."""
         return [(k, left) for k, left in enumerate(self.left) if left is not None and np.isfinite(left).any()]
 
-    @property
-    def curves(self) -> int:
-        """How many curves it takes."""
-        return 1 + 2 * len(self.shown)
-
 
 def time_graph(
     title: str,
@@ -133,7 +128,7 @@ def time_graph(
         choices: names of the models.
         part: of what a page may hold that this graph may take.
     """
-    grid = Grid.of(time, sum(signal.curves for signal in signals), part)
+    grid = Grid.of(time, sum(1 + 2 * len(signal.shown) for signal in signals), part)
     panels = []
     for signal in signals:
         places, unit, left = grid.places(signal.time), unit_text(signal.unit), []

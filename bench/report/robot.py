@@ -165,7 +165,6 @@ def _open(joint: IdentifiedJoint) -> list[tuple[str, str]]:
 
 
 def _of_joint(k: int, joint: IdentifiedJoint, found: IdentifiedRobot) -> doc.Section:
-    """What is determined of a joint."""
     key, heading = f"joint-{k}", joint.name
     if joint.diagnosis is None:
         tables = [parameters_table("Inertia and friction", joint.parameters)] if joint.parameters else []

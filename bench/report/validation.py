@@ -98,7 +98,9 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
     first, naming, note, runs = _first(found), found.naming, doc.Paragraph(text=NOTE), _outcomes(found.runs)
     numbers, parts = (_numbers(found, whole) for whole in (True, False))
     names = [] if naming is None else [*_naming(naming)]
-    sections = [doc.section("coverage", "How often an interval holds the truth", *_charts(found))]
+    charts = [chart for quantity in SYMBOLS if (chart := _chart(found, quantity, -1)).spans]
+    coverage = charts or [doc.Paragraph(text=NO_QUANTITY)]
+    sections = [doc.section("coverage", "How often an interval holds the truth", *coverage)]
     if own:
         axis = doc.section("axis", "This motion on this drive", *_determined(found.runs))
         sections.insert(0, axis)
@@ -163,14 +165,8 @@ def _answers(found: Validation, first: list[Coverage]) -> Iterator[tuple[str, st
     yield "Runs?", f"{len(found.runs)}: {counts}."
 
 
-def _charts(found: Validation) -> list[doc.Intervals] | list[doc.Paragraph]:
-    """Share of intervals that hold the truth with its bounds, by quantity and group of runs."""
-    charts = [chart for quantity in SYMBOLS if (chart := _chart(found, quantity, -1)).spans]
-    return charts or [doc.Paragraph(text=NO_QUANTITY)]
-
-
 def _chart(found: Validation, quantity: str, place: int) -> doc.Intervals:
-    """The same of a quantity, at the level of this place among all."""
+    """Share of intervals that hold the truth with its bounds, by group of runs, at the level of this place."""
     level, shown = LEVELS[place], [one for one in found.coverage if one.quantity in SYMBOLS and one.told]
     spans = []
     for one in shown:
@@ -290,7 +286,6 @@ def confusion(counts: Mapping[str, Mapping[str, int]]) -> doc.HeatMap:
 
 
 def _bounded(found: Share) -> str:
-    """A share with its bounds."""
     if not found.of:
         return "–"
     low, high = found.bounds
