@@ -122,14 +122,17 @@ def _(step: Shrunk) -> dict[str, Any]:
 @as_json.register
 def _(compared: SameAxis) -> dict[str, Any]:
     """Whether the holdout is of the same axis; what each of the two recordings tells of what differs."""
-    differs = []
-    for each in compared.differs:
-        both = {"recording": each.recording, "holdout": each.holdout}
-        values, bounds = (
-            {of: one.value for of, one in both.items()},
-            {f"{of}_ci95": one.ci95 for of, one in both.items()},
-        )
-        differs.append({"quantity": each.quantity, "unit": each.recording.unit, **values, **bounds})
+    differs = [
+        {
+            "quantity": each.quantity,
+            "unit": each.recording.unit,
+            "recording": each.recording.value,
+            "holdout": each.holdout.value,
+            "recording_ci95": each.recording.ci95,
+            "holdout_ci95": each.holdout.ci95,
+        }
+        for each in compared.differs
+    ]
     return {"same_axis": compared.same, "differs": differs}
 
 
@@ -183,7 +186,7 @@ def diagnosis(
             _suspects(found),
             _next(found),
             checks_section(found.checks, found.warnings),
-            doc.section("model", "The model", doc.Downloads(files=tuple(_files(found, provenance)))),
+            doc.section("model", "The model", doc.downloads(*_files(found, provenance))),
         ),
         origin=origin(provenance),
         pictures=(
@@ -240,13 +243,13 @@ def _answers(found: Diagnosis) -> dict[str, str]:
         values = [f"{words(name)} {brief(one)}" for name, one in effect.parameters.items() if name not in angles]
         missing.append(words(effect.name) + (f" ({', '.join(values)})" if values else ""))
     inertia = ARMATURE if ARMATURE in found.parameters else of_axis
-    known = found.parameters.get(inertia)
+    value = found.parameters.get(inertia)
     return {
         "What was missing?": sentence("; ".join(missing)) or "No effect of the catalogue.",
         "How sure?": _sure(found),
         "Does it move like the axis now?": _moves(found),
-        f"{sentence(words(inertia))}?": f"{brief(known)} (95 %)"
-        if known
+        f"{sentence(words(inertia))}?": f"{brief(value)} (95 %)"
+        if value
         else f"Not determined beside what is missing: {found.refused[of_axis]}",
         "What next?": following(found) or "Nothing is left open that another motion would tell.",
     }

@@ -13,7 +13,7 @@ from bench.fit.estimate import Alone
 from bench.gate.check import Check
 from bench.names import readable, words
 from bench.parameter import Parameter
-from bench.report.document import MEDIA, Chart, Downloads, File, Panel, Points, Section, Series, Table, section, table
+from bench.report.document import MEDIA, Chart, File, Panel, Section, Series, Table, downloads, points, section, table
 from bench.report.numbers import interval, number, unit_text
 
 
@@ -86,24 +86,20 @@ def checks_section(checks: Sequence[Check], warnings: Sequence[str], detail: boo
     passed = sum(check.status == "pass" for check in applicable)
     caption = f"{passed} of {len(applicable)} checks of the recording passed before anything was fitted"
     headings = ("check", "status", "found~", *(["advice~"] if advised else []))
-    notes = (Points(items=tuple(warnings)),) if warnings else ()
+    notes = (points(warnings),) if warnings else ()
     tables = (table(caption, headings, rows, marked),) if applicable else ()
     return section("checks", "Checks and warnings", *notes, *tables, detail=detail)
 
 
-def model_section(model: Path) -> Section:
-    """The file of a model to take along.
+def model_sections(model: Path, warnings: Sequence[str]) -> list[Section]:
+    """What the user should know before believing a result, if anything, and the file of a model to take along.
 
     Raises:
         InputError: it cannot be read.
     """
     held = File(name=readable(model.name), about="the model", media=MEDIA["toml"], content=read_text(model, "a model"))
-    return section("model", "The model", Downloads(files=(held,)))
-
-
-def warnings_sections(warnings: Sequence[str]) -> list[Section]:
-    """What the user should know before believing a result, if anything."""
-    return [section("warnings", "Warnings", Points(items=tuple(warnings)))] if warnings else []
+    warned = [section("warnings", "Warnings", points(warnings))] if warnings else []
+    return [*warned, section("model", "The model", downloads(held))]
 
 
 def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:

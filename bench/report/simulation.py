@@ -22,7 +22,7 @@ from bench.plant.simulate import Simulated
 from bench.report import document as doc
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import model_section, one_panel, origin, values_table, warnings_sections
+from bench.report.parts import model_sections, one_panel, origin, values_table
 from bench.report.robot_drawing import robot_drawing
 from bench.trace.noise import white_noise
 from bench.view.side_by_side import RobotAlong, SideBySide
@@ -127,7 +127,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         ("speed", replayed.speed_unit): (replayed.velocity, replayed.velocity_simulated),
         (effort, replayed.effort_unit): (replayed.torque, replayed.torque_simulated),
     }
-    signals = [Plotted(*of, replayed.time, measured, [measured - model]) for of, (measured, model) in both.items()]
+    signals = [Plotted(*of, replayed.time, seen, [seen - made]) for of, (seen, made) in both.items()]
     shown = f"Speed and {effort} of the recording as measured and as the model has them, and what is left of each."
     graph = time_graph("Over time.", shown, replayed.time, signals)
     motion = doc.section("motion", "Measured and simulated", graph)
@@ -137,7 +137,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         verdict=f"{line}.",
         tone="sure" if torque[0] < LEFT and not replayed.warnings else "open",
         answers=answers,
-        sections=(motion, *warnings_sections(replayed.warnings), model_section(model)),
+        sections=(motion, *model_sections(model, replayed.warnings)),
         origin=origin(None),
     )
 
@@ -197,7 +197,7 @@ def view(
         verdict=f"The simulated axis stays within {furthest} of the motion {shown.ghost_is}, over {seconds}.",
         tone="open" if warnings else "sure",
         answers=answers,
-        sections=(*sections, *warnings_sections(warnings), model_section(model)),
+        sections=(*sections, *model_sections(model, warnings)),
         origin=origin(None),
     )
 
