@@ -166,19 +166,18 @@ def shown(value: float, unit: str, named: bool = True) -> str:
 def check_document(checked: Checked, title: str) -> doc.Document:
     """The document of a check of what `title` names."""
     alike, line = not (checked.rig or checked.conditions), unit_text(headline(checked, brief=True))
-    sections = [
-        doc.section("comparisons", "What was compared", *_compared(checked)),
-        doc.section("conditions", "Like with like", _unlike(checked), detail=alike),
-    ]
-    if checked.baseline.gaps or checked.now.gaps:
-        sections.append(doc.section("gaps", "What the models leave", _gaps_table(checked), detail=True))
+    gaps = [_gaps_table(checked)] if checked.baseline.gaps or checked.now.gaps else []
     return doc.Document(
         title=f"{short(title)}: check",
         subject=short(title, LONG),
         verdict=f"Changed: {line}." if checked.result == CHANGED else f"{line}.",
         tone=TONES[checked.result],
         answers=_answers(checked),
-        sections=tuple(sections),
+        sections=doc.sections(
+            doc.section("comparisons", "What was compared", *_compared(checked)),
+            doc.section("conditions", "Like with like", _unlike(checked), detail=alike),
+            doc.section("gaps", "What the models leave", *gaps, detail=True),
+        ),
         origin=(_basis("now", checked.now.provenance), _basis("baseline", checked.baseline.provenance)),
     )
 

@@ -472,6 +472,11 @@ def section(key: str, heading: str, *blocks: AnyPart, detail: bool = False) -> S
     return Section(key=key, heading=heading, blocks=blocks, detail=detail)
 
 
+def sections(*given: Section) -> tuple[Section, ...]:
+    """Those of these that hold anything."""
+    return tuple(one for one in given if one.blocks)
+
+
 class Picture(Part):
     """A figure for paper, by its file's name without ending: rows from top to bottom, their parts beside each other."""
 

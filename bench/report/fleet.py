@@ -130,8 +130,7 @@ def fleet_document(fleet: Fleet, provenance: Mapping[str, Any]) -> doc.Document:
         (short(one.axis, NAME), words(one.name), f"{one.recordings} of {one.of}", one.since) for one in summary.shown
     ]
     caption = "Those that most recordings of their axis show come first"
-    effects = _first(caption, ("axis", "effect", "recordings>", "first"), rows)
-    shown = (doc.section("effects", "Effects that axes show", effects),) if rows else ()
+    shown = [_first(caption, ("axis", "effect", "recordings>", "first"), rows)] if rows else []
     statuses = ((words(status), str(summary.counts[status]), MEANT[status]) for status in STATUSES)
     marked = (k for k, status in enumerate(STATUSES) if status != "done" and summary.counts[status])
     recordings = doc.table("By status", ("status", "recordings>", "which~"), statuses, marked)
@@ -145,11 +144,11 @@ def fleet_document(fleet: Fleet, provenance: Mapping[str, Any]) -> doc.Document:
         verdict=_verdict(summary),
         tone="refused" if summary.changed else "open" if summary.concerns or not summary.compared else "sure",
         answers=_answers(summary, reasons),
-        sections=(
+        sections=doc.sections(
             doc.section("axes", "All axes", _dashboard(pages), detail=True),
             doc.section("people", "Who needs a person first", _people(summary, reasons)),
             doc.section("changes", "What changed", *_changes(pages)),
-            *shown,
+            doc.section("effects", "Effects that axes show", *shown),
             doc.section("recordings", "Recordings", recordings, doc.neighbours(files)),
         ),
         origin=(pages.origin, f"options: {options}"),
@@ -334,8 +333,8 @@ class FleetPages:
             verdict=sentence(f"{listed(map(news, axis.changed)) or unchanged}."),
             tone="refused" if axis.changed else "open" if axis.concerns or not axis.histories else "sure",
             answers=answers,
-            sections=(
-                *([doc.section("time", "Over time", *drawn)] if drawn else []),
+            sections=doc.sections(
+                doc.section("time", "Over time", *drawn),
                 doc.section("recordings", "Recordings", self._recordings(axis)),
                 doc.section("fleet", "The fleet", doc.neighbours({f"../{FLEET}": "all axes"})),
             ),
@@ -371,12 +370,6 @@ class FleetPages:
         if checks:
             rows = ((words(one["name"]), one["status"], one["found"], one["advice"]) for one in checks)
             warned.append(doc.table("Those that did not pass", ("check", "status", "found~", "advice~"), rows))
-        parts = {
-            "parameters": ("Parameters", [parameters_table("", values)] if values else []),
-            "effects": ("What was missing", lacking),
-            "gap": ("What is left", [_gaps(found["gap"])] if found.get("gap") else []),
-            "checks": ("Checks and warnings", warned),
-        }
         name = self.recording_place(row).rpartition("/")[2].replace(".html", ".json")
         above = {name: "all of it", f"../../{self.axis_place(axis)}": "the axis", f"../../{FLEET}": "the fleet"}
         graphs = (doc.Paragraph(text="With all that was measured, as graphs:"), doc.Code(text=self.commands[row]))
@@ -387,8 +380,11 @@ class FleetPages:
             verdict=_recording_verdict(found),
             tone="sure" if good else "open",
             answers={} if good else {"Noted?": found["reason"] or f"{len(found['checks'])} checks did not pass."},
-            sections=(
-                *(doc.section(key, heading, *blocks) for key, (heading, blocks) in parts.items() if blocks),
+            sections=doc.sections(
+                doc.section("parameters", "Parameters", *([parameters_table("", values)] if values else [])),
+                doc.section("effects", "What was missing", *lacking),
+                doc.section("gap", "What is left", *([_gaps(found["gap"])] if found.get("gap") else [])),
+                doc.section("checks", "Checks and warnings", *warned),
                 doc.section("more", "More", *graphs, doc.neighbours(above)),
             ),
             origin=(self.origin, *([f"trace sha256 {digest}"] if digest else [])),

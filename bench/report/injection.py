@@ -65,9 +65,8 @@ def _counts(found: Injections) -> dict[float, dict[str, int]]:
 
 def injections(found: Injections, provenance: Mapping[str, Any], recording: str) -> doc.Document:
     """The document of what became of effects in a recording."""
-    sections = [doc.section("least", "The least that is named", _least(found))] if found.sought else []
+    least = [_least(found)] if found.sought else []
     tried = (_cases(found), doc.Paragraph(text=NOTE))
-    sections.append(doc.section("cases", "All that was tried", *tried, detail=found.sought))
     wrong = any(case.fate in (WRONG, PART) for case in found.cases)
     return doc.Document(
         title=f"Effects in {recording}",
@@ -75,7 +74,10 @@ def injections(found: Injections, provenance: Mapping[str, Any], recording: str)
         verdict=_verdict(found),
         tone="open" if wrong or found.failed else "sure",
         answers=dict(_answers(found)),
-        sections=tuple(sections),
+        sections=doc.sections(
+            doc.section("least", "The least that is named", *least),
+            doc.section("cases", "All that was tried", *tried, detail=found.sought),
+        ),
         origin=origin(provenance),
         beside={"injections.json": injections_json(found, provenance) + "\n"},
         warnings=tuple(f"{name} gave no result: {reason}" for name, reason in found.failed.items()),

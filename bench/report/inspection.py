@@ -37,28 +37,21 @@ def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | N
         trace: the recording as it is read; None where `found.asks` something first.
     """
     name, (verdict, tone) = readable(Path(found.origin).name), _verdict(found, checks)
-    sections = []
-    if found.signals:
-        graph = () if trace is None else (signals_graph(trace),)
-        sections.append(doc.section("signals", "Signals", *graph, _signals(found)))
-    if found.asks is not None:
-        asked: list[doc.AnyPart] = [doc.Paragraph(text=f"{found.asks}.")]
-        if found.suggestions:
-            lines = "\n".join(("[trace.columns]", *found.suggestions))
-            asked += [doc.Paragraph(text="Likely, for the rig file:"), doc.Code(text=lines)]
-        sections.append(doc.section("asked", "What to write", *asked))
     rest = [column for column in found.columns if not column.read]
-    if rest:
-        sections.append(doc.section("columns", "Columns that are not read", _columns(rest)))
-    if checks or found.notes:
-        sections.append(checks_section(checks, found.notes, detail=False))
+    graph = [] if trace is None else [signals_graph(trace)]
+    signals = [*graph, _signals(found)] if found.signals else []
     return doc.Document(
         title=name,
         subject=f"Inspection of {name} ({found.format})",
         verdict=verdict,
         tone=tone,
         answers=dict(_answers(found)),
-        sections=tuple(sections),
+        sections=doc.sections(
+            doc.section("signals", "Signals", *signals),
+            doc.section("asked", "What to write", *_what_to_write(found)),
+            doc.section("columns", "Columns that are not read", *([_columns(rest)] if rest else [])),
+            checks_section(checks, found.notes, detail=False),
+        ),
         origin=origin(None),
     )
 
@@ -177,3 +170,12 @@ def _columns(columns: Sequence[ColumnSummary]) -> doc.Table:
         for column in columns
     )
     return doc.table("In the file's units", ("column", "unit", "least>", "most>", "resolution>", "likely~"), rows)
+
+
+def _what_to_write(found: Inspection) -> Iterator[doc.AnyPart]:
+    """What keeps the file from being read, if anything, and the lines of a rig that would help."""
+    if found.asks is not None:
+        yield doc.Paragraph(text=f"{found.asks}.")
+        if found.suggestions:
+            yield doc.Paragraph(text="Likely, for the rig file:")
+            yield doc.Code(text="\n".join(("[trace.columns]", *found.suggestions)))

@@ -92,14 +92,14 @@ def checks_section(checks: Sequence[Check], warnings: Sequence[str], detail: boo
 
 
 def model_sections(model: Path, warnings: Sequence[str]) -> list[Section]:
-    """What the user should know before believing a result, if anything, and the file of a model to take along.
+    """What the user should know before believing a result, and the file of a model to take along.
 
     Raises:
         InputError: it cannot be read.
     """
     held = File(name=readable(model.name), about="the model", media=MEDIA["toml"], content=read_text(model, "a model"))
-    warned = [section("warnings", "Warnings", points(warnings))] if warnings else []
-    return [*warned, section("model", "The model", downloads(held))]
+    warned = [points(warnings)] if warnings else []
+    return [section("warnings", "Warnings", *warned), section("model", "The model", downloads(held))]
 
 
 def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:

@@ -137,7 +137,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         verdict=f"{line}.",
         tone="sure" if torque[0] < LEFT and not replayed.warnings else "open",
         answers=answers,
-        sections=(motion, *model_sections(model, replayed.warnings)),
+        sections=doc.sections(motion, *model_sections(model, replayed.warnings)),
         origin=origin(None),
     )
 
@@ -173,6 +173,7 @@ def view(
     answers = {
         "What moves?": shown.simulated_is,
         "How far apart?": f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most",
+        **({} if free is None else {"And let free?": _after(free, kind)}),
     }
     both = {
         ("speed", kind.speed_unit): (shown.ghost_velocity, shown.velocity),
@@ -184,20 +185,19 @@ def view(
     ]
     alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
     graph = time_graph("Over time.", alternative, shown.time, signals, part=PART)
-    sections = [
-        doc.section("moving", "Moving", motion_of(shown, robot)),
-        doc.section("motion", "Over time", graph),
-    ]
-    if free is not None:
-        sections.append(doc.section("free", "Let free", *_let_free(free, shown.kind)))
-        answers["And let free?"] = _after(free, shown.kind)
+    let_free = [] if free is None else _let_free(free, kind)
     return doc.Document(
         title=title,
         subject=f"View: {title}",
         verdict=f"The simulated axis stays within {furthest} of the motion {shown.ghost_is}, over {seconds}.",
         tone="open" if warnings else "sure",
         answers=answers,
-        sections=(*sections, *model_sections(model, warnings)),
+        sections=doc.sections(
+            doc.section("moving", "Moving", motion_of(shown, robot)),
+            doc.section("motion", "Over time", graph),
+            doc.section("free", "Let free", *let_free),
+            *model_sections(model, warnings),
+        ),
         origin=origin(None),
     )
 

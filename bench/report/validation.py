@@ -100,16 +100,6 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
     names = [] if naming is None else [*_naming(naming)]
     charts = [chart for quantity in SYMBOLS if (chart := _chart(found, quantity, -1)).spans]
     coverage = charts or [doc.Paragraph(text=NO_QUANTITY)]
-    sections = [doc.section("coverage", "How often an interval holds the truth", *coverage)]
-    if own:
-        axis = doc.section("axis", "This motion on this drive", *_determined(found.runs))
-        sections.insert(0, axis)
-    sections.append(doc.section("numbers", "How far off numbers are", *numbers, note))
-    if parts:
-        sections.append(doc.section("parts", "The same, by parts of these runs", *parts, detail=True))
-    if names:
-        sections.append(doc.section("names", "Whether names are right", *names))
-    sections.append(doc.section("runs", "All runs", runs, doc.neighbours(FILES)))
     tables = filter(None, map(markdown, (runs, *numbers, *parts, note, *names)))
     text = "\n\n".join([f"# Validation\n\n`{command}`", *tables])
     low = any(one.inside[-1].bounds[1] < LEVEL for one in first)
@@ -120,7 +110,14 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
         verdict=_verdict(first, naming),
         tone="open" if not _enough(first) or low or false else "sure",
         answers=dict(_answers(found, first)),
-        sections=tuple(sections),
+        sections=doc.sections(
+            doc.section("axis", "This motion on this drive", *(_determined(found.runs) if own else ())),
+            doc.section("coverage", "How often an interval holds the truth", *coverage),
+            doc.section("numbers", "How far off numbers are", *numbers, note),
+            doc.section("parts", "The same, by parts of these runs", *parts, detail=True),
+            doc.section("names", "Whether names are right", *names),
+            doc.section("runs", "All runs", runs, doc.neighbours(FILES)),
+        ),
         origin=origin(provenance),
         pictures=tuple(_pictures(found)),
         beside={"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"},
