@@ -8,9 +8,10 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from bench.bounds import read_bounded
 from bench.errors import InputError
 from bench.files import opened, read_bytes
 from bench.trace.readers.named_arrays import load_mat
-from bench.units import convert, dimensionality
+from bench.units import convert
 from bench.units.conversion import spelled_for_pint
 
 TEXTS = (".csv", ".txt", ".dat", ".tsv")
@@ -29,13 +30,9 @@ NAMES = ("catapult", "katapult", "flights", "fluege", "flüge")
 _ABOUT = re.compile(r"(read[ _-]?me|lies[ _-]?mich|license|notes?|notiz(en)?|info|hinweise?)\b.*", re.IGNORECASE)
 #: Lengths without a unit are metres; no ball of the lab flies further than this - m.
 FARTHEST = 20.0
-#: How the cells of a line may be separated, and the decimal sign between them; the first that fits a table is taken.
-_LAYOUTS: tuple[tuple[Callable[[str], Cells], str], ...] = (
-    (lambda line: line.split(";"), ","),
-    (lambda line: line.split("\t"), ","),
-    (lambda line: line.split(","), "."),
-    (lambda line: re.split(r",?\s+", line.strip()), ","),
-)
+#: How the cells of a line may be separated, and the decimal sign in them; the first that fits a table is taken.
+_BLANKS = r",?\s+"
+_LAYOUTS = ((";", ","), ("\t", ","), (",", "."), (_BLANKS, ","))
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|nan", re.IGNORECASE)
 _NAN, _LETTER = re.compile(r"\bnan\b", re.IGNORECASE), re.compile(r"[^\W\dEe_]")
 #: Name of a column, with the flight's number where several stand side by side, and its unit.
@@ -48,7 +45,6 @@ _FLIGHT_NUMBERS = ("flight", "experiment", "versuch", "flug", "nr", "no", "wurf"
 LEAST = 3
 _ADVICE = "y and z on each line, named in the first one: y [m],z [m]"
 
-Cells = list[str]
 #: Points of each flight, (n, 2) y and z - m, and whether the file states their unit.
 FoundFlights = tuple[list[Array], bool]
 
@@ -111,9 +107,8 @@ def read_flights(path: Path) -> Flights:
     points: list[Array] = []
     notes: list[str] = []
     for name, content in _files(path):
-        plain = Path(name).name
         if _ABOUT.fullmatch(Path(name).stem):
-            notes.append(f"{plain} passed over, as its name says that it holds no flight.")
+            notes.append(f"{Path(name).name} passed over, as its name says that it holds no flight.")
             continue
         read = flights_of_mat if name.lower().endswith(".mat") else flights_of_text
         found, has_units = read(content, name)
@@ -148,13 +143,12 @@ def _files(path: Path) -> Iterator[tuple[str, bytes]]:
         yield str(path), read_bytes(path, "a table of points")
 
 
-@dataclass(frozen=True)
-class ColumnLabel:
+class ColumnLabel(NamedTuple):
     """Name in lower case, number of the flight or an empty text, and unit or None."""
 
     name: str
-    number: str
-    unit: str | None
+    number: str = ""
+    unit: str | None = None
 
 
 def flights_of_text(content: bytes, where: str) -> FoundFlights:
@@ -164,9 +158,10 @@ def flights_of_text(content: bytes, where: str) -> FoundFlights:
     header = next((k for k, (_, line) in enumerate(lines) if not _LETTER.search(_NAN.sub("", line))), None)
     if header is None:
         raise InputError(where, "found no line of numbers", f"allowed: at least three points, {_ADVICE}")
+    separator, table = _cells(lines[header:], where)
     names = [line for _, line in lines[:header]][-2:]
-    split, table = _cells(lines[header:], where)
-    return _flights(_columns(names, split, table.shape[1], where) or _unnamed(table, where), table, where)
+    columns = _columns(names, separator, table.shape[1], where) or _unnamed(table, where)
+    return _flights(columns, table, where)
 
 
 def flights_of_mat(content: bytes, where: str) -> FoundFlights:
@@ -178,49 +173,57 @@ def flights_of_mat(content: bytes, where: str) -> FoundFlights:
     return _checked(_matrices(arrays), where), False
 
 
-def _cells(lines: Sequence[tuple[int, str]], where: str) -> tuple[Callable[[str], Cells], Array]:
-    """How cells are separated, and their values, (n, columns); NaN where a cell is empty.
+def _split(line: str, separator: str) -> list[str]:
+    return re.split(separator, line.strip() if separator == _BLANKS else line)
+
+
+def _cells(lines: Sequence[tuple[int, str]], where: str) -> tuple[str, Array]:
+    """What separates cells, and their values, (n, columns); NaN where a cell is empty.
 
     Every layout is tried; that which reads all lines alike is the table's.
     """
-    complaint: tuple[int, str] | None = None
-    for split, decimal in _LAYOUTS:
-        rows = [[cell.strip().replace(decimal, ".") for cell in split(line)] for _, line in lines]
+    complaints = []
+    for separator, decimal in _LAYOUTS:
+        rows = [[cell.strip().replace(decimal, ".") for cell in _split(line, separator)] for _, line in lines]
         width = max(len(row) for row in rows)
         if width < 2:
             continue
-        wrong = next((k for k, row in enumerate(rows) if not all(c == "" or _NUMBER.fullmatch(c) for c in row)), None)
-        ragged = next((k for k, row in enumerate(rows) if len(row) != width), None)
-        if wrong is None and ragged is None:
-            return split, np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
-        k = wrong if wrong is not None else ragged if ragged is not None else 0
-        if complaint is None or k > complaint[0]:
-            complaint = k, "a cell that is no number" if wrong is not None else f"other than {width} cells"
-    if complaint is None:
+        wrong = [k for k, row in enumerate(rows) if not all(cell == "" or _NUMBER.fullmatch(cell) for cell in row)]
+        ragged = [k for k, row in enumerate(rows) if len(row) != width]
+        if wrong or ragged:
+            complaint = "a cell that is no number" if wrong else f"other than {width} cells"
+            complaints.append(((wrong or ragged)[0], complaint))
+            continue
+        return separator, np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
+    if not complaints:
         raise InputError(where, "found one column", f"allowed: {_ADVICE}")
-    number, text = lines[complaint[0]]
-    raise InputError(f"{where}: line {number}", f"found {complaint[1]} ({text[:40]!r})", f"allowed: {_ADVICE}")
+    place, complaint = max(complaints, key=lambda one: one[0])
+    number, text = lines[place]
+    raise InputError(f"{where}: line {number}", f"found {complaint} ({text[:40]!r})", f"allowed: {_ADVICE}")
 
 
-def _columns(names: Sequence[str], split: Callable[[str], Cells], width: int, where: str) -> list[ColumnLabel] | None:
+def _columns(names: Sequence[str], separator: str, width: int, where: str) -> list[ColumnLabel] | None:
     """Columns by the line of names and a line of units under it; None without names."""
     found: list[list[ColumnLabel]] = []
     for line in names:
-        cells = split(line)
+        cells = _split(line, separator)
         cells = cells if len(cells) == width else [cell for cell in _BETWEEN_NAMES.split(line.strip()) if cell]
         if len(cells) == width:
             matches = map(_LABEL.fullmatch, cells)
-            parsed = ((m[1].lower(), m[2], (m[3] or "").strip() or None) if m else ("", "", None) for m in matches)
-            found.append([ColumnLabel(*label) for label in parsed])
-    axes = [columns for columns in found if {"y", "z"} <= {column.name for column in columns}]
-    if not axes:
+            found.append(
+                [
+                    ColumnLabel(m[1].lower(), m[2], (m[3] or "").strip() or None) if m else ColumnLabel("")
+                    for m in matches
+                ]
+            )
+    labels = next((columns for columns in reversed(found) if {"y", "z"} <= {column.name for column in columns}), None)
+    if labels is None:
         if names and width > 2:
             raise InputError(where, f"found no columns y and z ({names[-1][:60]!r})", f"allowed: {_ADVICE}")
         return None
-    labels = axes[-1]
     if found[-1] is not labels:  # a row of units
-        units = [cell.strip(" []()") for cell in split(names[-1])]
-        labels = [ColumnLabel(c.name, c.number, c.unit or unit) for c, unit in zip(labels, units, strict=True)]
+        units = [cell.strip(" []()") for cell in _split(names[-1], separator)]
+        labels = [label._replace(unit=label.unit or unit) for label, unit in zip(labels, units, strict=True)]
     return labels
 
 
@@ -228,10 +231,8 @@ def _unnamed(table: Array, where: str) -> list[ColumnLabel]:
     """Two columns are y and z, of three the first is a time that runs evenly."""
     steps = np.diff(table[:, 0])
     even = steps.size > 0 and steps.min() > 0.0 and np.ptp(steps) <= 0.02 * steps.max()
-    if table.shape[1] == 2:
-        return [ColumnLabel(name, "", None) for name in "yz"]
-    if table.shape[1] == 3 and even:
-        return [ColumnLabel(name, "", None) for name in "tyz"]
+    if table.shape[1] == 2 or (table.shape[1] == 3 and even):
+        return [ColumnLabel(name) for name in "tyz"[-table.shape[1] :]]
     raise InputError(where, f"found {table.shape[1]} columns without names", f"allowed: {_ADVICE}")
 
 
@@ -252,16 +253,11 @@ def _flights(columns: Sequence[ColumnLabel], table: Array, where: str) -> FoundF
 
 
 def _metres(column: ColumnLabel, values: Array, where: str) -> Array:
-    if column.unit is None:
-        return values
-    unit = spelled_for_pint(column.unit)
     try:
-        known = dimensionality(unit) == "[length]"
-    except ValueError:
-        known = False
-    if not known:
-        raise InputError(f"{where}: {column.name}", f"found the unit '{column.unit}'", "allowed: a unit of length")
-    return convert(values, unit, "m")
+        return values if column.unit is None else convert(values, spelled_for_pint(column.unit), "m")
+    except ValueError as error:
+        found = f"found the unit '{column.unit}'"
+        raise InputError(f"{where}: {column.name}", found, "allowed: a unit of length") from error
 
 
 def _pairs(arrays: Mapping[str, np.ndarray]) -> list[Array]:
