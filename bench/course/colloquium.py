@@ -60,7 +60,7 @@ def questions(recordings: LabRecordings, number: int) -> list[AskedQuestion]:
 
 def figures(recordings: LabRecordings) -> dict[str, float]:
     """Every figure that a question or an answer holds, by its name there, in its unit there."""
-    worked = Worked.of(recordings)
+    worked = Worked(recordings)
     right, rig = worked.answers(), recordings.rig
     return {
         "J": right["J"],

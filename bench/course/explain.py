@@ -28,7 +28,7 @@ SURE = 20.0
 CARRIED = 50.0
 NOT_KNOWN, COPY = "not known", "copied from student "
 #: What a student reads of each mistake.
-WHY = {mistake.name: mistake.explanation for mistake in MISTAKES} | {name: why for name, why, _ in SLIPS}
+WHY = {name: why for name, why, _ in (*MISTAKES, *SLIPS)}
 
 #: What a way of working gives, by the names of the form.
 Figures = Mapping[str, float]

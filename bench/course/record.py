@@ -159,7 +159,7 @@ def _record_student(folder: Path, name: str, random: np.random.Generator) -> dic
     public["drive"] = {key: value for key, value in table["drive"].items() if key != "inertia_feedforward"}
     write_text(folder / "rig.toml", tomli_w.dumps({**public, "name": f"axis of student {name}"}))
     write_text(folder / FORM, form(name))
-    worked = Worked.of(LabRecordings.in_folder(folder))
+    worked = Worked(LabRecordings.in_folder(folder))
     # seven digits: a class of forty is 3 MB then
     mistakes = [
         [names, {name: float(f"{value:.7g}") for name, value in figures.items() if name not in worked.unchanged}]
