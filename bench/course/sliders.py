@@ -13,11 +13,11 @@ from bench.arrays import Array
 from bench.assets import asset
 from bench.course import peak_torque
 from bench.course.axis import MAINS, RPM, circuit, motor_value, torque_constant
+from bench.course.corner import EVERY, SHARES, TIME_CONSTANTS
 from bench.course.friction import DELAY, EDGE, SMOOTHING, WIDTH, steepest
-from bench.course.power import EVERY
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import TaskResult
-from bench.course.winding import CURRENT_LOOP, LENGTH, SHARES, STEP, TIME_CONSTANTS, VELOCITY_GAIN, identified_axis
+from bench.course.winding import CURRENT_LOOP, LENGTH, STEP, VELOCITY_GAIN, identified_axis
 from bench.fit.lab import LEAST_SPEED
 from bench.report.html import Program
 from bench.rig.limits import COLD, HOT, peak_curve
