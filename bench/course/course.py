@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 from bench.course import catapult, corner, examples, friction, inertia, peak_torque, torque_constants
+from bench.course.plausible import WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.recordings import LabRecordings
 from bench.course.result import EXAMPLE, TaskResult
 from bench.course.tracking import tracking
@@ -47,9 +49,13 @@ TASKS = (
     Task("2", "Backward difference", inertia.backward_difference_of_a_sine, "rig"),
     Task("3", "Torque constant from the datasheet", torque_constants.at_both_points, "rig"),
     Task("4", "Torque constant over current", torque_constants.over_current, "rig"),
-    Task("5", "Recording without friction", inertia.signals_without_friction),
+    Task(
+        "5",
+        "Recording without friction",
+        partial(inertia.signals, WITHOUT_FRICTION),
+    ),
     Task("6", "Moment of inertia without friction", inertia.inertia_without_friction),
-    Task("7", "Recording with friction", inertia.signals_with_friction),
+    Task("7", "Recording with friction", partial(inertia.signals, WITH_FRICTION)),
     Task("8", "Filtered acceleration, slow samples removed", friction.samples_that_remain),
     Task("9", "Moment of inertia and friction by least squares", friction.inertia_and_friction),
     Task("10", "Peak torque over speed", peak_torque.over_speed),

@@ -97,13 +97,18 @@ class LabRecordings:
         return self.rig if "simulation" in given and "drive" in given else lab_rig()
 
     @cached_property
-    def refused(self) -> Mapping[str, str]:
-        """Recordings that cannot be of the rig's axis, each with the reason; those that cannot be read are none."""
+    def readable(self) -> Mapping[str, LabRun]:
+        """Recordings that can be read, whether or not they can be of the axis."""
         runs = {}
         for name in (WITHOUT_FRICTION, WITH_FRICTION, FASTEST):
             with suppress(BenchError):  # raised where a task needs it
                 runs[name] = self.run(name)
-        return refusals(runs, self.rig)
+        return runs
+
+    @cached_property
+    def refused(self) -> Mapping[str, str]:
+        """Recordings that cannot be of the rig's axis, each with the reason."""
+        return refusals(self.readable, self.rig)
 
     def sound(self, name: str) -> LabRun:
         """A recording that nothing contradicts; InputError with what does and why, and raises as `run`."""
