@@ -18,6 +18,7 @@ from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import SimulationError, UndeterminedError
 from bench.files import write_text
 from bench.plant.closed_loop import DIVERGED
+from bench.plant.simulate import SCHEMA
 from bench.report.document import Chart
 from bench.structured import json_text
 
@@ -101,10 +102,10 @@ def record_flights(folder: Path, random: np.random.Generator) -> list[Path]:
         paths.append(folder / f"experiment-{number:02}.csv")
         rows = "\n".join(f"{y:.4f},{z:.4f}" for y, z in seen)
         write_text(paths[-1], f"y [m],z [m]\n{rows}\n")
-    nominal = zip(UNITS, fly().coefficients.tolist(), strict=True)
+    nominal = zip(UNITS.items(), fly().coefficients.tolist(), strict=True)
     content = {
-        "schema": "bench.truth/1",
-        "parameters": {name: {"value": value, "unit": UNITS[name]} for name, value in nominal},
+        "schema": SCHEMA,
+        "parameters": {name: {"value": value, "unit": unit} for (name, unit), value in nominal},
         "flights": [flight.coefficients.tolist() for flight in flights],
         "sensor_scatter": {"value": SENSOR_SCATTER, "unit": "m"},
     }
@@ -163,26 +164,16 @@ def path(recordings: LabRecordings) -> TaskResult:
     y, z = np.concatenate(flights.points).T
     theta, error = fit_path(y, z)
     along = np.linspace(y.min(), y.max(), 300)
-    dots = [
-        curve(flight[:, 0], flight[:, 1], f"experiment {k}", "dots") for k, flight in enumerate(flights.points, start=1)
-    ]
+    numbered = enumerate(flights.points, start=1)
+    dots = [curve(flight[:, 0], flight[:, 1], f"experiment {k}", "dots") for k, flight in numbered]
     fitted = curve(along, columns(along) @ theta, "least squares")
-    coefficients = zip(UNITS, theta.tolist(), strict=True)
-    count = (
-        f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {np.sqrt(error / y.size) * 1e3:.2g} mm."
-    )
+    rms = np.sqrt(error / y.size) * 1e3
+    count = f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {rms:.2g} mm."
     solvers, comparison = compare_solvers(y, z)
-    return TaskResult(
-        (count, solvers, *flights.notes),
-        (
-            *(
-                Number(name, value, UNITS[name], flights.truth.get(name), half=half)
-                for (name, value), half in zip(coefficients, _halves(flights.points, theta), strict=True)
-            ),
-            Number("E", error, "m²"),
-        ),
-        (chart("Task 1: path and all points", panel("y / m", "z / m", *dots, fitted)), comparison),
-    )
+    found = zip(UNITS.items(), theta.tolist(), _halves(flights.points, theta), strict=True)
+    numbers = [Number(name, value, unit, flights.truth.get(name), half=half) for (name, unit), value, half in found]
+    drawn = chart("Task 1: path and all points", panel("y / m", "z / m", *dots, fitted))
+    return TaskResult((count, solvers, *flights.notes), (*numbers, Number("E", error, "m²")), (drawn, comparison))
 
 
 def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:

@@ -89,12 +89,8 @@ def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[P
     time, velocity, current = run.time[every], run.velocity[every], run.current[every]
     velocity = velocity + sensors.velocity_noise * random.standard_normal(time.size)
     _write(path, time, velocity, current + sensors.current_noise * random.standard_normal(time.size))
-    parameters = {
-        "moment_of_inertia": {"value": axis.inertia, "unit": "kg*m**2"},
-        "viscous_friction_coefficient": {"value": axis.viscous_friction_coefficient, "unit": "N*m*s/rad"},
-        "coulomb_friction_torque": {"value": axis.coulomb_friction, "unit": "N*m"},
-        "corner_speed": {"value": run.corner, "unit": "rad/s"},
-    }
+    known = {**dict([*axis.values.items()][:3]), "corner_speed": (run.corner, "rad/s")}
+    parameters = {name: {"value": value, "unit": unit} for name, (value, unit) in known.items()}
     content = {"schema": SCHEMA, "rig": rig.name, "kind": "rotary", "profile": "fastest run-up"}
     write_text(truth_path(path), json_text({**content, "parameters": parameters}) + "\n")
     return [path, truth_path(path)]
