@@ -47,13 +47,9 @@ def contradiction(flights: Sequence[Array]) -> str:
     return "; ".join(faults)
 
 
-def _paths(flights: Sequence[Array]) -> list[Array]:
-    return [np.polyfit(flight[:, 0], flight[:, 1], 2) for flight in flights]
-
-
 def _wrong(flights: Sequence[Array]) -> Iterator[tuple[int, str]]:
     """Flights that are no such, and what is wrong with them."""
-    paths = _paths(flights)
+    paths = [np.polyfit(flight[:, 0], flight[:, 1], 2) for flight in flights]
     off = [flight[:, 1] - np.polyval(path, flight[:, 0]) for flight, path in zip(flights, paths, strict=True)]
     usual = float(np.median([rms(one) for one in off]))
     middle = np.median(paths, axis=0)

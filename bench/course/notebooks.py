@@ -53,20 +53,15 @@ def notebook(text: str, filled: Mapping[str, str] | None = None) -> str:
 
 
 def _cells(text: str, filled: Mapping[str, str]) -> Iterator[dict[str, Any]]:
-    start = 0
-    for match in _CELL.finditer(text):
-        yield from _markdown(text[start : match.start()])
-        kind, name, file, code = match.groups()
-        source = filled.get(name, HINT + code) if kind == "yours" else code
-        source = f"%%writefile {file}\n{source}" if file else source
-        yield {"cell_type": "code", "execution_count": None, "outputs": [], "source": source.rstrip("\n")}
-        start = match.end()
-    yield from _markdown(text[start:])
-
-
-def _markdown(text: str) -> Iterator[dict[str, Any]]:
-    if text.strip():
-        yield {"cell_type": "markdown", "source": text.strip()}
+    parts = _CELL.split(text)  # text, and of each cell of code its kind, name, file, code, and the text behind it
+    for start in range(0, len(parts), 5):
+        if parts[start].strip():
+            yield {"cell_type": "markdown", "source": parts[start].strip()}
+        if parts[start + 1 :]:
+            kind, name, file, code = parts[start + 1 : start + 5]
+            source = filled.get(name, HINT + code) if kind == "yours" else code
+            source = f"%%writefile {file}\n{source}" if file else source
+            yield {"cell_type": "code", "execution_count": None, "outputs": [], "source": source.rstrip("\n")}
 
 
 class NotYetError(Exception):

@@ -12,7 +12,7 @@ alpha*tau.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -205,8 +205,7 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
         "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
         "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
         *run.notes,
-        *_tail_findings(kept, found),
-        *_missing_findings(measured),
+        *_end_findings(kept, found, measured),
     )
     curves = [
         curve(speed, torque, "measured", "dots"),
@@ -232,24 +231,19 @@ def _at_speeds(sheet: Mapping[float, float], measured: Mapping[float, float]) ->
     return table("Peak torque at the speeds of the drawing", ("n / rpm", *(f"{n:.0f}>" for n in SPEEDS)), rows)
 
 
-def _tail_findings(kept: LabRun, found: Decline) -> tuple[str, ...]:
+def _end_findings(kept: LabRun, found: Decline, measured: Mapping[float, float]) -> Iterator[str]:
     """What ends the run before the no-load speed: the drive's set speed, which the axis then keeps."""
     top = float(kept.velocity.max())
-    if top > 0.99 * found.no_load:
-        return ()
-    tail = kept.velocity > STILL_RISING * top
-    return (
-        f"The tail above {STILL_RISING * top * RPM:.0f} rpm is not the motor's limit. The drive was set to about "
-        f"{top * RPM:.0f} rpm: as the axis gets there its speed control takes the torque back, to "
-        f"{float(kept.torque[tail].min()):.2g} N·m, where the winding would still give it up to "
-        f"{found.no_load * RPM:.0f} rpm.",
-    )
-
-
-def _missing_findings(measured: Mapping[float, float]) -> tuple[str, ...]:
-    missing = [f"{n:.0f}" for n, value in measured.items() if not math.isfinite(value)]
-    note = f"At {', '.join(missing)} rpm the motor's torque was not measured: the drive's set speed ends the run-up."
-    return (note,) if missing else ()
+    if top <= 0.99 * found.no_load:
+        yield (
+            f"The tail above {STILL_RISING * top * RPM:.0f} rpm is not the motor's limit. The drive was set to about "
+            f"{top * RPM:.0f} rpm: as the axis gets there its speed control takes the torque back, to "
+            f"{float(kept.torque[kept.velocity > STILL_RISING * top].min()):.2g} N·m, where the winding would still "
+            f"give it up to {found.no_load * RPM:.0f} rpm."
+        )
+    if missing := [f"{n:.0f}" for n, value in measured.items() if not math.isfinite(value)]:
+        speeds = ", ".join(missing)
+        yield f"At {speeds} rpm the motor's torque was not measured: the drive's set speed ends the run-up."
 
 
 def operating_range(recordings: LabRecordings) -> TaskResult:

@@ -25,7 +25,7 @@ from bench.course.grade import SEALED, seal
 from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.recordings import LabRecordings, read_truth
 from bench.course.submission import FORM, form
-from bench.course.winding import STEP, WindingModel, WindingRun, run_winding
+from bench.course.winding import STEP, WindingModel, run_winding
 from bench.errors import InputError
 from bench.files import whole, write_text
 from bench.plant.axis_model import AxisParameters
@@ -76,15 +76,12 @@ def record(folder: Path, seed: int = 0, progress: Progress = lambda share: None,
     return paths
 
 
-def fastest_run(rig: Rig) -> WindingRun:
+def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[Path]:
     """The run-up with full torque, cold and with inductance, then the stop."""
     time = np.arange(0.0, STOP + TOP_SPEED / BRAKING + START, STEP)
     demand = np.where(time < START, 0.0, np.clip(TOP_SPEED - BRAKING * (time - STOP), 0.0, TOP_SPEED))
-    return run_winding(WindingModel.of(rig, COLD, True), AxisParameters.from_rig(rig), demand)
-
-
-def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[Path]:
-    run, sensors, axis = fastest_run(rig), Sensors.from_rig(rig), AxisParameters.from_rig(rig)
+    sensors, axis = Sensors.from_rig(rig), AxisParameters.from_rig(rig)
+    run = run_winding(WindingModel.of(rig, COLD, True), axis, demand)
     every = slice(None, None, round(sensors.sample_period / STEP))
     time, velocity, current = run.time[every], run.velocity[every], run.current[every]
     velocity = velocity + sensors.velocity_noise * random.standard_normal(time.size)

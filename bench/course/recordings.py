@@ -125,9 +125,11 @@ class LabRecordings:
         Raises:
             InputError: none, or several.
         """
-        files = sorted(path for path in self.folder.iterdir() if path.is_file() and _ending(path) in ENDINGS)
-        alike = [path for path in files if name.lower() in _letters(path)]
-        found = [path for path in files if path.name.split(".")[0].lower() == name.lower()] or alike
+        files = sorted(path for path in self.folder.iterdir() if path.is_file())
+        files = [path for path in files if Path(path.name.lower().removesuffix(".gz")).suffix in ENDINGS]
+        stems = {path: path.name.split(".")[0].lower() for path in files}
+        alike = [path for path, stem in stems.items() if name.lower() in re.sub("[^a-z]", "", stem)]
+        found = [path for path, stem in stems.items() if stem == name.lower()] or alike
         if len(found) == 1:
             return found[0], [path for path in alike if path != found[0]]
         if found:
@@ -159,15 +161,6 @@ def read_truth(path: Path) -> Mapping[str, float]:
         return {name: float(item["value"]) for name, item in content["parameters"].items()}
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(path, f"is no truth of a simulated trace ({error})", "remove it, or record again") from error
-
-
-def _ending(path: Path) -> str:
-    """Of the file inside, where it is compressed."""
-    return Path(path.name.lower().removesuffix(".gz")).suffix
-
-
-def _letters(path: Path) -> str:
-    return re.sub("[^a-z]", "", path.name.split(".")[0].lower())
 
 
 def _require_signals(recording: Recording, path: Path, columns: Mapping[str, str]) -> None:

@@ -68,7 +68,10 @@ class Cover:
         content = read_toml(path, f"a cover sheet, {EXAMPLE},")
         students = content.get("student", [])
         unknown = sorted(set(content) - {"group", "student"})
-        if unknown or not isinstance(students, list) or not all(_is_student(entry) for entry in students):
+        named = isinstance(students, list) and all(
+            isinstance(entry, dict) and {"name", "number"} == set(entry) for entry in students
+        )
+        if unknown or not named:
             found = f"found {', '.join(unknown) or 'a student without name or number'}"
             raise InputError(path, found, f"allowed: {EXAMPLE}")
         return cls(str(content.get("group", "")), tuple((str(s["name"]), str(s["number"])) for s in students))
@@ -80,10 +83,6 @@ class Cover:
         rows = [(name or "_" * 26, number or "_" * 12, "_" * 24) for name, number in students]
         signed = table(f"Group: {self.group or '_' * 12}", ("name", "student number", "signature"), rows)
         return section("cover", "Cover sheet", signed, Paragraph(text=DECLARATION))
-
-
-def _is_student(entry: object) -> bool:
-    return isinstance(entry, dict) and {"name", "number"} == set(entry)
 
 
 @dataclass(frozen=True)

@@ -31,14 +31,12 @@ from bench.course.friction import identify_friction
 from bench.course.peak_torque import extrapolated_corner
 from bench.course.recordings import LabRecordings
 from bench.errors import BenchError, SimulationError
-from bench.plant.axis_model import AxisParameters, build_spec
+from bench.plant.axis_model import DRIVE, AxisParameters, build_spec
 from bench.plant.closed_loop import DIVERGED
 from bench.rig.limits import HOT, Circuit
 from bench.rig.motor import TorqueConstant
 from bench.rig.rig import Rig
 
-#: Name of the motor's actuator in mjcf/rotary_axis.xml.
-DRIVE = "drive"
 #: Step of the integration - s. MuJoCo's current errs to first order: the corner by 0.3 rpm (tests/course).
 STEP = 25e-6
 #: Time constant of the current loop - s.
