@@ -45,8 +45,7 @@ class AskedQuestion:
 def questions(recordings: LabRecordings, number: int) -> list[AskedQuestion]:
     """One of each group; the next number has other ones, and 36 numbers in a row no three in common.
 
-    Raises:
-        BenchError: a recording is missing or cannot be of the axis.
+    Raises BenchError where a recording is missing or cannot be of the axis.
     """
     own, texts = figures(recordings), _QUESTION.findall(read_text(TEXTS, "questions"))
     asked = []
@@ -196,17 +195,14 @@ def _of_throw(right: dict[str, float], points: int) -> dict[str, float]:
 
 
 def write_questions(folder: Path, out: Path) -> tuple[list[Path], list[BenchError]]:
-    """Write `questions.html` with the answers, and a page without them for each student of a class.
+    """Write `questions.html` with the answers, and a page without them for each student, into a folder.
 
     Args:
-        folder: with a folder of recordings for each student, or one student's.
-        out: folder to write to.
+        folder: with a folder of recordings for each student, or one student's; InputError where there is none.
+        out: where to write.
 
     Returns:
         The paths, and why a student has none.
-
-    Raises:
-        InputError: no such folder.
     """
     if not folder.is_dir():
         raise InputError(folder, "no such folder", "give the folder of the class, with a folder for each student")

@@ -86,13 +86,7 @@ def course(
     progress: Callable[[float], None] = lambda share: None,
     keys: Collection[str] | None = None,
 ) -> list[TaskResult]:
-    """Do every task in order.
-
-    Args:
-        recordings: a student's, or the synthetic ones.
-        progress: called with the share done.
-        keys: of the tasks to do; all without.
-    """
+    """Do every task in order, or those of `keys` alone; `progress` is called with the share done."""
     asked = [task for task in TASKS if keys is None or task.key in keys]
     results = []
     for number, task in enumerate(asked, 1):

@@ -187,8 +187,7 @@ class EquationOfMotion:
 def identify_friction(run: LabRun) -> EquationOfMotion:
     """The course's least squares on the fast samples of a recording.
 
-    Raises:
-        UndeterminedError: they do not tell inertia and friction apart, or torque and acceleration oppose each other.
+    Raises UndeterminedError where they do not tell inertia and friction apart, or torque and acceleration are opposed.
     """
     samples = fast_samples(run)
     weaker = 0.5 * (1.0 - abs(float(np.mean(np.sign(samples.velocity)))))

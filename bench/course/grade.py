@@ -82,8 +82,7 @@ class GradedClass:
 def grade_class(submissions: Path, truth: Path) -> GradedClass:
     """Grade every submission of a folder by a sealed truth; a bad one, or two of one student, leave the others alone.
 
-    Raises:
-        InputError: no submissions, or no truth.
+    Raises InputError where there are no submissions, or no truth.
     """
     known = read_truth_of_class(truth)
     graded: dict[str, list[tuple[GradedStudent, Path]]] = {}
@@ -112,8 +111,7 @@ def seal(content: Mapping[str, Any]) -> str:
 def read_truth_of_class(path: Path) -> Mapping[str, Any]:
     """Truth, expected answers and figures of mistakes by student, as `bench lab --record --students` wrote them.
 
-    Raises:
-        InputError: no such file, none of these, or one that was changed.
+    Raises InputError where there is no such file, or one that was changed.
     """
     advice = "give the file that bench lab --record FOLDER --students N wrote beside FOLDER"
     try:
@@ -128,11 +126,7 @@ def read_truth_of_class(path: Path) -> Mapping[str, Any]:
 
 
 def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:
-    """Grade every quantity of a student's form by what `read_truth_of_class` knows.
-
-    Raises:
-        InputError: the submission's student is not in it; names those that are.
-    """
+    """Grade every quantity of a student's form by what `read_truth_of_class` knows; InputError without the student."""
     if submission.student not in known:
         allowed = f"allowed: {', '.join(sorted(known))}"
         raise InputError(f"{submission.source}: student", f"found '{submission.student}'", allowed)

@@ -149,8 +149,7 @@ def load_inertia(
 def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
     """Task 6: alpha_max, J from samples with |alpha| >= alpha_max/4, J_load = J - J_motor beside theory.
 
-    Raises:
-        UndeterminedError: the axis never accelerates, or torque and acceleration oppose each other.
+    Raises UndeterminedError where the axis never accelerates, or torque and acceleration oppose each other.
     """
     run = recordings.without_friction
     inertia, largest, taken = mean_inertia(run.acceleration, run.torque)

@@ -24,10 +24,9 @@ HINT = "# your turn\n"
 
 
 def write_notebooks(folder: Path) -> list[Path]:
-    """Write `task01.ipynb`, ... into a student's folder, beside the recordings; none that is there is overwritten.
+    """Write `task01.ipynb`, ... into a student's folder, beside the recordings.
 
-    Raises:
-        InputError: one of them is there, and may hold a student's work.
+    Raises InputError where one of them is there, as it may hold a student's work.
     """
     texts = sorted(TEXTS.glob("task*.md"))
     paths = [folder / f"{text.stem}.ipynb" for text in texts]
@@ -40,12 +39,7 @@ def write_notebooks(folder: Path) -> list[Path]:
 
 
 def notebook(text: str, filled: Mapping[str, str] | None = None) -> str:
-    """A notebook (nbformat 4.5) as JSON.
-
-    Args:
-        text: of the task.
-        filled: code for cells by their names, instead of what the skeleton has.
-    """
+    """A notebook (nbformat 4.5) of a task's text, as JSON; cells named in `filled` have that code, not a skeleton."""
     cells = [{"id": f"cell-{k}", "metadata": {}, **cell} for k, cell in enumerate(_cells(text, filled or {}))]
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
     content = {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
@@ -69,12 +63,7 @@ class NotYetError(Exception):
 
 
 def own(name: str, function: str = "") -> Callable[..., Any]:
-    """The student's own function of a file `NAME.py` here, as it is whenever it is called.
-
-    Args:
-        name: of the file.
-        function: of the function in it; the file's name without.
-    """
+    """The student's own function of a file `NAME.py` here, as it is whenever it is called; it is called as the file."""
 
     def called(*arguments: object) -> Any:  # noqa: ANN401, a student's function gives anything
         path = Path(f"{name}.py")

@@ -76,14 +76,10 @@ class CircuitValues:
 def circuits(rig: Rig, other: PeakCurve) -> list[CircuitValues]:
     """The course's circuit, one whose power balances, Ke = kT(Iq), and both with the voltage across that w*p*L*Iq is.
 
-    The last again, with the voltage that the datasheet's no-load speed asks of it, 4.6 % more in the lab's motor.
+    The last again, with the voltage that the datasheet's no-load speed asks of it, 4.6 % more in the lab's motor. Each
+    meets the curve of the rig's motor at MAINS, those with the voltage across the `other` one, too.
 
-    Args:
-        rig: whose motor's peak curve at MAINS each meets.
-        other: the curve at another voltage, which those with the voltage across meet, too.
-
-    Raises:
-        InputError: the rig lacks something, or no such circuit meets both curves.
+    Raises InputError where the rig lacks something, or no such circuit meets both curves.
     """
     motor, low, peak = circuit(rig), peak_curve(rig.motor, MAINS, rig.source), motor_value(rig, "peak_current")
     idle, saturated = (float(torque_constant(rig)(np.asarray(current))) for current in (0.0, peak))

@@ -56,7 +56,7 @@ def record(folder: Path, seed: int = 0, progress: Progress = lambda share: None,
     """Simulate an axis and write its recordings, each with its truth, and the catapult's flights; returns the paths.
 
     Args:
-        folder: to write to.
+        folder: where to write.
         seed: of the sensors' noise.
         progress: called with the share done.
         rig: of the axis, with `[drive]` and `[simulation]`; the lab's without.

@@ -81,8 +81,7 @@ class LabRecordings:
     def flights(self) -> Flights:
         """The catapult's experiments, with the throw's truth where that lies beside them.
 
-        Raises:
-            InputError: as `read_flights`, or they are no flights of one throw.
+        Raises InputError as `read_flights`, and where they are no flights of one throw.
         """
         path = find_flights(self.folder)
         found = read_flights(path)
@@ -120,10 +119,8 @@ class LabRecordings:
     def files(self, name: str) -> tuple[Path, list[Path]]:
         """File of a recording, whatever its ending, the case of its letters, and what else its name says; and others.
 
-        `MaxAcc_Gruppe7.trace` and `MaxAcc (1).trace` serve where there is no plain `MaxAcc.trace`.
-
-        Raises:
-            InputError: none, or several.
+        `MaxAcc_Gruppe7.trace` and `MaxAcc (1).trace` serve where there is no plain `MaxAcc.trace`. Raises InputError
+        where there is none, or several.
         """
         files = sorted(path for path in self.folder.iterdir() if path.is_file())
         files = [path for path in files if Path(path.name.lower().removesuffix(".gz")).suffix in ENDINGS]
@@ -142,8 +139,7 @@ class LabRecordings:
     def run(self, name: str) -> LabRun:
         """A recording in SI units as it is, with its truth where that lies beside it.
 
-        Raises:
-            InputError: no such file, not a recording, or a signal missing in it.
+        Raises InputError where there is no such file, it is no recording, or a signal is missing in it.
         """
         path, others = self.files(name)
         recording = in_words_of_the_course(read_recording(path), self.rig.trace.columns)

@@ -100,11 +100,11 @@ class CourseReport:
 
 
 def report_course(data: Path | None, out: Path, progress: Callable[[float], None]) -> CourseReport:
-    """Do the course and write `lab.json`, `lab.html` and `lab.pdf`, and the sources to hand in.
+    """Do the course and write `lab.json`, `lab.html` and `lab.pdf`, and the sources to hand in, into a folder.
 
     Args:
         data: folder with a student's recordings, or None for the synthetic ones.
-        out: folder of the report.
+        out: where to write.
         progress: called with the share done.
 
     Raises:
@@ -259,8 +259,7 @@ def _task(result: TaskResult) -> dict[str, object]:
 def write_sources(folder: Path, recordings: LabRecordings, results: Sequence[TaskResult]) -> list[Path]:
     """Write the scripts of the tasks that were done, their recordings and values; `python taskNN.py` runs each.
 
-    Returns:
-        The folder, if anything was written.
+    Returns the folder, if anything was written.
     """
     done = {result.key: result for result in results if result.reason is None}
     scripts = [path for path in sorted(SCRIPTS.glob("task*.py")) if path.stem[4:].lstrip("0") in done]

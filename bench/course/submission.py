@@ -118,8 +118,7 @@ def _is_form(path: Path) -> bool:
 def read_submission(path: Path) -> Submission:
     """A filled form.
 
-    Raises:
-        InputError: a row that cannot be read, a quantity that is not asked for or given twice, or no student.
+    Raises InputError where a row cannot be read, a quantity is not asked for or given twice, or there is no student.
     """
     text = text_of(read_bytes(path, "a filled form"))
     entries = _of_json(text, path) if path.suffix.lower() == ".json" else _of_csv(text, path)

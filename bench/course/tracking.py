@@ -23,9 +23,7 @@ from bench.plant.run import run
 def tracking(recordings: LabRecordings) -> TaskResult:
     """The recording's axis with each feed-forward.
 
-    Raises:
-        InputError: the rig lacks a drive, the rotor's inertia or the disk's geometry.
-        UndeterminedError: task 9 cannot be done.
+    Raises InputError as `track`, and UndeterminedError where task 9 cannot be done.
     """
     identified = identify_friction(recordings.with_friction).inertia - motor_value(recordings.rig, "rotor_inertia")
     known = bool(recordings.with_friction.truth)
