@@ -77,8 +77,8 @@ class Flights:
 def find_flights(folder: Path) -> Path:
     """The folder, zip or table of a catapult in a folder: the one whose name begins with catapult or Katapult.
 
-    A folder serves before a zip, which it may have come from, and a zip before a table. Raises InputError where there is
-    none, or several of a kind.
+    A folder serves before a zip, which it may have come from, and a zip before a table. Raises InputError where none is
+    there, or several of a kind.
     """
     named = [path for path in sorted(folder.iterdir()) if path.name.lower().startswith(NAMES)]
     kinds = (

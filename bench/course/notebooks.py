@@ -63,7 +63,12 @@ class NotYetError(Exception):
 
 
 def own(name: str, function: str = "") -> Callable[..., Any]:
-    """The student's own function of a file `NAME.py` here, as it is whenever it is called; it is called as the file."""
+    """The student's own function of a file `NAME.py` here, as it is whenever it is called.
+
+    Args:
+        name: of the file.
+        function: of the function in it; the file's name without.
+    """
 
     def called(*arguments: object) -> Any:  # noqa: ANN401, a student's function gives anything
         path = Path(f"{name}.py")
