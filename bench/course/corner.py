@@ -132,11 +132,12 @@ def _measured_findings(recordings: LabRecordings, found: Split) -> tuple[str, ..
         f"{(measured.corner - found.inductive.corner) * RPM:+.1f} rpm from the simulation, and a fall that comes "
         f"{measured.lag * 1e3:.1f} ms late (L/R as it acts)."
     )
-    same = (
-        " This recording was made by the same equations: that they agree shows that corner and lag can be read from "
-        "noisy samples at 1 ms, and nothing about a motor."
-    )
-    return (text + same if recordings.fastest.truth else text,)
+    if recordings.fastest.truth:
+        text += (
+            " This recording was made by the same equations: that they agree shows that corner and lag can be read "
+            "from noisy samples at 1 ms, and nothing about a motor."
+        )
+    return (text,)
 
 
 def _torque_chart(rig: Rig, found: Split) -> Chart:

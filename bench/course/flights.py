@@ -108,8 +108,7 @@ def read_flights(path: Path) -> Flights:
         if _ABOUT.fullmatch(Path(name).stem):
             notes.append(f"{Path(name).name} passed over, as its name says that it holds no flight.")
             continue
-        read = flights_of_mat if name.lower().endswith(".mat") else flights_of_text
-        found, has_units = read(content, name)
+        found, has_units = (_of_mat if name.lower().endswith(".mat") else _of_text)(content, name)
         farthest = max(float(np.ptp(flight, axis=0).max()) for flight in found)
         if not has_units and farthest > FARTHEST:
             spans = f"found lengths that span {farthest:.4g} without a unit"
@@ -149,8 +148,7 @@ class ColumnLabel(NamedTuple):
     unit: str | None = None
 
 
-def flights_of_text(content: bytes, where: str) -> FoundFlights:
-    """Flights of a table in text; raises InputError, with line or column, where it is no table of points y, z."""
+def _of_text(content: bytes, where: str) -> FoundFlights:
     text = text_of(content).splitlines()
     lines = [(k, line.strip("\r\n")) for k, line in enumerate(text, 1) if line.strip(" ;,\t\r")]
     header = next((k for k, (_, line) in enumerate(lines) if not _LETTER.search(_NAN.sub("", line))), None)
@@ -162,11 +160,7 @@ def flights_of_text(content: bytes, where: str) -> FoundFlights:
     return _flights(columns, table, where)
 
 
-def flights_of_mat(content: bytes, where: str) -> FoundFlights:
-    """Flights of a MAT file: y and z as vectors or (n, flights) matrices, y1, z1, ..., or matrices of two columns.
-
-    Raises InputError where it is damaged, or holds none of these.
-    """
+def _of_mat(content: bytes, where: str) -> FoundFlights:
     arrays = {name: value for name, value in load_mat(content, where).items() if not name.startswith("__")}
     return _checked(_matrices(arrays), where), False
 

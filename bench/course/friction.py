@@ -176,7 +176,7 @@ class EquationOfMotion:
     viscous: float
     coulomb: float
     error: float
-    halves: tuple[float, float, float]
+    halves: tuple[float, ...]
 
     def torque(self, run: LabRun) -> Array:
         """J*alpha + K_fric_w*omega + K_fric_0*sgn(omega) - N*m."""
@@ -196,9 +196,9 @@ def identify_friction(run: LabRun) -> EquationOfMotion:
         raise UndeterminedError("Coulomb friction", reason, RECORD[COULOMB])
     theta, std_error, error = least_squares(samples.acceleration, samples.velocity, samples.torque)
     require_positive(float(theta[0]))
-    estimates = zip(("inertia", "viscous", "coulomb"), theta.tolist(), std_error.tolist(), strict=True)
-    inertia, viscous, coulomb = (half_width(value, deviation, name, run) for name, value, deviation in estimates)
-    return EquationOfMotion(*theta.tolist(), error=error, halves=(inertia, viscous, coulomb))
+    estimates = zip(theta.tolist(), std_error.tolist(), ("inertia", "viscous", "coulomb"), strict=True)
+    halves = tuple(half_width(value, deviation, name, run) for value, deviation, name in estimates)
+    return EquationOfMotion(*theta.tolist(), error=error, halves=halves)
 
 
 def inertia_and_friction(recordings: LabRecordings) -> TaskResult:

@@ -85,22 +85,24 @@ def grade_class(submissions: Path, truth: Path) -> GradedClass:
     Raises InputError where there are no submissions, or no truth.
     """
     known = read_truth_of_class(truth)
-    graded: dict[str, list[tuple[GradedStudent, Path]]] = {}
+    graded: dict[str, GradedStudent] = {}
+    forms: dict[str, list[str]] = {}
     unread: list[InputError] = []
     for path in find_submissions(submissions):
         try:
-            found = grade(read_submission(path), known)
+            submission = read_submission(path)
+            graded[submission.student] = grade(submission, known)
         except InputError as error:
             unread.append(error)
         else:
-            graded.setdefault(found.student, []).append((found, path))
-    for student, forms in graded.items():
-        if len(forms) > 1:
-            paths = ", ".join(str(path) for _, path in forms)
-            found = f"found {len(forms)} of student {student} ({paths})"
+            forms.setdefault(submission.student, []).append(submission.source)
+    for student, paths in forms.items():
+        if len(paths) > 1:
+            del graded[student]
+            found = f"found {len(paths)} of student {student} ({', '.join(paths)})"
             unread.append(InputError(submissions, found, "leave one of them"))
-    students = tuple(graded[student][0][0] for student in sorted(graded) if len(graded[student]) == 1)
-    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(graded))))
+    students = tuple(one for _, one in sorted(graded.items()))
+    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))))
 
 
 def seal(content: Mapping[str, Any]) -> str:

@@ -22,7 +22,6 @@ from bench.names import nearest
 from bench.plant.simulate import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
-from bench.trace.channel import Recording
 from bench.trace.choose import choose, reading_options
 from bench.trace.read import read_recording, readers
 from bench.trace.trace import assemble
@@ -142,8 +141,17 @@ class LabRecordings:
         Raises InputError where there is no such file, it is no recording, or a signal is missing in it.
         """
         path, others = self.files(name)
-        recording = in_words_of_the_course(read_recording(path), self.rig.trace.columns)
-        _require_signals(recording, path, self.rig.trace.columns)
+        columns = self.rig.trace.columns
+        recording = in_words_of_the_course(read_recording(path), columns)
+        chosen, _ = choose(recording, reading_options(columns))
+        if missing := [name for name in NEEDED if name not in chosen]:
+            labels = ", ".join(f"'{channel.label}'" for channel in recording.channels)
+            raise InputError(
+                path,
+                f"holds no {' and no '.join(missing)} by a name the bench knows; its columns are {labels}",
+                "write a file rig.toml beside it with the line [trace.columns] and under it a line for each, "
+                f'e.g. {missing[0]} = "column [unit]"; what else a rig file has may be left out',
+            )
         notes = tuple(f"{other.name} passed over, as {path.name} has the name of the course." for other in others)
         return run_of(assemble(recording, self.rig.trace), self.rig, read_truth(truth_path(path)), notes)
 
@@ -157,17 +165,3 @@ def read_truth(path: Path) -> Mapping[str, float]:
         return {name: float(item["value"]) for name, item in content["parameters"].items()}
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(path, f"is no truth of a simulated trace ({error})", "remove it, or record again") from error
-
-
-def _require_signals(recording: Recording, path: Path, columns: Mapping[str, str]) -> None:
-    chosen, _ = choose(recording, reading_options(columns))
-    missing = [name for name in NEEDED if name not in chosen]
-    if not missing:
-        return
-    labels = ", ".join(f"'{channel.label}'" for channel in recording.channels)
-    raise InputError(
-        path,
-        f"holds no {' and no '.join(missing)} by a name the bench knows; its columns are {labels}",
-        "write a file rig.toml beside it with the line [trace.columns] and under it a line for each, "
-        f'e.g. {missing[0]} = "column [unit]"; what else a rig file has may be left out',
-    )
