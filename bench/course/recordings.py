@@ -12,8 +12,7 @@ from pathlib import Path
 from bench.assets import asset
 from bench.course.axis import Sources, embedded, lab_rig
 from bench.course.causes import refusals
-from bench.course.flights import Flights, find_flights, read_flights
-from bench.course.flying import contradiction
+from bench.course.flights import Flights, contradiction, find_flights, read_flights
 from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.run import LabRun, in_words_of_the_course, run_of
 from bench.errors import BenchError, InputError
