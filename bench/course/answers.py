@@ -141,7 +141,7 @@ MISTAKES: tuple[tuple[str, str, tuple[Way, ...]], ...] = (
 class Worked:
     """A student's recordings that are worked out in one way after the other: what no way changes is done once.
 
-    Each raises InputError where a file is missing or cannot be read.
+    Whatever is asked of it raises InputError where a file is missing or cannot be read.
     """
 
     recordings: LabRecordings

@@ -178,14 +178,15 @@ def path(recordings: LabRecordings) -> TaskResult:
 
 def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:
     """How far the two solvers' paths are apart as y is measured from further away, which leaves the path as it is."""
-    shifted = [(shift, columns(y + shift)) for shift in SHIFTS]
-    # AᵀA of the furthest has a pivot of exactly 0, and no inverse, for one set of flights in fifty
-    shifts, matrices = zip(*((shift, one) for shift, one in shifted if np.linalg.det(one.T @ one) != 0.0), strict=True)
-    condition = [float(np.linalg.cond(matrix)) for matrix in matrices]
-    apart = [
-        float(np.max(np.abs(matrix @ by_normal_equations(matrix, z) - matrix @ by_orthogonal_solver(matrix, z))))
-        for matrix in matrices
-    ]
+    shifts, condition, apart = [], [], []
+    for shift in SHIFTS:
+        matrix = columns(y + shift)
+        # AᵀA of the furthest has a pivot of exactly 0, and no inverse, for one set of flights in fifty
+        if np.linalg.det(matrix.T @ matrix) != 0.0:
+            paths = matrix @ by_normal_equations(matrix, z), matrix @ by_orthogonal_solver(matrix, z)
+            shifts.append(shift)
+            condition.append(float(np.linalg.cond(matrix)))
+            apart.append(float(np.max(np.abs(paths[0] - paths[1]))))
     worst = next((k for k, value in enumerate(apart) if value > APART), len(shifts) - 1)
     finding = (
         f"(AᵀA)⁻¹Aᵀb and QR agree within {apart[0]:.1g} m here (condition number {condition[0]:.0f}). They part when "

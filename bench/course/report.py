@@ -21,7 +21,6 @@ from bench.course.sliders import sliders
 from bench.errors import InputError
 from bench.files import held, whole, write_text
 from bench.report.document import AnyPart, Chart, Document, Paragraph, Section, Table, section, table
-from bench.report.figures import quiet_about_glyphs
 from bench.report.html import Program, html
 from bench.report.serial import known
 from bench.rig.motor import DATASHEET
@@ -125,7 +124,7 @@ def write_lab_report(
 ) -> list[Path]:
     """Write results as `lab.json`, `lab.html`, alive or not, and `lab.pdf` into a folder, which is made; the paths."""
     paths = [out / f"lab.{ending}" for ending in ("json", "html", "pdf")]
-    with held(out), quiet_about_glyphs():
+    with held(out):
         write_text(paths[0], json)
         write_text(paths[1], html(document, own=live))
         progress(0.5)
