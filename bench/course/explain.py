@@ -182,15 +182,13 @@ def explanation(
 
 def _ways(student: str, known: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], float, Figures]]:
     """Names, probability and figures of mistakes in the work, of slips after it, of two of them, and of copies."""
-    expected = known[student]["expected"]
-    for names, changed in known[student]["mistakes"]:
-        figures = {**expected, **changed}
-        yield tuple(names), ONE if len(names) == 1 else TWO, figures
-        if len(names) == 1:
-            for slip, _, change in SLIPS:
-                yield (*names, slip), TWO, {**figures, **change(figures)}
-    for slip, _, change in SLIPS:
-        yield (slip,), ONE, {**expected, **change(expected)}
+    expected, prior = known[student]["expected"], {1: ONE, 2: TWO}
+    works = [(tuple(names), {**expected, **changed}) for names, changed in known[student]["mistakes"]]
+    for names, figures in (*works, ((), expected)):
+        if names:
+            yield names, prior[len(names)], figures
+        for slip, _, change in SLIPS if len(names) < 2 else ():
+            yield (*names, slip), prior[len(names) + 1], {**figures, **change(figures)}
     for (one, _, first), (two, _, second) in combinations(SLIPS, 2):
         figures = {**expected, **first(expected)}
         yield (one, two), TWO, {**figures, **second(figures)}

@@ -22,7 +22,7 @@ from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
 from bench.arrays import NORMAL95, Array
-from bench.course.axis import MAINS, RPM, circuit, joined, motor_value, torque_constant
+from bench.course.axis import MAINS, RPM, circuit, motor_value, torque_constant
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import InputError, UndeterminedError
@@ -215,7 +215,7 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
     with suppress(InputError):  # a rig without a winding's values has no such curve
         reached, driven = cold_curve(rig)
         curves.append(curve(reached * RPM, driven, f"its circuit at {COLD:g} °C", "dotted"))
-        source = joined(*(sources("motor", name) for name in ("peak_curves", "cold_resistance_share")))
+        source = sources("motor", "peak_curves", "cold_resistance_share")
         numbers.append(Number("corner of the cold circuit", float(reached[1]) * RPM, "rpm", source=source))
     axes = panel("speed n / rpm", "torque M / (N·m)", *curves)
     shown = (chart("Task 10: peak torque", axes),)
