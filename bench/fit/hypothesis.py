@@ -256,7 +256,8 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, missing
     term, effect = hypothesis.terms[index], hypothesis.terms[index].effect
     if not isinstance(effect, Columns):
         return np.empty((seen.effort.size, 0))
-    seen = with_friction(seen, hypothesis, index)
+    if isinstance(effect, ScalesFriction | CarriesFriction):
+        seen = with_friction(seen, hypothesis, index)
     if isinstance(effect, FollowsLoad):
         seen = with_load(seen, ((other, other.pull) for other in hypothesis.terms))
     if missing is not None:
