@@ -42,7 +42,8 @@ def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None
     ending = "".join(path.suffixes[-2:]).lower() if path.suffix.lower() == ".gz" else path.suffix.lower()
     if ending not in WRITERS:
         raise InputError(path, f"found the ending '{ending}'", f"allowed: {', '.join(WRITERS)}")
-    labels = {"time": "s", **trace.units}
+    si = {"time": "s", **trace.units}
+    labels = dict(si)
     if ending == ".trace" and trace.axis_kind.turns:
         labels |= {
             name: unit for name, unit in LAB_UNITS.items() if name in trace and same_dimension(unit, labels[name])
@@ -51,8 +52,8 @@ def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None
         where = f"{path}: unit of {name}"
         if name not in labels:
             raise InputError(where, "the trace holds no such signal", f"allowed: {', '.join(labels)}")
-        if scale_in(name, unit, where).unit != labels[name]:
-            raise InputError(where, f"found '{unit}'", f"allowed: a unit of {labels[name]}")
+        if scale_in(name, unit, where).unit != si[name]:
+            raise InputError(where, f"found '{unit}'", f"allowed: a unit of {si[name]}")
         labels[name] = unit
     columns = {}
     for name, values in {"time": trace.time, **trace.signals}.items():

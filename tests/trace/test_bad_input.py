@@ -292,7 +292,14 @@ def test_damage_anywhere_gives_a_trace_or_an_input_error(samples, tmp_path, kind
 
 @pytest.mark.parametrize(
     "content",
-    ["[]", "[3, 4]", '[{"timestamp": 0, "speed": 1}, 3]', '{"entries": [3, 4]}', '{"entries": [], "input_volts": 12}'],
+    [
+        "[]",
+        "[3, 4]",
+        '[{"timestamp": 0, "speed": 1}, 3]',
+        '{"entries": [3, 4]}',
+        '{"entries": [], "input_volts": 12}',
+        '{"charts": [{"name": "gap", "panels": [{"x": 1.0}]}]}',
+    ],
 )
 def test_a_log_whose_samples_are_no_records_is_refused_in_one_line(tmp_path, content):
     path = tmp_path / "log.json"

@@ -125,7 +125,8 @@ def _places(
     """A channel for each place in lists of numbers; one with a defect where they are none, or of several lengths."""
     label, unit = split_label(field.name)
     lengths = np.unique(compute().list_value_length(lists).drop_null().to_numpy(zero_copy_only=False))
-    plain = len(lengths) == 1 and not lists.null_count and is_numeric(field.type.value_type)
+    each = field.type.value_type
+    plain = len(lengths) == 1 and not lists.null_count and is_numeric(each) and not each.num_fields
     if not plain or not 0 < lengths[0] <= MOST_PLACES:
         found = f"found {field.type}" if len(lengths) < 2 else f"found lists of {lengths[0]} to {lengths[-1]} numbers"
         channel = Channel(label, unit, np.empty(0), path)

@@ -124,13 +124,14 @@ def _read_numpy(source: Source) -> Recording:
 
 
 def _array(loaded: np.lib.npyio.NpzFile, name: str) -> np.ndarray:
-    """An array of a zip; an empty one where it holds Python objects, which are not loaded."""
+    """An array of a zip; an empty one where it holds Python objects, which are not loaded, or another file."""
     try:
-        return loaded[name]
+        value = loaded[name]
     except ValueError as error:
         if "pickle" in str(error):
             return np.empty(0)
         raise
+    return value if isinstance(value, np.ndarray) else np.empty(0)
 
 
 def _read_hdf5(source: Source) -> Recording:
