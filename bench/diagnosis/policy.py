@@ -62,8 +62,8 @@ class Policy:
         undoubted: names up to which what was nearly as good as the first is not searched from: a wrong one needs others
             beside it, as an inertia over position in the place of an eccentric encoder did (blind set, pair 36).
         replaces: of what is above noise, on the rows that are determined: what an effect takes that is tried in the
-            place of others, with what is found beside it. By itself it takes what any name does: a backlash took .34
-            beside cogging (blind set, pair 47).
+            place of others, with what is found beside it. By itself it takes less: a backlash took .34 beside cogging
+            (blind set, pair 47).
         determined: share of rows whose torque the recording determines beside such an effect; where it is less, the
             other rows have to speak for it, too. The cleaner a recording, the fewer there are: a quarter to a half of
             rows beside a backlash that was found within 1 % (`tests/diagnosis/test_dead_zone.py`).
@@ -200,21 +200,29 @@ class Policy:
         rows = one.count / one.rows.correlation
         return rows * float(np.log(over_noise(other) / over_noise(one))) < np.log(self.odds)
 
-    def replaces_by(self, before: Fit, after: Fit, share: float) -> bool:
+    def leads(self, before: Fit, after: Fit) -> bool:
+        """Whether an effect in the place of others is worth the search of what else is beside it.
+
+        Of a realistic axis of seven effects a backlash took .18 beside the only one that was found, and all of it
+        beside the other five (`python -m tests.studies.injected --only realistic-007 --effect backlash`).
+        """
+        return self.physical(after) and self._saves(before, after, self.promising)
+
+    def replaces_by(self, before: Fit, after: Fit) -> bool:
         """Whether `after`, with an effect in the place of others, leaves less by a share where it is determined.
 
         Where it is not, no more than impacts at the wrong instants would; less by that share, too, if that is most.
         """
-        if not self.physical(after):
-            return False
-        left, open_left = (float(np.sum(before.residual[rows] ** 2)) for rows in (after.determined, ~after.determined))
-        noise = self.least_coloured(before, after) ** 2
+        left, after_left = (float(np.sum(each[~after.determined] ** 2)) for each in (before.residual, after.left))
+        allowed = ERRS_TWICE if float(after.determined.mean()) > self.determined else 1.0 - self.replaces
+        saves = self.physical(after) and self._saves(before, after, self.replaces)
+        return saves and after_left <= allowed * left and not self.only_damps(before, after)
+
+    def _saves(self, before: Fit, after: Fit, share: float) -> bool:
+        """Whether `after` leaves less by a share of what is above noise, on the rows that it determines."""
+        left, noise = float(np.sum(before.residual[after.determined] ** 2)), self.least_coloured(before, after) ** 2
         excess = max(left - after.count * noise, 0.0)
-        clearly = left - after.squares > max(share * excess, self.by_chance(before, 1, noise))
-        enough = float(after.determined.mean()) > self.determined
-        allowed = ERRS_TWICE if enough else 1.0 - share
-        no_more = float(np.sum(after.left[~after.determined] ** 2)) <= allowed * open_left
-        return clearly and no_more and not self.only_damps(before, after)
+        return left - after.squares > max(share * excess, self.by_chance(before, 1, noise))
 
 
 def _physical(fitted: Fit, index: int) -> bool:

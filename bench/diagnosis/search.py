@@ -282,7 +282,7 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
     beside = [term for term in last.terms if term.effect.name not in effect.replaces]
     for _ in range(TURNS):
         placed = in_place(fit(last.rows, last.hypothesis.with_terms(beside)), effect, shape, effects, policy)
-        if placed is None or not policy.replaces_by(last, placed, effect.needed):
+        if placed is None or not policy.leads(last, placed):
             break
         replaced = selected(Searched((*earlier, Step(backward_elimination(placed, policy)))), effects, policy)
         others = [term for term in replaced.last.terms if term.effect is not effect]
@@ -291,7 +291,7 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
         beside = others
         left = [] if policy.remains(replaced.last) else replaced.last.terms  # bent to what was hidden still
         shape = next((term.shape for term in left if term.effect is effect), None)
-    return replaced if replaced is not None and policy.replaces_by(last, replaced.last, policy.replaces) else None
+    return replaced if replaced is not None and policy.replaces_by(last, replaced.last) else None
 
 
 def in_place(

@@ -14,7 +14,8 @@ RULES: dict[str, Callable] = {
     "accepts": lambda self, before, after: worth(before, after) > self.by_chance(before, 1) and self.physical(after),
     "physical": lambda self, fitted: True,
     "needs": lambda self, fitted, less, index: True,
-    "replaces_by": lambda self, before, after, share: True,
+    "leads": lambda self, before, after: True,
+    "replaces_by": lambda self, before, after: True,
     "remains": lambda self, fitted: False,
 }
 

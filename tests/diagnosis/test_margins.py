@@ -36,7 +36,7 @@ def no_longer_needed(fitted, less, index=0):
 
 
 def replaces(before, after):
-    return POLICY.replaces_by(before, after, POLICY.replaces)
+    return POLICY.replaces_by(before, after)
 
 
 def remains(fitted):
@@ -146,6 +146,12 @@ def test_what_replaces_takes_half_of_what_stands_above_the_floor_physically(save
     """Its own strength, and the inertia that it leaves: what copies torque may take both."""
     after = made(level(1100.0 - saved), SPRING, strengths=(strength,), inertia=inertia)
     assert replaces(made(level(1100.0), OFFSET), after) is taken
+
+
+@pytest.mark.parametrize(("saved", "inertia", "leads"), [(99.0, 1.0, False), (101.0, 1.0, True), (101.0, -1e-9, False)])
+def test_a_search_goes_on_from_what_takes_a_tenth_in_the_place_of_others(saved, inertia, leads):
+    after = made(level(1100.0 - saved), SPRING, inertia=inertia)
+    assert POLICY.leads(made(level(1100.0), OFFSET), after) is leads
 
 
 @pytest.mark.parametrize(
