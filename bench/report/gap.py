@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.show import Course
-from bench.diagnosis.verdict import Gap
+from bench.diagnosis.diagnosis import Course, Diagnosis, Gap
 from bench.diagnosis.where import Profile, Where
 from bench.names import words
 from bench.report import document as doc

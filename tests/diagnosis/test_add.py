@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.add import add
+from bench.diagnosis.diagnosis import courses, shrinking
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, Step
-from bench.diagnosis.show import courses, shrinking
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
 from bench.fit.fit import fit

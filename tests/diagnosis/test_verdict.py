@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 
 from bench.arrays import NORMAL95, rms
-from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.name import NamedEffect
-from bench.diagnosis.policy import Policy
-from bench.diagnosis.verdict import (
+from bench.diagnosis.diagnosis import (
     OBJECTIONS,
     Gap,
     Shown,
+    diagnose,
     holdout_apart,
     moves_worse,
     negative_friction,
@@ -23,6 +21,8 @@ from bench.diagnosis.verdict import (
     unfinished,
     verdict,
 )
+from bench.diagnosis.name import NamedEffect
+from bench.diagnosis.policy import Policy
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
 from bench.parameter import Parameter
