@@ -179,7 +179,9 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     """
     last = searched.last
     yield from (step.fitted for step in searched.steps)
-    less = [settled(fit(last.rows, last.hypothesis.without(index)), policy) for index in range(len(last.terms))]
+    less: Sequence[Fit] = searched.less
+    if not less:
+        less = [settled(fit(last.rows, last.hypothesis.without(index)), policy) for index in range(len(last.terms))]
     if len(less) > 1:
         yield from less
     for instead in searched.instead:
