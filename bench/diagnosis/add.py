@@ -28,7 +28,6 @@ from bench.diagnosis.model import (
     Extension,
     Placed,
     Recorded,
-    Stage,
     VelocityGaps,
     holding_bandwidth,
     present_of,
@@ -112,7 +111,7 @@ class Added:
     """
 
     extension: Extension
-    stages: tuple[Stage, ...]
+    stages: tuple[Extension, ...]
     gaps: VelocityGaps
     recorded: tuple[Recorded, ...]
     rejected: tuple[Rejected, ...]
@@ -137,14 +136,16 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     recorded = [Recorded.of(RECORDING, recordings.trace, recordings.rig)]
     if recordings.holdout is not None:
         recorded.append(Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
-    extension = Extension(recordings.rows, RECORDING, found.hypothesis, suspects.outside, recordings.rig)
+    extension = Extension(recordings.rows, found.hypothesis, suspects.outside, recordings.rig)
     closed_loop = closed_loop_gap(recordings, extension)
     rejected: list[Rejected] = []
     while True:
-        refused = refusals(recordings, extension.whole.fitted)
-        modelled = last_determined(recordings, extension, suspects.policy) if refused else extension.whole
+        refused = refusals(recordings, extension.fitted)
+        modelled = last_determined(recordings, extension, suspects.policy) if refused else extension
         gaps = holding(extension, modelled, recordings)
-        stages = without_models(extension.stages, modelled, refused)
+        stages, reason = extension.stages, str(next(iter(refused.values()), ""))
+        count = next((index for index, stage in enumerate(stages) if stage is modelled), -1) + 1
+        stages = (*stages[:count], *(replace(stage, refused=reason) for stage in stages[count:]))
         shown = [(stage, each) for stage in stages for each in recorded]
         against = rejection(recordings, suspects, held_out, extension, gaps, shown)
         against = against or unlimited(extension, closed_loop)
@@ -180,7 +181,7 @@ def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError
     return refused_masses(masses, rig, clipped(recordings.trace, rig))
 
 
-def last_determined(recordings: Recordings, extension: Extension, policy: Policy) -> Stage | None:
+def last_determined(recordings: Recordings, extension: Extension, policy: Policy) -> Extension | None:
     """The last stage that determines the inertia; None where none does because of what is missing from the model.
 
     Raises:
@@ -197,15 +198,6 @@ def last_determined(recordings: Recordings, extension: Extension, policy: Policy
     return stage
 
 
-def without_models(
-    stages: Sequence[Stage], modelled: Stage | None, refused: Mapping[str, UndeterminedError]
-) -> tuple[Stage, ...]:
-    """Stages without a MuJoCo model after the last one whose inertia is determined."""
-    count = next((index for index, stage in enumerate(stages) if stage is modelled), -1) + 1
-    later = [replace(stage, model=None, problem=str(next(iter(refused.values())))) for stage in stages[count:]]
-    return (*stages[:count], *later)
-
-
 def everywhere(balance: Balance, other: Rows | None) -> bool:
     """Whether events repeat in every recording: the holdout shows them at the same time after its start."""
     if other is None or not any(isinstance(term.effect, Occasional) for term in balance.hypothesis.terms):
@@ -213,7 +205,7 @@ def everywhere(balance: Balance, other: Rows | None) -> bool:
     return balance.repeating(True).gap(other) < balance.gap(other)
 
 
-def holding(extension: Extension, modelled: Stage | None, recordings: Recordings) -> VelocityGaps:
+def holding(extension: Extension, modelled: Extension | None, recordings: Recordings) -> VelocityGaps:
     """Velocity gaps under a cascade that holds every model of an extension to the recording, `modelled` the last."""
     if modelled is None or modelled.model is None:
         return VelocityGaps(BANDWIDTH, extension.stages[0].fitted.base.inertia if modelled else None)
@@ -227,24 +219,24 @@ def rejection(
     held_out: HeldOut,
     extension: Extension,
     gaps: VelocityGaps,
-    shown: Sequence[tuple[Stage, Recorded]],
+    shown: Sequence[tuple[Extension, Recorded]],
 ) -> tuple[int, str] | None:
     """Index of the last effect that held-out motion contradicts, with the reason; None if it contradicts none.
 
     The torque gaps come first, as they cost no simulation. Where they contradict none, what is shown in the end is
     simulated beside the judged model: side by side that costs hardly more.
     """
-    judged, judge = replace(extension, recording=held_out.fitted, rows=held_out.rows), held_out.recorded
+    judged, judge = replace(extension, recording=held_out.fitted), held_out.recorded
     floor = NULL * white_noise(measured_velocity(recordings.trace))
     asked: list[tuple[int, Extension]] = []
     by_torque: tuple[int, str] | None = None
     for index in reversed(range(len(judged.names))):
-        if judged.a(Occasional, index) and (not judge.events or held_out.rows != RECORDING):
+        if judged.a(Occasional, index) and (not judge.events or held_out.fitted is not recordings.rows):
             continue
-        if not held_out.determines(judged.whole.fitted, extension.whole.fitted, index):
+        if not held_out.determines(judged.fitted, extension.fitted, index):
             continue
         less = judged.less(index)
-        balances = (Balance.of(each.whole.fitted).repeating(judge.events) for each in (less, judged))
+        balances = (Balance.of(each.fitted).repeating(judge.events) for each in (less, judged))
         before, after = (balance.gap(held_out.judge) for balance in balances)
         if after > before:
             by_torque = index, _grows(f"torque gap of the {judge.name}", before, after, judged.rig.effort_unit)
@@ -252,24 +244,24 @@ def rejection(
         asked.append((index, less))
     if not asked:
         return by_torque
-    gaps.simulate([(judged.whole, judge), *(() if by_torque else shown)])
-    if not gaps.of(judged.whole, judge) > floor:  # less than which never counts as worse
+    gaps.simulate([(judged, judge), *(() if by_torque else shown)])
+    if not gaps.of(judged, judge) > floor:  # less than which never counts as worse
         return by_torque
-    gaps.simulate((less.whole, judge) for _, less in asked)
+    gaps.simulate((less, judge) for _, less in asked)
     for index, less in asked:
-        in_phase = gaps.in_phase(judged.whole, judge)
-        in_phase = in_phase or (not judged.a(Placed, index) and gaps.in_phase(less.whole, judge))
-        before, after = (gaps.of(each.whole, judge) for each in (less, judged))
+        in_phase = gaps.in_phase(judged, judge)
+        in_phase = in_phase or (not judged.a(Placed, index) and gaps.in_phase(less, judge))
+        before, after = (gaps.of(each, judge) for each in (less, judged))
         allowed = float(np.hypot(before, floor) * (1.0 if in_phase else np.sqrt(ERRS_TWICE)))
         worse = min(before, after) < judge.varies and after > allowed
-        if worse and not _comes_closer(recordings, suspects, judged.whole, held_out, gaps, allowed):
+        if worse and not _comes_closer(recordings, suspects, judged, held_out, gaps, allowed):
             unit = judged.rig.axis_kind.speed_unit
             return index, _grows(f"velocity gap of the {judge.name}", before, after, unit)
     return by_torque
 
 
 def _comes_closer(
-    recordings: Recordings, suspects: Suspects, whole: Stage, held_out: HeldOut, gaps: VelocityGaps, allowed: float
+    recordings: Recordings, suspects: Suspects, whole: Extension, held_out: HeldOut, gaps: VelocityGaps, allowed: float
 ) -> bool:
     """Whether refinement by simulation brings the velocity gap of all effects below what is allowed."""
     if whole.model is None:
@@ -292,16 +284,16 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
     index = under_drive(extension)
     if index is None or "velocity_reference" not in recordings.trace:
         return None
-    without, whole = extension.less(index).whole, extension.whole
-    if without.model is None or whole.model is None:
+    without = extension.less(index)
+    if without.model is None or extension.model is None:
         return None
-    ((shown, limit),) = ((one, one.effect) for one in whole.outside if isinstance(one.effect, DriveLimit))
+    ((shown, limit),) = ((one, one.effect) for one in extension.outside if isinstance(one.effect, DriveLimit))
     trace = limit.shown_in(recordings.trace, recordings.rig, dict(shown.values))
     velocity = measured_velocity(trace)
     try:
         before, after = (
             rms(follow_references(stored.model, trace, recordings.rig).velocity[:, 0] - velocity)
-            for stored in (without.model, whole.model)
+            for stored in (without.model, extension.model)
         )
     except BenchError:
         return None
@@ -327,7 +319,9 @@ def _grows(what: str, before: float, after: float, unit: str = "") -> str:
     return f"the {what} grows with it: {before:.3g} -> {after:.3g} {unit}".rstrip()
 
 
-def refined(recordings: Recordings, stage: Stage, suspects: Suspects, held_out: HeldOut, gaps: VelocityGaps) -> Refined:
+def refined(
+    recordings: Recordings, stage: Extension, suspects: Suspects, held_out: HeldOut, gaps: VelocityGaps
+) -> Refined:
     """The quantities of a model with their intervals, refined if that is possible and helps.
 
     It is possible if effects were added, no unexplained remainder would bias the values, and the gap exceeds that of a

@@ -265,7 +265,7 @@ def diagnose(
 def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:
     """The diagnosis of what was named and kept; `located`: where the gap of the bare fit sits."""
     rig, unit, kind = recordings.rig, recordings.unit, recordings.rig.axis_kind
-    whole, kept, searched = added.extension.whole.fitted, added.refined, suspects.searched
+    whole, kept, searched = added.extension.fitted, added.refined, suspects.searched
     shown, several = courses(recordings, added), apart(recordings, whole, kept.parameters)
     steps, current = shrinking(added, shown), recordings.current
     torque, velocity = torque_gap(steps, whole, unit), velocity_gap(recordings, steps)
@@ -329,7 +329,7 @@ def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
     """Gaps of the bare axis and after each addition, the last one as it was kept."""
     return [
         Shrunk(
-            stage.effect,
+            stage.names[-1] if stage.names else "",
             tuple(rms(course.torque_left[k]) for course in shown),
             tuple(math.nan if (left := course.velocity_left[k]) is None else known_rms(left) for course in shown),
         )
@@ -423,7 +423,7 @@ class Shown:
     @property
     def whole(self) -> Fit:
         """The torque balance with all effects."""
-        return self.added.extension.whole.fitted
+        return self.added.extension.fitted
 
     @property
     def effects(self) -> list[NamedEffect]:
@@ -468,7 +468,7 @@ def moves_worse(shown: Shown) -> str:
         if pair is None:
             continue
         allowed = math.hypot(pair[0], gap.noise_floor)
-        if pair[1] > allowed * (1.0 if added.gaps.in_phase(added.extension.whole, recorded) else math.sqrt(ERRS_TWICE)):
+        if pair[1] > allowed * (1.0 if added.gaps.in_phase(added.extension, recorded) else math.sqrt(ERRS_TWICE)):
             name, before, after = recorded.name, *pair
             return f"simulated motion of the {name} is worse with it: {before:.3g} -> {after:.3g} {gap.unit}"
     return ""
@@ -577,7 +577,7 @@ def impacts(fitted: Fit, unit: str) -> list[str]:
 
 def out_of_phase(added: Added) -> list[str]:
     """A warning of recordings along which simulated waves, or impacts, lose the phase of the measured motion."""
-    lost = [each.name for each in added.recorded if not added.gaps.in_phase(added.extension.whole, each)]
+    lost = [each.name for each in added.recorded if not added.gaps.in_phase(added.extension, each)]
     return [
         f"the simulated position leaves the {name}'s by more than waves or impacts allow: they are judged by their "
         "torque at the measured position, and by the velocity gap where its squares double"

@@ -35,7 +35,7 @@ BLOCKS, REACHES = 24, 8
 RANGES = 3
 #: Share of its largest torque above which an event acts on a row.
 ACTS = 1e-3
-#: Names of fitted and of judging motion, if both are of one recording.
+#: Names of the motion that simulations may be fitted to and of judging motion, if both are of one recording.
 REST, THIRD = "rest of the recording", "third of the recording that was held out"
 
 
@@ -45,14 +45,12 @@ class HeldOut:
 
     Attributes:
         fitted: rows that judged fits use.
-        rows: their name.
         judge: rows they are judged by.
         recorded: the same for simulations.
         seen: motion that simulations may be fitted to.
     """
 
     fitted: Rows
-    rows: str
     judge: Rows
     recorded: Recorded
     seen: Recorded
@@ -68,23 +66,37 @@ class HeldOut:
         trace, rig, rows = recordings.trace, recordings.rig, recordings.rows
         if recordings.holdout is not None and recordings.holdout_rows is not None and trusted:
             recorded = Recorded.of(HOLDOUT, recordings.holdout, rig, events=events)
-            return cls(rows, RECORDING, recordings.holdout_rows, recorded, Recorded.of(RECORDING, trace, rig))
-        plain = cls.third(recordings, Parts.of(rows))
+            return cls(rows, recordings.holdout_rows, recorded, Recorded.of(RECORDING, trace, rig))
+        plain = cls.third(recordings)
         events_of = [k for k, term in enumerate(whole.terms) if isinstance(term.effect, Occasional)]
         lacked = [k for k in events_of if plain.lacks(whole, k)]
         if not lacked:
             return plain
         acts = np.abs(lay_out(rows, whole.hypothesis).columns[:, np.isin(whole.owners, lacked)])
-        return cls.third(recordings, Parts.of(rows, np.any(acts > ACTS * acts.max(axis=0), axis=1)))
+        return cls.third(recordings, np.any(acts > ACTS * acts.max(axis=0), axis=1))
 
     @classmethod
-    def third(cls, recordings: Recordings, parts: Parts) -> HeldOut:
-        """A part of the recording, judging a fit to the rest."""
+    def third(cls, recordings: Recordings, kept: NDArray[np.bool_] | bool = False) -> HeldOut:
+        """A third of every regime, in no block that holds one of the rows `kept` (m,), judges a fit to the rest."""
         trace, rig, rows = recordings.trace, recordings.rig, recordings.rows
-        held = parts.held(trace.time - trace.time[0])
-        recorded, seen = Recorded.of(THIRD, trace, rig, held), Recorded.of(REST, trace, rig, ~held)
-        fitted, judge = (rows.selected(lambda time, part=part: parts.apart(time, part)) for part in (False, True))
-        return cls(fitted, REST, judge, recorded, seen)
+        smooth, count = rows.conditioning.filter, rows.effort.size
+        shortest = REACHES * smooth.margin // smooth.stride
+        edges = np.linspace(0, count, int(np.clip(count // shortest, 3, BLOCKS)) + 1).astype(int)
+        shown = np.add.reduceat(regimes(rows), edges[:-1], axis=0)
+        free = ~np.logical_or.reduceat(np.broadcast_to(kept, count), edges[:-1])
+        borders, out, reach = rows.time[edges[1:-1]], balanced(shown, free), smooth.margin * smooth.sample_period
+
+        def held(time: Array) -> NDArray[np.bool_]:
+            return out[np.searchsorted(borders, time, side="right")]
+
+        def apart(part: bool) -> Rows:
+            """Rows of one part, over all of the filter's reach."""
+            reaches = (-reach, 0.0, reach)
+            return rows.selected(lambda time: np.all([held(time + ahead) == part for ahead in reaches], axis=0))
+
+        judging = held(trace.time - trace.time[0])
+        recorded, seen = Recorded.of(THIRD, trace, rig, judging), Recorded.of(REST, trace, rig, ~judging)
+        return cls(apart(False), apart(True), recorded, seen)
 
     def lacks(self, whole: Fit, index: int) -> bool:
         """Whether the fitted rows do not tell the strengths of a term of a fit to the recording."""
@@ -112,39 +124,6 @@ def _information(columns: Array, own: NDArray[np.bool_]) -> float:
     others = np.linalg.qr(columns[:, ~own])[0]
     left = columns[:, own] - others @ (others.T @ columns[:, own])
     return float(np.linalg.eigvalsh(left.T @ left)[0])
-
-
-@dataclass(frozen=True)
-class Parts:
-    """Which times of a recording are held out.
-
-    Attributes:
-        borders: between blocks, in time since the start - s - (b - 1,).
-        out: of each block, whether it is held out (b,).
-        reach: of the filter - s.
-    """
-
-    borders: Array
-    out: NDArray[np.bool_]
-    reach: float
-
-    @classmethod
-    def of(cls, rows: Rows, kept: NDArray[np.bool_] | bool = False) -> Parts:
-        """A third of every regime of the moving rows, in no block that holds one of those `kept` (m,)."""
-        smooth, count = rows.conditioning.filter, rows.effort.size
-        shortest = REACHES * smooth.margin // smooth.stride
-        edges = np.linspace(0, count, int(np.clip(count // shortest, 3, BLOCKS)) + 1).astype(int)
-        shown = np.add.reduceat(regimes(rows), edges[:-1], axis=0)
-        held = np.logical_or.reduceat(np.broadcast_to(kept, count), edges[:-1])
-        return cls(rows.time[edges[1:-1]], balanced(shown, ~held), smooth.margin * smooth.sample_period)
-
-    def held(self, time: Array) -> NDArray[np.bool_]:
-        """Times (n,) - s - that are held out."""
-        return self.out[np.searchsorted(self.borders, time, side="right")]
-
-    def apart(self, time: Array, part: bool) -> NDArray[np.bool_]:
-        """Times (r,) - s - of the part held out, or of the rest, over all of the filter's reach."""
-        return np.all([self.held(time + ahead) == part for ahead in (-self.reach, 0.0, self.reach)], axis=0)
 
 
 def regimes(rows: Rows) -> Array:

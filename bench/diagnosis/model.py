@@ -101,56 +101,22 @@ def holding_bandwidth(model: AxisModel, top_speed: float) -> float:
 
 
 @dataclass(frozen=True)
-class Stage:
-    """The model after an addition.
-
-    Attributes:
-        effect: added last; empty for the bare axis.
-        fitted: its torque balance.
-        outside: effects outside the torque balance.
-        rows: name of the rows it was fitted to.
-        model: in MuJoCo; None if MuJoCo cannot simulate it.
-        problem: why not; empty if it can.
-    """
-
-    effect: str
-    fitted: Fit
-    outside: tuple[Present, ...]
-    rows: str
-    model: StoredModel | None
-    problem: str = ""
-
-    def detected(self, suspects: Suspects) -> dict[Effect, Detected]:
-        """Those of the suspects outside the torque balance that are in this model."""
-        present = {one.effect for one in self.outside}
-        return {effect: found for effect, found in suspects.detected.items() if effect in present}
-
-    @classmethod
-    def of(cls, effect: str, fitted: Fit, outside: Sequence[Present], rig: Rig, rows: str) -> Stage:
-        """The model of a fit."""
-        try:
-            return cls(effect, fitted, tuple(outside), rows, stored_model(fitted, outside, rig))
-        except InputError as error:
-            return cls(effect, fitted, tuple(outside), rows, None, str(error))
-
-
-@dataclass(frozen=True)
 class Extension:
-    """The bare axis, then with one effect after another: those of the torque balance, then the others.
+    """The bare axis with effects: those of the torque balance, then the others.
 
     Attributes:
-        recording: the rows that every balance is fitted to.
-        rows: their name.
-        hypothesis: all effects of the torque balance.
+        recording: the rows that the balance is fitted to.
+        hypothesis: effects of the torque balance.
         outside: the others.
         rig: of the axis.
+        refused: why its inertia is not determined, so that it has no model; empty if it is.
     """
 
     recording: Rows
-    rows: str
     hypothesis: Hypothesis
     outside: tuple[Present, ...]
     rig: Rig
+    refused: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -158,18 +124,35 @@ class Extension:
         return (*self.hypothesis.names, *(present.name for present in self.outside))
 
     @cached_property
-    def whole(self) -> Stage:
-        """The model with all effects."""
-        effect = self.names[-1] if self.names else ""
-        return Stage.of(effect, fit(self.recording, self.hypothesis), self.outside, self.rig, self.rows)
+    def fitted(self) -> Fit:
+        """Its torque balance."""
+        return fit(self.recording, self.hypothesis)
 
     @cached_property
-    def stages(self) -> tuple[Stage, ...]:
-        """The model after none, one, ... all of the effects, each with the nuisances of the recording."""
+    def _simulated(self) -> tuple[StoredModel | None, str]:
+        if self.refused:
+            return None, self.refused
+        try:
+            return stored_model(self.fitted, self.outside, self.rig), ""
+        except InputError as error:
+            return None, str(error)
+
+    @property
+    def model(self) -> StoredModel | None:
+        """In MuJoCo; None if MuJoCo cannot simulate it."""
+        return self._simulated[0]
+
+    @property
+    def problem(self) -> str:
+        """Why MuJoCo cannot simulate it; empty if it can."""
+        return self._simulated[1]
+
+    @cached_property
+    def stages(self) -> tuple[Extension, ...]:
+        """With none, one, ... all of the effects, each with the nuisances of the recording."""
         own = range(len(self.hypothesis.terms))
         parts = [replace(self, hypothesis=self.hypothesis.first(k), outside=()) for k in own]
-        parts += [replace(self, outside=self.outside[:k]) for k in range(len(self.outside))]
-        return (*(part.whole for part in parts), self.whole)
+        return (*parts, *(replace(self, outside=self.outside[:k]) for k in range(len(self.outside))), self)
 
     def less(self, index: int) -> Extension:
         """The same without one of its effects."""
@@ -182,6 +165,11 @@ class Extension:
         """Whether an effect of the torque balance is of a kind."""
         terms = self.hypothesis.terms
         return index < len(terms) and isinstance(terms[index].effect, kind)
+
+    def detected(self, suspects: Suspects) -> dict[Effect, Detected]:
+        """Those of the suspects outside the torque balance that are in this model."""
+        present = {one.effect for one in self.outside}
+        return {effect: found for effect, found in suspects.detected.items() if effect in present}
 
 
 @dataclass(frozen=True)
@@ -223,10 +211,6 @@ class Recorded:
         """RMS of measured less simulated velocity at the judged samples - rad/s (m/s); nan where there is none."""
         return math.nan if simulated is None else rms(self.difference(simulated))
 
-    def residual(self, simulated: Array) -> Residual:
-        """Measured less simulated velocity at every sample, for display - rad/s (m/s) - (n,)."""
-        return (measured_velocity(self.trace) - simulated).astype(np.float32)
-
     @property
     def varies(self) -> float:
         """Standard deviation of the measured velocity: a larger gap means no tracking at all - rad/s (m/s)."""
@@ -250,24 +234,24 @@ class VelocityGaps:
         self.bandwidth, self.inertia = bandwidth, inertia
         self._known: dict[tuple[StoredModel | None, int, bool], Tracked | None] = {}
 
-    def simulate(self, pairs: Iterable[tuple[Stage, Recorded]]) -> None:
+    def simulate(self, pairs: Iterable[tuple[Extension, Recorded]]) -> None:
         """Simulate models along recordings in parallel, unless done before."""
-        self._tracked((stage.model, recorded) for stage, recorded in pairs)
+        self._tracked((extension.model, recorded) for extension, recorded in pairs)
 
-    def of(self, stage: Stage, recorded: Recorded) -> float:
+    def of(self, extension: Extension, recorded: Recorded) -> float:
         """RMS of measured less simulated velocity - rad/s (m/s); nan without a model, or where it diverged."""
-        return recorded.gap(*self.velocities([stage.model], recorded))
+        return recorded.gap(*self.velocities([extension.model], recorded))
 
     def residual(self, model: StoredModel | None, recorded: Recorded) -> Residual | None:
         """Measured less simulated velocity along a recording; None without a model, or where it diverged."""
         (simulated,) = self.velocities([model], recorded)
-        return None if simulated is None else recorded.residual(simulated)
+        return None if simulated is None else (measured_velocity(recorded.trace) - simulated).astype(np.float32)
 
-    def in_phase(self, stage: Stage, recorded: Recorded) -> bool:
+    def in_phase(self, extension: Extension, recorded: Recorded) -> bool:
         """Whether what a model has over position acts where the axis has it, as far as there is a simulation."""
-        placed = ((term.effect, term.shape) for term in stage.fitted.terms)
+        placed = ((term.effect, term.shape) for term in extension.fitted.terms)
         numbers = [effect.wave_number(shape) for effect, shape in placed if isinstance(effect, Placed)]
-        (tracked,) = self._tracked([(stage.model, recorded)]) if numbers else (None,)
+        (tracked,) = self._tracked([(extension.model, recorded)]) if numbers else (None,)
         return tracked is None or not max(numbers) * recorded.drift(tracked.position) > OUT_OF_PHASE
 
     def velocities(self, models: Iterable[StoredModel | None], recorded: Recorded) -> list[Array | None]:

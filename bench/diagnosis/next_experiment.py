@@ -91,7 +91,7 @@ def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExp
     stored = added.refined.model
     if stored is None or recordings.rig.drive is None:
         return None
-    width, floor = recordings.rows.conditioning.filter.width, added.extension.whole.fitted.floor
+    width, floor = recordings.rows.conditioning.filter.width, added.extension.fitted.floor
     for pair in alternatives(recordings, suspects, added, stored.model):
         try:
             found = [
@@ -122,14 +122,14 @@ def alternatives(recordings: Recordings, suspects: Suspects, added: Added, model
                 yield Alternatives((effect.name, other), models, "this recording cannot tell them apart")
     yield from nearly_as_good(recordings, suspects, added, model)
     if recordings.rows.scope.one_way:
-        yield from one_direction(recordings, added.extension.whole.fitted.base.coulomb, model)
+        yield from one_direction(recordings, added.extension.fitted.base.coulomb, model)
 
 
 def nearly_as_good(
     recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel
 ) -> Iterator[Alternatives]:
     """Candidates that, instead of the effect accepted last, leave hardly more of the torque."""
-    whole, searched = added.extension.whole.fitted, suspects.searched
+    whole, searched = added.extension.fitted, suspects.searched
     if not whole.terms or whole.hypothesis != searched.last.hypothesis:
         return
     index = len(whole.terms) - 1

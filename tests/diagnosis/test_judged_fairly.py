@@ -3,6 +3,8 @@
 Truth from the independent integrator.
 """
 
+from types import SimpleNamespace
+
 import pytest
 
 from bench.diagnosis import model as modelling
@@ -99,7 +101,6 @@ def test_phase_is_kept_within_a_sixth_of_a_turn_of_the_wave_or_of_the_gap(monkey
     away = Tracked(trace["position"] + drift, trace["velocity"])
     monkeypatch.setattr(modelling, "track_all", lambda held, bandwidth: [away for _ in held])
     bare, fitted = (fit(Rows.of(trace, RIG), Hypothesis(terms)) for terms in ((), (one,)))
-    model = modelling.Stage.of("", bare, (), RIG, "recording").model
-    stage = modelling.Stage(one.effect.name, fitted, (), "recording", model)
+    stage = SimpleNamespace(fitted=fitted, model=modelling.stored_model(bare, (), RIG))
     gaps = modelling.VelocityGaps(20.0, fitted.base.inertia)
     assert gaps.in_phase(stage, modelling.Recorded.of("recording", trace, RIG)) is kept

@@ -68,7 +68,7 @@ def test_an_event_of_the_recording_is_not_judged_by_a_holdout_without_it():
 def test_what_shows_under_the_drive_only_has_to_help_there(gap, kept):
     rows = Recordings.of(recorded(MOTION, spring), RIG, None).rows
     limit = Present.of("voltage_limit", {"voltage": 40.0})
-    against = unlimited(Extension(rows, "recording", Hypothesis((term("torsion_spring"),)), (limit,), RIG), gap)
+    against = unlimited(Extension(rows, Hypothesis((term("torsion_spring"),)), (limit,), RIG), gap)
     if kept:
         assert against is None
     else:

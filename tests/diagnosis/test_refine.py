@@ -6,7 +6,7 @@ import pytest
 from bench.arrays import NORMAL95
 from bench.diagnosis.add import Numbers, refined, stepped
 from bench.diagnosis.held_out import HeldOut
-from bench.diagnosis.model import Stage
+from bench.diagnosis.model import Extension
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
@@ -54,7 +54,7 @@ def whole():
     """Recordings, held-out motion, model and suspects of a recording whose spring is named."""
     recordings = Recordings.of(TRACE, RIG, None)
     fitted = fit(recordings.rows, Hypothesis((term("torsion_spring"),)))
-    stage = Stage.of("torsion_spring", fitted, (), RIG, "recording")
+    stage = Extension(recordings.rows, fitted.hypothesis, (), RIG)
     suspects = Suspects(Searched((Step(fitted),)), Probabilities((), 1.0), {}, False, Policy())
     return recordings, HeldOut.of(recordings, False, True, fitted), stage, suspects
 

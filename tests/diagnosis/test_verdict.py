@@ -68,7 +68,7 @@ def shown(
         added=SimpleNamespace(
             refused=refused or {},
             recorded=[SimpleNamespace(name="recording"), SimpleNamespace(name="holdout")],
-            extension=SimpleNamespace(whole=None),
+            extension=None,
             gaps=SimpleNamespace(in_phase=lambda stage, recorded: in_phase),
         ),
     )
@@ -141,9 +141,7 @@ def test_the_torque_of_friction_is_that_of_its_own_column():
         "viscous_friction_coefficient": parameter(8e-4, 1e-5),
         "coulomb_friction_torque": parameter(0.08, 0.001),
     }
-    added = SimpleNamespace(
-        extension=SimpleNamespace(whole=SimpleNamespace(fitted=fitted)), refined=SimpleNamespace(parameters=parameters)
-    )
+    added = SimpleNamespace(extension=SimpleNamespace(fitted=fitted), refined=SimpleNamespace(parameters=parameters))
     recordings = SimpleNamespace(rig=RIG)
     friction = Shown(recordings, None, added, None, None).friction  # pyright: ignore[reportArgumentType]
     speed = rms(fitted.rows.values(lambda signals: signals.velocity))
