@@ -96,6 +96,7 @@ class Added:
     """The accepted effects.
 
     Attributes:
+        recordings, suspects: in which they were found, and among what.
         extension: the effects accepted, fitted to the whole recording.
         stages: the model after none, one, ... all of them.
         gaps: velocity gaps, simulated for every addition.
@@ -110,6 +111,8 @@ class Added:
         refused: why a parameter is not determined beside the effects, by its name; the model is then the last that is.
     """
 
+    recordings: Recordings
+    suspects: Suspects
     extension: Extension
     stages: tuple[Extension, ...]
     gaps: VelocityGaps
@@ -133,9 +136,9 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
     held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
-    recorded = [Recorded.of(RECORDING, recordings.trace, recordings.rig)]
+    recorded = [Recorded(RECORDING, recordings.trace, recordings.rig)]
     if recordings.holdout is not None:
-        recorded.append(Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
+        recorded.append(Recorded(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
     extension = Extension(recordings.rows, found.hypothesis, suspects.outside, recordings.rig)
     closed_loop = closed_loop_gap(recordings, extension)
     rejected: list[Rejected] = []
@@ -160,6 +163,8 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         kept = replace(kept, model=kept.model or (modelled and modelled.model), parameters=determined)
     problem = [f"not added to the MuJoCo model: {stages[-1].problem}"] if stages[-1].problem else []
     return Added(
+        recordings=recordings,
+        suspects=suspects,
         extension=extension,
         stages=stages,
         gaps=gaps,

@@ -19,7 +19,7 @@ from bench.arrays import Array, known_rms, rms
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, Rejected, add
-from bench.diagnosis.name import NamedEffect, Suspects, name
+from bench.diagnosis.name import NamedEffect, name
 from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.policy import ERRS_TWICE, POLICY, Policy
 from bench.diagnosis.probability import Probabilities
@@ -68,7 +68,7 @@ class Gap:
     unit: str
     noise_floor: float
     identify: tuple[float, float] | None
-    holdout: tuple[float, float] | None
+    holdout: tuple[float, float] | None = None
     judged: tuple[float, float] | None = None
 
 
@@ -258,19 +258,19 @@ def diagnose(
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
-    shown, checks = show(recordings, bare, located, suspects, added), joined([each.checks for each in gated])
+    shown, checks = show(bare, located, added), joined([each.checks for each in gated])
     return replace(shown, checks=checks, warnings=[*shown.warnings, *moves])
 
 
-def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Suspects, added: Added) -> Diagnosis:
+def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
     """The diagnosis of what was named and kept; `located`: where the gap of the bare fit sits."""
-    rig, unit, kind = recordings.rig, recordings.unit, recordings.rig.axis_kind
-    whole, kept, searched = added.extension.fitted, added.refined, suspects.searched
-    shown, several = courses(recordings, added), apart(recordings, whole, kept.parameters)
-    steps, current = shrinking(added, shown), recordings.current
-    torque, velocity = torque_gap(steps, whole, unit), velocity_gap(recordings, steps)
-    likely = suspects.probabilities.without(frozenset(one.name for one in added.rejected))
-    comes_to, because = verdict(Shown(recordings, suspects, added, torque, velocity))
+    recordings, whole, kept = added.recordings, added.extension.fitted, added.refined
+    unit, kind, current = recordings.unit, recordings.rig.axis_kind, recordings.current
+    shown, several = courses(added), apart(recordings, whole, kept.parameters)
+    steps = shrinking(added, shown)
+    torque, velocity = gaps(added, steps)
+    likely = added.suspects.probabilities.without(frozenset(one.name for one in added.rejected))
+    comes_to, because = verdict(Shown(added, torque, velocity))
     return Diagnosis(
         verdict=comes_to,
         because=because,
@@ -291,15 +291,15 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
         rejected=added.rejected,
         refused=added.refused,
         holdout=added.compared,
-        next_experiment=propose(recordings, suspects, added),
-        stopped=searched.stopped,
+        next_experiment=propose(added),
+        stopped=added.suspects.searched.stopped,
         model=kept.model,
         balance=Balance.of(whole).repeating(added.repeats),
         courses=shown,
         profiles=profiles(bare, whole, located, kind, unit, current),
-        considered=considered(recordings, suspects, added, likely),
+        considered=considered(added, likely),
         warnings=[
-            *suspicions(recordings.trace, rig, kept.parameters),
+            *suspicions(recordings.trace, recordings.rig, kept.parameters),
             *left_open(recordings.rows, kind),
             *impacts(whole, unit),
             *out_of_phase(added),
@@ -309,9 +309,9 @@ def show(recordings: Recordings, bare: Fit, located: list[Where], suspects: Susp
     )
 
 
-def courses(recordings: Recordings, added: Added) -> tuple[Course, ...]:
+def courses(added: Added) -> tuple[Course, ...]:
     """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
-    laid_out = [rows for rows in (recordings.rows, recordings.holdout_rows) if rows is not None]
+    laid_out = [rows for rows in (added.recordings.rows, added.recordings.holdout_rows) if rows is not None]
     balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.stages]
     found = []
     for rows, recorded in zip(laid_out, added.recorded, strict=True):
@@ -337,26 +337,27 @@ def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
     ]
 
 
-def torque_gap(steps: list[Shrunk], whole: Fit, unit: str) -> Gap:
-    """Of all effects together, over all rows; beside it what is left on those that judge the fit, where not all do."""
-    pairs = list(zip(steps[0].torque, steps[-1].torque, strict=True))
+def gaps(added: Added, steps: Sequence[Shrunk]) -> tuple[Gap, Gap]:
+    """Torque and velocity gap of all effects together.
+
+    Of the torque over all rows; beside it what is left on those that judge the fit, where not all do. Of the velocity
+    None where MuJoCo cannot have the model or a simulation diverged.
+    """
+    whole, recordings = added.extension.fitted, added.recordings
+    torque = zip(steps[0].torque, steps[-1].torque, strict=True)
+    velocity = zip(steps[0].velocity, steps[-1].velocity, strict=True)
+    simulated = [pair if all(map(math.isfinite, pair)) else None for pair in velocity]
     judged = None if whole.determined.all() else (float(whole.determined.mean()), whole.rms)
-    return Gap(unit, whole.floor, pairs[0], pairs[1] if len(pairs) > 1 else None, judged)
-
-
-def velocity_gap(recordings: Recordings, steps: list[Shrunk]) -> Gap:
-    """Of all effects together; None where MuJoCo cannot have the model or a simulation diverged."""
-    both = zip(steps[0].velocity, steps[-1].velocity, strict=True)
-    pairs = [pair if all(map(math.isfinite, pair)) else None for pair in both]
     floor = white_noise(measured_velocity(recordings.trace))
-    return Gap(recordings.rig.axis_kind.speed_unit, floor, pairs[0], pairs[1] if len(pairs) > 1 else None)
+    return (
+        Gap(recordings.unit, whole.floor, *torque, judged=judged),
+        Gap(recordings.rig.axis_kind.speed_unit, floor, *simulated),
+    )
 
 
-def considered(
-    recordings: Recordings, suspects: Suspects, added: Added, probabilities: Probabilities
-) -> tuple[Considered, ...]:
+def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, ...]:
     """All effects: those accepted in the order of addition, then the others by the share they explain."""
-    rounds = rounds_of(suspects.searched)
+    rounds = rounds_of(added.suspects.searched)
     kept = {one.effect: one for one in added.refined.effects}
     found: dict[Effect, Considered] = {}
     for effect in catalogue().values():
@@ -365,7 +366,7 @@ def considered(
             figures = (f"{key.replace('_', ' ')} {value:.3g}" for key, value in kept[effect].evidence.items())
             reason = ", ".join(figures) or "named"
         else:
-            reason = _against(effect, recordings, suspects, added, rounds)
+            reason = _against(effect, added, rounds)
         last = _share(rounds[-1], effect) if len(rounds) > 1 and effect not in kept else None
         likely = probabilities.names.get(effect.name, 0.0)
         found[effect] = Considered(effect, effect in kept, likely, shares[0] if shares else None, last, reason)
@@ -386,8 +387,9 @@ def _share(tried: Step, effect: Effect) -> float | None:
     return max(0.0, *gains) / max(tried.fitted.squares, 1e-300) if gains else None
 
 
-def _against(effect: Effect, recordings: Recordings, suspects: Suspects, added: Added, rounds: Sequence[Step]) -> str:
+def _against(effect: Effect, added: Added, rounds: Sequence[Step]) -> str:
     """Why an effect is not in the model: the first of these reasons that holds."""
+    suspects = added.suspects
     rejected = {one.name: one.reason for one in added.rejected}
     share = _share(rounds[-1], effect) if rounds else None
     reasons = {
@@ -396,7 +398,7 @@ def _against(effect: Effect, recordings: Recordings, suspects: Suspects, added: 
         "was taken up and let go: the others explain it too, or another set of names is likelier": any(
             effect is term.effect for tried in rounds for term in tried.fitted.terms
         ),
-        "such a recording cannot show it": not effect.sought(recordings.rows.scope),
+        "such a recording cannot show it": not effect.sought(added.recordings.rows.scope),
         "no more than chance": share is not None
         and share * rounds[-1].fitted.squares < suspects.policy.by_chance(rounds[-1].fitted, 1),
         "too little, or with values that physics forbids": share is not None,
@@ -410,12 +412,10 @@ class Shown:
     """What a diagnosis shows, as far as the verdict depends on it.
 
     Attributes:
-        recordings, suspects, added: as found.
+        added: the effects accepted.
         torque, velocity: gaps of the bare axis and of the model.
     """
 
-    recordings: Recordings
-    suspects: Suspects
     added: Added
     torque: Gap
     velocity: Gap
@@ -433,7 +433,7 @@ class Shown:
     @property
     def friction(self) -> dict[str, tuple[Parameter, float]]:
         """Viscous and Coulomb friction, each with its RMS torque at unit strength."""
-        kind, whole, parameters = self.recordings.rig.axis_kind, self.whole, self.added.refined.parameters
+        kind, whole, parameters = self.added.recordings.rig.axis_kind, self.whole, self.added.refined.parameters
         return {
             kind.parameter(term): (parameters[kind.parameter(term)], rms(whole.columns[:, whole.owners == term]))
             for term in (VISCOUS, COULOMB)
@@ -442,7 +442,7 @@ class Shown:
 
 def remains(shown: Shown) -> str:
     """The torque residual is clearly above noise: by what multiple of the floor."""
-    if not shown.suspects.policy.remains(shown.whole):
+    if not shown.added.suspects.policy.remains(shown.whole):
         return ""
     return f"what is left is {shown.whole.chi:.3g} times the noise"
 
@@ -455,8 +455,8 @@ def refused(shown: Shown) -> str:
 
 def unfinished(shown: Shown) -> str:
     """The search ended at a limit, or found an effect that was excluded."""
-    stopped = shown.suspects.searched.stopped
-    return stopped or ("an effect that was not to be tried" if shown.suspects.withheld else "")
+    stopped = shown.added.suspects.searched.stopped
+    return stopped or ("an effect that was not to be tried" if shown.added.suspects.withheld else "")
 
 
 def moves_worse(shown: Shown) -> str:
@@ -483,7 +483,7 @@ def undetermined(shown: Shown) -> str:
     """
     if not shown.effects:
         return ""
-    time = shown.recordings.trace.time
+    time = shown.added.recordings.trace.time
     for one in shown.effects:
         for quantity in (each for each in one.effect.quantities if not each.minor):
             found = one.parameters.get(quantity.name)
@@ -510,7 +510,7 @@ def holdout_apart(shown: Shown) -> str:
     if gap.holdout is None or gap.identify is None:
         return ""
     least = max(gap.identify[1], gap.noise_floor)
-    if gap.holdout[1] <= shown.suspects.policy.holdout_gap * least:
+    if gap.holdout[1] <= shown.added.suspects.policy.holdout_gap * least:
         return ""
     return f"the holdout stands apart: {gap.holdout[1]:.3g} {gap.unit} are left there, {least:.3g} here"
 

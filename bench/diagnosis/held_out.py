@@ -65,8 +65,8 @@ class HeldOut:
         """
         trace, rig, rows = recordings.trace, recordings.rig, recordings.rows
         if recordings.holdout is not None and recordings.holdout_rows is not None and trusted:
-            recorded = Recorded.of(HOLDOUT, recordings.holdout, rig, events=events)
-            return cls(rows, recordings.holdout_rows, recorded, Recorded.of(RECORDING, trace, rig))
+            recorded = Recorded(HOLDOUT, recordings.holdout, rig, events=events)
+            return cls(rows, recordings.holdout_rows, recorded, Recorded(RECORDING, trace, rig))
         plain = cls.third(recordings)
         events_of = [k for k, term in enumerate(whole.terms) if isinstance(term.effect, Occasional)]
         lacked = [k for k in events_of if plain.lacks(whole, k)]
@@ -95,7 +95,7 @@ class HeldOut:
             return rows.selected(lambda time: np.all([held(time + ahead) == part for ahead in reaches], axis=0))
 
         judging = held(trace.time - trace.time[0])
-        recorded, seen = Recorded.of(THIRD, trace, rig, judging), Recorded.of(REST, trace, rig, ~judging)
+        recorded, seen = Recorded(THIRD, trace, rig, judging), Recorded(REST, trace, rig, ~judging)
         return cls(apart(False), apart(True), recorded, seen)
 
     def lacks(self, whole: Fit, index: int) -> bool:

@@ -179,25 +179,21 @@ class Recorded:
     Attributes:
         name: of it.
         trace: the recording.
-        effort, known: of the motor, and known to resist it beside the axis (n,) - N*m (N).
-        judged: (n,) samples over which the gap is taken.
+        rig: of the axis.
+        over: (n,) samples over which the gap is taken, as far as they are in stretches without holes.
         events: whether the model's events occur in it.
     """
 
     name: str
     trace: Trace
-    effort: Array
-    known: Array
-    judged: NDArray[np.bool_]
+    rig: Rig
+    over: NDArray[np.bool_] | bool = True
     events: bool = True
 
-    @classmethod
-    def of(
-        cls, name: str, trace: Trace, rig: Rig, over: NDArray[np.bool_] | bool = True, events: bool = True
-    ) -> Recorded:
-        """A recording whose gap is taken over some samples (n,)."""
-        effort = rig.own_effort(trace)[0]
-        return cls(name, trace, effort, effort - less_known(trace, effort), in_stretches(trace) & over, events)
+    @cached_property
+    def judged(self) -> NDArray[np.bool_]:
+        """(n,) samples over which the gap is taken."""
+        return in_stretches(self.trace) & self.over
 
     def difference(self, simulated: Array) -> Array:
         """Simulated less measured velocity at the judged samples - rad/s (m/s)."""
@@ -215,11 +211,6 @@ class Recorded:
     def varies(self) -> float:
         """Standard deviation of the measured velocity: a larger gap means no tracking at all - rad/s (m/s)."""
         return float(np.std(measured_velocity(self.trace)[self.judged]))
-
-    def holding(self, stored: StoredModel, inertia: float | None) -> SoftTracking:
-        """A model that tracks it by a cascade designed for an inertia - kg*m**2 (kg)."""
-        model = stored.model if self.events else without_events(stored.model)
-        return SoftTracking(model, self.trace, self.effort, stored.misalignment, inertia, self.known)
 
 
 class VelocityGaps:
@@ -261,9 +252,13 @@ class VelocityGaps:
     def _tracked(self, pairs: Iterable[tuple[StoredModel | None, Recorded]]) -> list[Tracked | None]:
         asked = [(model, one, (model, id(one.trace), one.events)) for model, one in pairs]
         new = {
-            key: one.holding(model, self.inertia)
-            for model, one, key in asked
-            if model is not None and key not in self._known
+            key: self._holding(model, one) for model, one, key in asked if model is not None and key not in self._known
         }
         self._known |= zip(new, track_all(list(new.values()), self.bandwidth), strict=True)
         return [self._known.get(key) for _, _, key in asked]
+
+    def _holding(self, stored: StoredModel, recorded: Recorded) -> SoftTracking:
+        model = stored.model if recorded.events else without_events(stored.model)
+        effort = recorded.rig.own_effort(recorded.trace)[0]
+        known = effort - less_known(recorded.trace, effort)
+        return SoftTracking(model, recorded.trace, effort, stored.misalignment, self.inertia, known)

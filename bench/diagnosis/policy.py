@@ -165,7 +165,10 @@ class Policy:
         """Whether every effect keeps within what physics allows: friction resists, masses are positive."""
         return (
             fitted.base.inertia > 0.0
-            and all(_physical(fitted, index) for index in range(len(fitted.terms)))
+            and all(
+                term.effect.physical(fitted.strengths(index), term.shape, fitted.base)
+                for index, term in enumerate(fitted.terms)
+            )
             and all(_plausible(fitted, effect) for effect in {term.effect for term in fitted.terms})
             and self.outlasts_impacts(fitted)
         )
@@ -216,12 +219,6 @@ class Policy:
         allowed = ERRS_TWICE if enough else 1.0 - share
         no_more = float(np.sum(after.left[~after.determined] ** 2)) <= allowed * open_left
         return clearly and no_more and not self.only_damps(before, after)
-
-
-def _physical(fitted: Fit, index: int) -> bool:
-    """Whether one term keeps within what physics allows."""
-    term = fitted.terms[index]
-    return term.effect.physical(fitted.strengths(index), term.shape, fitted.base)
 
 
 def _plausible(fitted: Fit, effect: Effect) -> bool:

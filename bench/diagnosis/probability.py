@@ -196,7 +196,9 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
                 yield fit(last.rows, last.hypothesis.with_term(index, Term(form)))
     yield from _of_other_form(last, policy)
     rivals = [effect for effect in RIVALS if effect.name not in excluded]
-    waveless = _without_waves(last)
+    beside_waves = [term for term in last.terms if not isinstance(term.effect, Wave)]
+    several = len(last.terms) - len(beside_waves) > 1
+    waveless = [fit(last.rows, last.hypothesis.with_terms(beside_waves))] if several else []
     for beside in filter(policy.remains, (last, *less, *waveless)):
         for rival in _promising(beside, candidates(beside, rivals)[:1], policy):
             yield from (rival, backward_elimination(rival, policy))
@@ -226,12 +228,6 @@ def _of_other_form(last: Fit, policy: Policy) -> Iterator[Fit]:
         yield from (fit(last.rows, kept.plus(Term(rival, (number,)))) for rival in rivals)
 
 
-def _without_waves(last: Fit) -> list[Fit]:
-    """The result less all its waves, where it has several."""
-    kept = [term for term in last.terms if not isinstance(term.effect, Wave)]
-    return [fit(last.rows, last.hypothesis.with_terms(kept))] if len(last.terms) - len(kept) > 1 else []
-
-
 def _promising(beside: Fit, found: Sequence[Candidate], policy: Policy) -> Iterator[Fit]:
     tried = (refined(beside, each.term) for each in found if policy.promises(beside, each.gain))
     return (after for after in tried if not policy.only_damps(beside, after))
@@ -245,7 +241,9 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
     best: dict[frozenset[tuple[Effect, int]], Fit] = {frozenset(): tried[0]}
     for each in tried[1:]:
         effects = frozenset(Counter(term.effect for term in each.terms).items())
-        if policy.physical(each) and _credible(each):
+        # a search may pass a coupling that hardly rings but not end with it
+        credible = all(term.effect.credible(term.shape) for term in each.terms if isinstance(term.effect, Coupling))
+        if policy.physical(each) and credible:
             best[effects] = min(best.get(effects, each), each, key=lambda fitted: fitted.squares)
     physical = list(best.values())
     determined = np.logical_and.reduce([each.determined for each in physical])
@@ -306,14 +304,15 @@ def _indistinct(balance: Balance, index: int, fitted: Fit) -> list[Balance]:
     return [replace(balance, hypothesis=balance.hypothesis.reshaped(index, each)) for each in shapes]
 
 
-def _credible(fitted: Fit) -> bool:
-    """Whether no coupling hardly rings: a search may pass such a shape but not end with it."""
-    return all(term.effect.credible(term.shape) for term in fitted.terms if isinstance(term.effect, Coupling))
-
-
 def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy: Policy) -> Probabilities:
     """Of hypotheses beside each other, the first of them the bare axis, and of names that the signals show directly."""
-    logs = [_log(each, policy) for each in scored]
+    logs = [
+        -policy.left * max(each.left, LEAST)
+        - policy.over * min(each.over, MUCH)
+        - policy.number * each.numbers
+        - policy.outside * each.outside
+        for each in scored
+    ]
     weights = np.exp(np.array([*logs, policy.none]) - max(*logs, policy.none))
     shares = (weights / weights.sum()).tolist()
     ranked = sorted(zip(scored, shares, strict=False), key=lambda one: (one[0].outside, -one[1]))
@@ -331,16 +330,6 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
             shared[names] = shared.get(names, 0.0) + share
     sets = sorted((NameSet(*each) for each in shared.items()), key=lambda one: -one.probability)
     return Probabilities(tuple(sets), 1.0 - sum(each.probability for each in sets), detected, beside, fits)
-
-
-def _log(one: Contender, policy: Policy) -> float:
-    """Logarithm of a hypothesis' weight."""
-    return (
-        -policy.left * max(one.left, LEAST)
-        - policy.over * min(one.over, MUCH)
-        - policy.number * one.numbers
-        - policy.outside * one.outside
-    )
 
 
 def _called(effect: Effect, scope: Scope, called: dict[str, str]) -> str:

@@ -34,11 +34,9 @@ class CurrentGainAsymmetry(CopiesTorque, MisreadEffort):
         return [[(-0.5 * np.abs(signals.torque), 0)]]
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
-        """No more than a sensor's tolerance."""
         return all(abs(difference) <= MOST for (difference,) in strengths)
 
     def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        """By the equation above."""
         return effort + 0.5 * values["gain_difference"] * abs(effort)
 
 

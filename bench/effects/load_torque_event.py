@@ -98,11 +98,9 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         return []
 
     def duration(self, shape: Sequence[float]) -> float:
-        """From start to end."""
         return shape[1] - shape[0]
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """It ends after it starts."""
         return self.duration(shape) > 0.0
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
@@ -123,7 +121,6 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         return [(start, end) for start, end in product(*places) if start < end]
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """While it acts."""
         time, torque = at.began + at.time, values["torque"]
         xp = namespace(torque)
         return xp.where((time >= values["start"]) & (time < values["end"]), torque, xp.zeros_like(torque))

@@ -23,15 +23,12 @@ class PositionDependentFriction(OncePerRevolution, ScalesFriction):
     )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """sin(q) and cos(q) of the friction level."""
         return sine_and_cosine(signals, 1.0, signals.friction)
 
     def unit(self, base: Base) -> float:
-        """Coulomb friction."""
         return base.coulomb
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """Once up and down a revolution."""
         return 1.0 + wave(values, "relative_amplitude", at.position)
 
 

@@ -33,7 +33,6 @@ class StribeckFriction(OfSpeed, RaisesFriction):
     shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0), measure=SPEED),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """exp(-(omega/omega_s)**2) against the motion."""
         return [[(signals.sign * np.exp(-((signals.velocity / shape[0]) ** 2)), 0)]]
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
@@ -49,7 +48,6 @@ class StribeckFriction(OfSpeed, RaisesFriction):
         return all(speed <= RISE * scope.top_speed for (speed,) in shapes)
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
         return {"static_friction": axis.coulomb}
 
     def least(self, axis: Axis) -> Mapping[str, Number]:
@@ -57,12 +55,10 @@ class StribeckFriction(OfSpeed, RaisesFriction):
         return {"static_friction": axis.coulomb}
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """The rise towards standstill."""
         fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)
         return (values["static_friction"] - axis.coulomb) * namespace(fallen).exp(fallen)
 
     def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:
-        """Its rise."""
         return FrictionLaw(values["static_friction"] - float(axis.coulomb), values["stribeck_velocity"])
 
 

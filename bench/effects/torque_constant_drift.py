@@ -37,11 +37,9 @@ class TorqueConstantDrift(CopiesTorque, MisreadEffort):
         return [[(-signals.torque * signals.time, 0)]]
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
-        """No more than magnets can lose."""
         return all(abs(rate) * scope.duration <= MOST for (rate,) in strengths)
 
     def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        """By the equation above."""
         return effort * (1.0 + values["rate"] * time)
 
 

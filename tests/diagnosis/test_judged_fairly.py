@@ -103,4 +103,4 @@ def test_phase_is_kept_within_a_sixth_of_a_turn_of_the_wave_or_of_the_gap(monkey
     bare, fitted = (fit(Rows.of(trace, RIG), Hypothesis(terms)) for terms in ((), (one,)))
     stage = SimpleNamespace(fitted=fitted, model=modelling.stored_model(bare, (), RIG))
     gaps = modelling.VelocityGaps(20.0, fitted.base.inertia)
-    assert gaps.in_phase(stage, modelling.Recorded.of("recording", trace, RIG)) is kept
+    assert gaps.in_phase(stage, modelling.Recorded("recording", trace, RIG)) is kept

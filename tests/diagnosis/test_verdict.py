@@ -62,10 +62,10 @@ def shown(
         velocity=velocity or quiet,
         torque=torque or quiet,
         friction={"coulomb_friction_torque": (parameter(*friction), 1.0)},
-        recordings=SimpleNamespace(trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
-        suspects=SimpleNamespace(policy=Policy(), searched=searched, withheld=withheld),
         whole=made(level(100.0 * chi**2)),
         added=SimpleNamespace(
+            recordings=SimpleNamespace(trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
+            suspects=SimpleNamespace(policy=Policy(), searched=searched, withheld=withheld),
             refused=refused or {},
             recorded=[SimpleNamespace(name="recording"), SimpleNamespace(name="holdout")],
             extension=None,
@@ -141,9 +141,12 @@ def test_the_torque_of_friction_is_that_of_its_own_column():
         "viscous_friction_coefficient": parameter(8e-4, 1e-5),
         "coulomb_friction_torque": parameter(0.08, 0.001),
     }
-    added = SimpleNamespace(extension=SimpleNamespace(fitted=fitted), refined=SimpleNamespace(parameters=parameters))
-    recordings = SimpleNamespace(rig=RIG)
-    friction = Shown(recordings, None, added, None, None).friction  # pyright: ignore[reportArgumentType]
+    added = SimpleNamespace(
+        recordings=SimpleNamespace(rig=RIG),
+        extension=SimpleNamespace(fitted=fitted),
+        refined=SimpleNamespace(parameters=parameters),
+    )
+    friction = Shown(added, None, None).friction  # pyright: ignore[reportArgumentType]
     speed = rms(fitted.rows.values(lambda signals: signals.velocity))
     for name, torque in (("viscous_friction_coefficient", speed), ("coulomb_friction_torque", 1.0)):
         assert friction[name][0] is parameters[name]
