@@ -43,7 +43,6 @@ from bench.fit.determined import refused_masses
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit
 from bench.fit.quantities import uncertain
-from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.gate.signals import clipped
 from bench.parameter import Parameter
@@ -134,12 +133,15 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     """
     found = suspects.searched.last
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
-    repeats = everywhere(Balance.of(found), recordings.holdout_rows)
+    repeats, other = False, recordings.holdout_rows
+    if other is not None and any(isinstance(term.effect, Occasional) for term in found.terms):
+        balance = Balance.of(found)
+        repeats = balance.repeating(True).gap(other) < balance.gap(other)  # at the same time after its start
     held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
     recorded = [Recorded(RECORDING, recordings.trace, recordings.rig)]
     if recordings.holdout is not None:
         recorded.append(Recorded(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
-    extension = Extension(recordings.rows, found.hypothesis, suspects.outside, recordings.rig)
+    extension = Extension(recordings.rows, found.hypothesis, suspects.detected, recordings.rig)
     closed_loop = closed_loop_gap(recordings, extension)
     rejected: list[Rejected] = []
     while True:
@@ -150,7 +152,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         count = next((index for index, stage in enumerate(stages) if stage is modelled), -1) + 1
         stages = (*stages[:count], *(replace(stage, refused=reason) for stage in stages[count:]))
         shown = [(stage, each) for stage in stages for each in recorded]
-        against = rejection(recordings, suspects, held_out, extension, gaps, shown)
+        against = rejection(recordings, held_out, extension, gaps, shown)
         against = against or unlimited(extension, closed_loop)
         if against is None:
             break
@@ -203,13 +205,6 @@ def last_determined(recordings: Recordings, extension: Extension, policy: Policy
     return stage
 
 
-def everywhere(balance: Balance, other: Rows | None) -> bool:
-    """Whether events repeat in every recording: the holdout shows them at the same time after its start."""
-    if other is None or not any(isinstance(term.effect, Occasional) for term in balance.hypothesis.terms):
-        return False
-    return balance.repeating(True).gap(other) < balance.gap(other)
-
-
 def holding(extension: Extension, modelled: Extension | None, recordings: Recordings) -> VelocityGaps:
     """Velocity gaps under a cascade that holds every model of an extension to the recording, `modelled` the last."""
     if modelled is None or modelled.model is None:
@@ -220,7 +215,6 @@ def holding(extension: Extension, modelled: Extension | None, recordings: Record
 
 def rejection(
     recordings: Recordings,
-    suspects: Suspects,
     held_out: HeldOut,
     extension: Extension,
     gaps: VelocityGaps,
@@ -259,19 +253,19 @@ def rejection(
         before, after = (gaps.of(each, judge) for each in (less, judged))
         allowed = float(np.hypot(before, floor) * (1.0 if in_phase else np.sqrt(ERRS_TWICE)))
         worse = min(before, after) < judge.varies and after > allowed
-        if worse and not _comes_closer(recordings, suspects, judged, held_out, gaps, allowed):
+        if worse and not _comes_closer(recordings, judged, held_out, gaps, allowed):
             unit = judged.rig.axis_kind.speed_unit
             return index, _grows(f"velocity gap of the {judge.name}", before, after, unit)
     return by_torque
 
 
 def _comes_closer(
-    recordings: Recordings, suspects: Suspects, whole: Extension, held_out: HeldOut, gaps: VelocityGaps, allowed: float
+    recordings: Recordings, whole: Extension, held_out: HeldOut, gaps: VelocityGaps, allowed: float
 ) -> bool:
     """Whether refinement by simulation brings the velocity gap of all effects below what is allowed."""
     if whole.model is None:
         return True
-    numbers = Numbers.of(*named(recordings, whole.fitted, whole.detected(suspects)))
+    numbers = Numbers.of(*named(recordings, whole.fitted, whole.outside))
     found = refined_model(whole.model, numbers, held_out, gaps)
     return found is not None and found[2] <= allowed
 
@@ -292,8 +286,8 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
     without = extension.less(index)
     if without.model is None or extension.model is None:
         return None
-    ((shown, limit),) = ((one, one.effect) for one in extension.outside if isinstance(one.effect, DriveLimit))
-    trace = limit.shown_in(recordings.trace, recordings.rig, dict(shown.values))
+    ((limit, shown),) = ((one, found) for one, found in extension.outside.items() if isinstance(one, DriveLimit))
+    trace = limit.shown_in(recordings.trace, recordings.rig, shown.values)
     velocity = measured_velocity(trace)
     try:
         before, after = (
@@ -308,7 +302,7 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
 def under_drive(extension: Extension) -> int | None:
     """Index of the effect that is visible only under the drive of the rig; None without one."""
     own = len(extension.hypothesis.terms)
-    shown = [own + k for k, present in enumerate(extension.outside) if isinstance(present.effect, DriveLimit)]
+    shown = [own + k for k, effect in enumerate(extension.outside) if isinstance(effect, DriveLimit)]
     return shown[0] if shown else None
 
 
@@ -332,7 +326,7 @@ def refined(
     It is possible if effects were added, no unexplained remainder would bias the values, and the gap exceeds that of a
     complete model.
     """
-    effects, parameters = named(recordings, stage.fitted, stage.detected(suspects))
+    effects, parameters = named(recordings, stage.fitted, stage.outside)
     plain = Refined(stage.model, effects, parameters, None)
     if stage.model is None or not effects or suspects.policy.remains(stage.fitted):
         return plain

@@ -6,7 +6,7 @@ The gap is recorded velocity less that of a model that tracks the recording with
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import UnionType
@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.diagnosis.name import Suspects
 from bench.effects.acting import RaisesFriction
 from bench.effects.effect import Contact, Detected, Effect, Occasional
 from bench.effects.present import Present
@@ -50,7 +49,7 @@ RECORDING, HOLDOUT = "recording", "holdout"
 Residual = NDArray[np.float32]
 
 
-def stored_model(fitted: Fit, outside: Sequence[Present], rig: Rig) -> StoredModel:
+def stored_model(fitted: Fit, outside: Mapping[Effect, Detected], rig: Rig) -> StoredModel:
     """The axis of a fit in MuJoCo, with effects outside the torque balance.
 
     Raises:
@@ -68,7 +67,8 @@ def stored_model(fitted: Fit, outside: Sequence[Present], rig: Rig) -> StoredMod
         present_of(term.effect, term.effect.report(fitted.strengths(index), term.shape, fitted.base))
         for index, term in enumerate(fitted.terms)
     ]
-    model = AxisModel(base, (*present, *outside), fitted.scope.peak_effort, winding_of(rig))
+    present += [Present.of(effect.name, found.values) for effect, found in outside.items()]
+    model = AxisModel(base, tuple(present), fitted.scope.peak_effort, winding_of(rig))
     return StoredModel(rig.name, model, fitted.value(MISALIGNMENT), Mounting.of(rig))
 
 
@@ -107,21 +107,21 @@ class Extension:
     Attributes:
         recording: the rows that the balance is fitted to.
         hypothesis: effects of the torque balance.
-        outside: the others.
+        outside: the others, as the signals show them.
         rig: of the axis.
         refused: why its inertia is not determined, so that it has no model; empty if it is.
     """
 
     recording: Rows
     hypothesis: Hypothesis
-    outside: tuple[Present, ...]
+    outside: Mapping[Effect, Detected]
     rig: Rig
     refused: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:
         """Effects in the order in which they are added."""
-        return (*self.hypothesis.names, *(present.name for present in self.outside))
+        return (*self.hypothesis.names, *(effect.name for effect in self.outside))
 
     @cached_property
     def fitted(self) -> Fit:
@@ -150,26 +150,24 @@ class Extension:
     @cached_property
     def stages(self) -> tuple[Extension, ...]:
         """With none, one, ... all of the effects, each with the nuisances of the recording."""
-        own = range(len(self.hypothesis.terms))
-        parts = [replace(self, hypothesis=self.hypothesis.first(k), outside=()) for k in own]
-        return (*parts, *(replace(self, outside=self.outside[:k]) for k in range(len(self.outside))), self)
+        parts = [
+            replace(self, hypothesis=self.hypothesis.first(k), outside={}) for k in range(len(self.hypothesis.terms))
+        ]
+        others = [*self.outside.items()]
+        return (*parts, *(replace(self, outside=dict(others[:k])) for k in range(len(others))), self)
 
     def less(self, index: int) -> Extension:
         """The same without one of its effects."""
         own = len(self.hypothesis.terms)
         if index < own:
             return replace(self, hypothesis=self.hypothesis.without(index))
-        return replace(self, outside=(*self.outside[: index - own], *self.outside[index - own + 1 :]))
+        others = [*self.outside.items()]
+        return replace(self, outside=dict([*others[: index - own], *others[index - own + 1 :]]))
 
     def a(self, kind: type[Effect] | UnionType, index: int) -> bool:
         """Whether an effect of the torque balance is of a kind."""
         terms = self.hypothesis.terms
         return index < len(terms) and isinstance(terms[index].effect, kind)
-
-    def detected(self, suspects: Suspects) -> dict[Effect, Detected]:
-        """Those of the suspects outside the torque balance that are in this model."""
-        present = {one.effect for one in self.outside}
-        return {effect: found for effect, found in suspects.detected.items() if effect in present}
 
 
 @dataclass(frozen=True)

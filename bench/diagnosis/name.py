@@ -21,7 +21,6 @@ from bench.diagnosis.search import Searched, search
 from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect, Occasional, Standout
-from bench.effects.present import Present
 from bench.effects.signals import Axis
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit
@@ -81,11 +80,6 @@ class Suspects:
     withheld: bool
     policy: Policy
     excluded: frozenset[str] = frozenset()
-
-    @property
-    def outside(self) -> tuple[Present, ...]:
-        """Effects outside the torque balance."""
-        return tuple(Present.of(effect.name, found.values) for effect, found in self.detected.items())
 
 
 def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy) -> Suspects:

@@ -54,7 +54,7 @@ def whole():
     """Recordings, held-out motion, model and suspects of a recording whose spring is named."""
     recordings = Recordings.of(TRACE, RIG, None)
     fitted = fit(recordings.rows, Hypothesis((term("torsion_spring"),)))
-    stage = Extension(recordings.rows, fitted.hypothesis, (), RIG)
+    stage = Extension(recordings.rows, fitted.hypothesis, {}, RIG)
     suspects = Suspects(Searched((Step(fitted),)), Probabilities((), 1.0), {}, False, Policy())
     return recordings, HeldOut.of(recordings, False, True, fitted), stage, suspects
 
