@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.effect import Distortion, FiltersMotion
-from bench.effects.shape import is_pitch
+from bench.effects.effect import Distortion, FiltersMotion, is_pitch
 from bench.effects.signals import Scope
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis, Term
