@@ -266,7 +266,8 @@ def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
     """The diagnosis of what was named and kept; `located`: where the gap of the bare fit sits."""
     recordings, whole, kept = added.recordings, added.extension.fitted, added.refined
     unit, kind, current = recordings.unit, recordings.rig.axis_kind, recordings.current
-    shown, several = courses(added), apart(recordings, whole, kept.parameters)
+    parameters, alone, spread, differing = apart(recordings, whole, kept.parameters)
+    shown = courses(added)
     steps = shrinking(added, shown)
     torque, velocity = gaps(added, steps)
     likely = added.suspects.probabilities.without(frozenset(one.name for one in added.rejected))
@@ -279,9 +280,9 @@ def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
         where=located,
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
         unexplained_where=where(whole, kind, unit, current)[:3] if because else [],
-        parameters=several.parameters,
-        recordings=several.recordings,
-        between=several.between,
+        parameters=parameters,
+        recordings=alone,
+        between=spread,
         torque=torque,
         velocity=velocity,
         bandwidth=added.gaps.bandwidth,
@@ -303,7 +304,7 @@ def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
             *left_open(recordings.rows, kind),
             *impacts(whole, unit),
             *out_of_phase(added),
-            *several.warnings,
+            *differing,
             *added.warnings,
         ],
     )

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -91,9 +91,10 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     likely = probabilities(hypotheses, frozenset(effect.name for effect in kept), policy)
     chosen = likely.fits[likely.chosen.names]
     last = with_events(chosen, effects, policy)
-    standing = {term.effect.name for term in last.terms[len(chosen.terms) :]}
-    likely, ending = likely.showing(standing), searched.ending(last)
-    return Suspects(ending, likely, kept, len(kept) < len(recordings.detected), policy, excluded)
+    standing = frozenset(term.effect.name for term in last.terms[len(chosen.terms) :])
+    likely = replace(likely, detected=likely.detected | standing)
+    withheld = len(kept) < len(recordings.detected)
+    return Suspects(searched.ending(last), likely, kept, withheld, policy, excluded)
 
 
 def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:

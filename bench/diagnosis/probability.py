@@ -22,7 +22,7 @@ out as zero.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -130,10 +130,6 @@ class Probabilities:
         ranked.sort(key=lambda one: -one[0])
         before = np.cumsum([0.0, *(share for share, _ in ranked)])[:-1]
         return [names for (_, names), sure in zip(ranked, before, strict=True) if sure < level]
-
-    def showing(self, names: Collection[str]) -> Probabilities:
-        """Given that what is left shows some names directly."""
-        return replace(self, detected=self.detected | frozenset(names)) if names else self
 
     def without(self, names: frozenset[str]) -> Probabilities:
         """Given that something else is in the place of some names: what held-out motion spoke against.
@@ -284,24 +280,20 @@ def _blocks(fitted: Fit, holdout: Rows) -> Array:
     What the recording does not tell of an event, as when it began while the axis stood, is as leaves less, too.
     """
     balance = Balance.of(fitted).repeating(True)
-    events = [index for index, term in enumerate(fitted.terms) if isinstance(term.effect, Occasional)]
-    for index in events:
-        tried = _indistinct(balance, index, fitted)
-        balance = min(tried, key=lambda each: each.gap(holdout)) if len(tried) > 1 else balance
+    events = [
+        (k, term.effect, term.shape) for k, term in enumerate(fitted.terms) if isinstance(term.effect, Occasional)
+    ]
+    for index, effect, shape in events:
+        alike = effect.indistinct(shape, fitted.time, fitted.scope)
+        if len(alike) > 1:
+            tried = [replace(balance, hypothesis=balance.hypothesis.reshaped(index, each)) for each in alike]
+            balance = min(tried, key=lambda each: each.gap(holdout))
     left, layout = balance.left(holdout), lay_out(holdout, balance.hypothesis)
-    for index in events:
+    for index, *_ in events:
         own = layout.owners == index
         without = left + layout.columns[:, own] @ balance.theta[own]
         left = min(left, without, key=lambda residual: float(residual @ residual))
     return np.array([float(np.mean(part**2)) for part in np.array_split(left, BLOCKS) if part.size])
-
-
-def _indistinct(balance: Balance, index: int, fitted: Fit) -> list[Balance]:
-    """With each shape of an event that the recording does not tell from its own."""
-    effect, shape = fitted.terms[index].effect, fitted.terms[index].shape
-    assert isinstance(effect, Occasional)
-    shapes = effect.indistinct(shape, fitted.time, fitted.scope)
-    return [replace(balance, hypothesis=balance.hypothesis.reshaped(index, each)) for each in shapes]
 
 
 def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy: Policy) -> Probabilities:

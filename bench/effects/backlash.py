@@ -320,7 +320,13 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
     """
 
     def likeliest(shapes: Array, columns: Array) -> Likely:
-        found = (_likely(fitted, shape, column) for shape, column in zip(shapes, columns.T, strict=True))
+        found = []
+        for shape, column in zip(shapes, columns.T, strict=True):
+            theta, unlikely = cauchy(np.vstack([fitted.columns.T, column]), fitted.effort, SCALE * fitted.floor)
+            rate, stiffness = float(shape[3]), _stiffness(fitted, theta[:-1])
+            if rate > 0.0 and theta[-1] > 0.0 and stiffness > 0.0:
+                rate = stiffness / float(theta[-1])
+            found.append(Likely(shape, float(unlikely.sum()), rate))
         return min(found, key=lambda likely: likely.misfit)
 
     travel = fitted.scope.rms_speed * fitted.scope.width
@@ -360,15 +366,6 @@ def contacts_of(scope: Scope) -> list[float]:
 
 def _stiffness(fitted: Fitted, theta: Array) -> float:
     return float(theta[fitted.places(Spring)].sum())
-
-
-def _likely(fitted: Fitted, shape: Array, column: Array) -> Likely:
-    theta, unlikely = cauchy(np.vstack([fitted.columns.T, column]), fitted.effort, SCALE * fitted.floor)
-    rate = float(shape[3])
-    if rate > 0.0:
-        stiffness = _stiffness(fitted, theta[:-1])
-        rate = stiffness / float(theta[-1]) if theta[-1] > 0.0 and stiffness > 0.0 else rate
-    return Likely(shape, float(unlikely.sum()), rate)
 
 
 def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from bench.effects.acting import ScalesFriction
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.effects.waves import PHASE, OncePerRevolution, sine_and_cosine, wave
+from bench.effects.waves import PHASE, OncePerRevolution, once_per_revolution, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -23,7 +23,7 @@ class PositionDependentFriction(OncePerRevolution, ScalesFriction):
     )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return sine_and_cosine(signals, 1.0, signals.friction)
+        return once_per_revolution(signals.position, signals.friction)
 
     def unit(self, base: Base) -> float:
         return base.coulomb

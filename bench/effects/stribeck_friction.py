@@ -49,9 +49,7 @@ class StribeckFriction(OfSpeed, RaisesFriction):
     def null(self, axis: Axis) -> Mapping[str, Number]:
         return {"static_friction": axis.coulomb}
 
-    def least(self, axis: Axis) -> Mapping[str, Number]:
-        """Friction that falls towards standstill would drive the axis on."""
-        return {"static_friction": axis.coulomb}
+    least = null  # friction that falls towards standstill would drive the axis on
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
         fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)
