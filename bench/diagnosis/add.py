@@ -20,12 +20,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.diagnosis.held_out import HeldOut
 from bench.diagnosis.model import (
     BANDWIDTH,
     HOLDOUT,
     RECORDING,
     Extension,
+    HeldOut,
     Placed,
     Recorded,
     VelocityGaps,

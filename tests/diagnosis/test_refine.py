@@ -5,8 +5,7 @@ import pytest
 
 from bench.arrays import NORMAL95
 from bench.diagnosis.add import Numbers, refined, stepped
-from bench.diagnosis.held_out import HeldOut
-from bench.diagnosis.model import Extension
+from bench.diagnosis.model import Extension, HeldOut
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
