@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -265,7 +266,7 @@ def _comes_closer(
     """Whether refinement by simulation brings the velocity gap of all effects below what is allowed."""
     if whole.model is None:
         return True
-    numbers = Numbers.of(*named(recordings, whole.fitted, whole.outside))
+    numbers = Numbers(*named(recordings, whole.fitted, whole.outside))
     found = refined_model(whole.model, numbers, held_out, gaps)
     return found is not None and found[2] <= allowed
 
@@ -333,7 +334,7 @@ def refined(
     before = gaps.of(stage, held_out.recorded)
     if not before > NULL * white_noise(measured_velocity(recordings.trace)):
         return plain
-    numbers = Numbers.of(effects, parameters)
+    numbers = Numbers(effects, parameters)
     found = refined_model(stage.model, numbers, held_out, gaps)
     if found is None or not found[2] < (1.0 - WON) * before:
         return plain
@@ -349,10 +350,10 @@ def refined_model(
     Returns:
         The model, its values (p,), and its velocity gap in the motion held out - rad/s (m/s).
     """
-    values = stepped(stored, numbers, held_out.seen, gaps)
-    if values is None:
-        return None
     try:
+        values = stepped(stored, numbers, held_out.seen, gaps)
+        if values is None:
+            return None
         model = numbers.model(stored, values)
     except InputError:
         return None
@@ -366,30 +367,25 @@ class Numbers:
 
     Attributes:
         effects, parameters: as named, with intervals; of the parameters the first three.
-        places: (effect's index, quantity) of each free one, (-1, name) of J, K_w and K_0.
-        values, errors: (p,) and their standard errors.
-        bounds: of their intervals of 95 % (p, 2).
     """
 
-    effects: tuple[NamedEffect, ...]
+    effects: Sequence[NamedEffect]
     parameters: Mapping[str, Parameter]
-    places: tuple[tuple[int, str], ...]
-    values: Array
-    errors: Array
-    bounds: Array
 
-    @classmethod
-    def of(cls, effects: Sequence[NamedEffect], parameters: Mapping[str, Parameter]) -> Numbers:
-        """The free values of named effects and parameters."""
-        free = [((-1, name), parameters[name]) for name in list(parameters)[:3]]
-        for index, effect in enumerate(effects):
+    @cached_property
+    def free(self) -> list[tuple[tuple[int, str], Parameter]]:
+        """(Effect's index, quantity) of each, (-1, name) of J, K_w and K_0, with its interval."""
+        free = [((-1, name), self.parameters[name]) for name in list(self.parameters)[:3]]
+        for index, effect in enumerate(self.effects):
             fixed = {slot.quantity.name for slot in effect.effect.shapes if slot.whole or slot.quantity.instant}
             known = dict(present_of(effect.effect, effect.values).values)
             free += [((index, key), p) for key, p in effect.parameters.items() if key in known and key not in fixed]
-        free = [(place, p) for place, p in free if np.isfinite(p.std_error) and p.std_error > 0.0]
-        values, errors = np.array([p.value for _, p in free]), np.array([p.std_error for _, p in free])
-        bounds = np.array([p.ci95 for _, p in free])
-        return cls(tuple(effects), parameters, tuple(place for place, _ in free), values, errors, bounds)
+        return [(place, p) for place, p in free if np.isfinite(p.std_error) and p.std_error > 0.0]
+
+    @property
+    def values(self) -> Array:
+        """(p,)."""
+        return np.array([p.value for _, p in self.free])
 
     def model(self, stored: StoredModel, values: Array) -> StoredModel:
         """The model with other values; InputError if they are not allowed."""
@@ -405,7 +401,7 @@ class Numbers:
         """Effects and parameters with other values; their intervals stay as wide, as the noise is the same."""
         parameters = dict(self.parameters)
         effects = [dict(effect.parameters) for effect in self.effects]
-        for (index, key), value in zip(self.places, values.tolist(), strict=True):
+        for ((index, key), _), value in zip(self.free, values.tolist(), strict=True):
             table = parameters if index < 0 else effects[index]
             table[key] = table[key].at(value, index >= 0 and key in self.effects[index].effect.positive)
         found = [replace(e, parameters=table) for e, table in zip(self.effects, effects, strict=True)]
@@ -413,12 +409,13 @@ class Numbers:
 
 
 def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: VelocityGaps) -> Array | None:
-    """Values (p,) with the least simulation error on a recording, from a regression's model; None if one fails."""
-    moved = numbers.values + np.diag(STEP * numbers.errors)
-    try:
-        models = [stored, *(numbers.model(stored, row) for row in moved)]
-    except InputError:
-        return None
+    """Values (p,) with the least simulation error on a recording, from a regression's model; None if one fails.
+
+    Raises:
+        InputError: a step of a derivative is not allowed.
+    """
+    values, errors = numbers.values, np.array([p.std_error for _, p in numbers.free])
+    models = [stored, *(numbers.model(stored, row) for row in values + np.diag(STEP * errors))]
     simulated = gaps.velocities(models, recorded)
     differences = [recorded.difference(velocity) for velocity in simulated if velocity is not None]
     if len(differences) < len(models):
@@ -426,6 +423,6 @@ def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: Vel
     jacobian = np.stack([other - differences[0] for other in differences[1:]], axis=1) / STEP
     from scipy.optimize import lsq_linear  # 0.2 s, which only a named effect has to pay
 
-    within = (numbers.bounds - numbers.values[:, None]) / numbers.errors[:, None]
+    within = (np.array([p.ci95 for _, p in numbers.free]) - values[:, None]) / errors[:, None]
     found = lsq_linear(jacobian, -differences[0], bounds=(within[:, 0], within[:, 1]))
-    return numbers.values + numbers.errors * found.x
+    return values + errors * found.x
