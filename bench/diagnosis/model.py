@@ -94,9 +94,12 @@ def present_of(effect: Effect, values: Mapping[str, float]) -> Present:
     return Present.of(effect.name, bounded)
 
 
-def without_events(model: AxisModel) -> AxisModel:
-    """The axis in a recording without its events."""
-    return model.with_effects([present for present in model.effects if not isinstance(present.effect, Occasional)])
+def tracking(stored: StoredModel, trace: Trace, rig: Rig, events: bool, inertia: float | None = None) -> SoftTracking:
+    """A model and what drives it along a recording, in which its events occur or not; `inertia`: see `SoftTracking`."""
+    model, effort = stored.model, rig.own_effort(trace)[0]
+    if not events:
+        model = model.with_effects([each for each in model.effects if not isinstance(each.effect, Occasional)])
+    return SoftTracking(model, trace, effort, stored.misalignment, inertia, effort - less_known(trace, effort))
 
 
 def holding_bandwidth(model: AxisModel, top_speed: float) -> float:
@@ -265,16 +268,12 @@ class VelocityGaps:
     def _tracked(self, pairs: Iterable[tuple[StoredModel | None, Recorded]]) -> list[Tracked | None]:
         asked = [(model, one, (model, id(one.trace), one.events)) for model, one in pairs]
         new = {
-            key: self._holding(model, one) for model, one, key in asked if model is not None and key not in self._known
+            key: tracking(model, one.trace, one.rig, one.events, self.inertia)
+            for model, one, key in asked
+            if model is not None and key not in self._known
         }
         self._known |= zip(new, track_all(list(new.values()), self.bandwidth), strict=True)
         return [self._known.get(key) for _, _, key in asked]
-
-    def _holding(self, stored: StoredModel, recorded: Recorded) -> SoftTracking:
-        model = stored.model if recorded.events else without_events(stored.model)
-        effort = recorded.rig.own_effort(recorded.trace)[0]
-        known = effort - less_known(recorded.trace, effort)
-        return SoftTracking(model, recorded.trace, effort, stored.misalignment, self.inertia, known)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import numpy as np
 
 from bench.arrays import Array, known_rms, rms
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.model import holding_bandwidth, without_events
+from bench.diagnosis.model import holding_bandwidth, tracking
 from bench.errors import InputError, SimulationError, UndeterminedError
 from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
@@ -27,7 +27,7 @@ from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
 from bench.structured import csv_text
 from bench.trace.motion import measured_position, measured_velocity, stretches_of
-from bench.trace.trace import Trace, less_known
+from bench.trace.trace import Trace
 
 #: Share of a recording's torque that the model of its axis does not leave unexplained.
 LEFT = 0.2
@@ -113,7 +113,6 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     rig = rig_of(rig)
     trace = trace_of(trace, rig)
     path, table, balance, stored = parts_of(model, rig)
-    effort, unit = rig.own_effort(trace)
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
         rows = Rows.of(trace, rig, width=balance.width, every=True, peak_effort=peak)
@@ -129,7 +128,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     position, velocity = np.full((2, len(trace)), np.nan)
     measured = measured_position(trace), measured_velocity(trace)
     if stored is not None:
-        held = driven(stored, balance, trace, effort)
+        held = tracking(stored, trace, rig, balance.recording in (EVERY, trace.origin))
         tracked = track(held, holding_bandwidth(held.model, float(np.abs(measured[1]).max())))
         position, velocity = tracked.position, tracked.velocity
     warnings = []
@@ -139,14 +138,9 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     if left > LEFT:
         warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
     moved = measured[0], position, measured[1], velocity
-    return Replay(trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, unit, tuple(warnings))
-
-
-def driven(stored: StoredModel, balance: Balance, trace: Trace, effort: Array) -> SoftTracking:
-    """The model, and what drives it along a recording: an event is of the recording that it happened in."""
-    happening = balance.recording in (EVERY, trace.origin)
-    moving = stored.model if happening else without_events(stored.model)
-    return SoftTracking(moving, trace, effort, stored.misalignment, known=effort - less_known(trace, effort))
+    return Replay(
+        trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, rig.own_effort(trace)[1], tuple(warnings)
+    )
 
 
 def parts_of(
@@ -154,19 +148,16 @@ def parts_of(
 ) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
     """Of a model of the rig's kind: where it is from, kind and name, its torque balance, what MuJoCo runs of it."""
     if isinstance(model, Diagnosis):
-        stored = model.model
+        path, stored = "diagnosis", model.model
         table = {} if stored is None else {"kind": stored.model.parameters.kind.name, "name": stored.name}
-        _require_kind("diagnosis", table, rig)
-        return "diagnosis", table, model.balance, stored
-    table = read_table(model)
-    _require_kind(model, table, rig)  # before its parameters are read, as those of that kind
-    return model, table, load_balance(model), load_model(model) if "parameters" in table else None
-
-
-def _require_kind(path: str | Path, table: Mapping[str, Any], rig: Rig) -> None:
+    else:
+        path, table = model, read_table(model)
     kind = table.get("kind", rig.kind)
     if kind != rig.kind:
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
+    if isinstance(model, Diagnosis):
+        return path, table, model.balance, model.model
+    return path, table, load_balance(model), load_model(model) if "parameters" in table else None
 
 
 def load_balance(path: str | Path) -> Balance:
@@ -296,7 +287,7 @@ def bare(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> Array | None:
 def _held(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> SoftTracking | None:
     """A model and what drives it along a recording; None where it holds no motion."""
     _, _, balance, stored = parts_of(model, rig)
-    return None if stored is None else driven(stored, balance, trace, rig.own_effort(trace)[0])
+    return None if stored is None else tracking(stored, trace, rig, balance.recording in (EVERY, trace.origin))
 
 
 def _free(held: SoftTracking, windows: Sequence[slice]) -> list[Tracked]:
