@@ -44,6 +44,7 @@ from bench.fit.determined import refused_masses
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit
 from bench.fit.quantities import uncertain
+from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.gate.signals import clipped
 from bench.parameter import Parameter
@@ -105,7 +106,6 @@ class Added:
         refined: the final model, its quantities refined by simulation where that helps.
         repeats: whether the recording's events occur in the holdout too.
         compared: whether the holdout is of this axis.
-        warnings: about a holdout of another axis, or a model that MuJoCo cannot simulate.
         closed_loop: velocity gap under the drive of the rig, without and with the effect that is visible only there -
             rad/s (m/s); None without such an effect.
         refused: why a parameter is not determined beside the effects, by its name; the model is then the last that is.
@@ -121,7 +121,6 @@ class Added:
     refined: Refined
     repeats: bool
     compared: SameAxis
-    warnings: tuple[str, ...]
     closed_loop: tuple[float, float] | None
     refused: Mapping[str, str]
 
@@ -134,10 +133,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     """
     found = suspects.searched.last
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
-    repeats, other = False, recordings.holdout_rows
-    if other is not None and any(isinstance(term.effect, Occasional) for term in found.terms):
-        balance = Balance.of(found)
-        repeats = balance.repeating(True).gap(other) < balance.gap(other)  # at the same time after its start
+    repeats = everywhere(Balance.of(found), recordings.holdout_rows)
     held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
     recorded = [Recorded(RECORDING, recordings.trace, recordings.rig)]
     if recordings.holdout is not None:
@@ -164,7 +160,6 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     if refused:
         determined = {name: found for name, found in kept.parameters.items() if name not in refused}
         kept = replace(kept, model=kept.model or (modelled and modelled.model), parameters=determined)
-    problem = [f"not added to the MuJoCo model: {stages[-1].problem}"] if stages[-1].problem else []
     return Added(
         recordings=recordings,
         suspects=suspects,
@@ -176,10 +171,16 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         refined=kept,
         repeats=repeats,
         compared=compared,
-        warnings=(*compared.warnings, *problem),
         closed_loop=closed_loop,
         refused={name: refusal.reason for name, refusal in refused.items()},
     )
+
+
+def everywhere(balance: Balance, other: Rows | None) -> bool:
+    """Whether events repeat in every recording: the holdout shows them at the same time after its start."""
+    if other is None or not any(isinstance(term.effect, Occasional) for term in balance.hypothesis.terms):
+        return False
+    return balance.repeating(True).gap(other) < balance.gap(other)
 
 
 def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError]:

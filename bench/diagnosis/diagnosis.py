@@ -305,7 +305,8 @@ def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
             *impacts(whole, unit),
             *out_of_phase(added),
             *differing,
-            *added.warnings,
+            *added.compared.warnings,
+            *([f"not added to the MuJoCo model: {problem}"] if (problem := added.stages[-1].problem) else []),
         ],
     )
 
