@@ -49,7 +49,6 @@ from bench.trace.motion import measured_velocity
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
-Progress = Callable[[float], None]
 #: File of a saved diagnosis that holds all of it.
 PACKED = "diagnosis.npz"
 
@@ -225,7 +224,7 @@ def diagnose(
     rig: Rig | str | Path,
     holdout: Given | None = None,
     excluded: Collection[str] = (),
-    progress: Progress = lambda share: None,
+    progress: Callable[[float], None] = lambda share: None,
     policy: Policy = POLICY,
 ) -> Diagnosis:
     """Find what is missing, name it, add it, and show the gap shrink.

@@ -175,7 +175,7 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     """
     last = searched.last
     yield from (step.fitted for step in searched.steps)
-    less: Sequence[Fit] = searched.less
+    less: Sequence[Fit] = searched.less if searched.ended is not None and searched.ended.fitted is last else ()
     if not less:
         less = [settled(fit(last.rows, last.hypothesis.without(index)), policy) for index in range(len(last.terms))]
     if len(less) > 1:

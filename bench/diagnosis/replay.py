@@ -148,12 +148,12 @@ def parts_of(
 ) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
     """Of a model of the rig's kind: where it is from, kind and name, its torque balance, what MuJoCo runs of it."""
     if isinstance(model, Diagnosis):
-        path, stored = "diagnosis", model.model
-        table = {} if stored is None else {"kind": stored.model.parameters.kind.name, "name": stored.name}
+        path, one = "diagnosis", model.model
+        table = {} if one is None else {"kind": one.model.parameters.kind.name, "name": one.name}
     else:
         path, table = model, read_table(model)
     kind = table.get("kind", rig.kind)
-    if kind != rig.kind:
+    if kind != rig.kind:  # before parameters are read, as those of that kind
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
     if isinstance(model, Diagnosis):
         return path, table, model.balance, model.model
