@@ -16,7 +16,8 @@ from bench.plant.model_file import load_model, read_table
 from bench.plant.profiles import s_curve
 from bench.rig.rig import Rig, load_rig
 from bench.structured import json_text, parse_json
-from bench.trace.inspect import inspect, to_json
+from bench.trace.choose import GivenOptions
+from bench.trace.inspect import inspect_recording, to_json
 from bench.trace.read import read_recording
 from bench.trace.stream import stream
 from tests.command import bench
@@ -59,7 +60,7 @@ def test_inspect_takes_numbers_at_the_end_of_what_there_is(tmp_path, changed, sa
     rows = "\n".join(",".join(map(repr, map(float, row))) for row in zip(*table.values(), strict=True))
     (tmp_path / "run.csv").write_text(f"time [s],position [rad],velocity [rad/s],current [A]\n{rows}\n")
     try:
-        to_json(inspect(tmp_path / "run.csv"))
+        to_json(inspect_recording(read_recording(tmp_path / "run.csv"), GivenOptions()))
     except InputError as error:
         assert changed == "time" and "\n" not in str(error)
 

@@ -16,13 +16,12 @@ from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.recordings import Recordings
 from bench.fit.estimate import Estimate
-from bench.fit.fit import Fit, fit
+from bench.fit.fit import Fit, fit, shaped
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.identify import identify
 from bench.fit.quantities import uncertain
 from bench.fit.rows import WIDEST, Rows
-from bench.fit.shapes import shaped
 from bench.gate.gate import passed
 from bench.parameter import Parameter
 from bench.rig.rig import Rig

@@ -160,24 +160,23 @@ def _write(
     form: Format,
 ) -> None:
     """Every result where it is asked for: JUnit's, JSON and page into their files."""
-    from bench.report.check import check_document, check_json, findings, headline
+    from bench.report.check import check_document, check_json
     from bench.report.continuous_integration import github_lines, github_summary, gitlab_report, junit
 
-    document, found, says = check_document(checked, title), findings(checked), headline(checked)
-    xml, json, report = files
+    document, (xml, json, report) = check_document(checked, title), files
     if xml is not None:
-        write_text(xml, junit(found, says, title))
+        write_text(xml, junit(checked, title))
     common.write_json(json, lambda: check_json(checked))
     common.write_page(report, document)
     if form == "gitlab":
-        typer.echo(gitlab_report(found, baseline))
+        typer.echo(gitlab_report(checked, baseline))
     elif json != common.STDOUT:
         with _no_commands(form):
             common.tell(document, files)
     if form == "github":
-        for line in github_lines(found, baseline):
+        for line in github_lines(checked, baseline):
             typer.echo(line)
-        _append_summary(github_summary(found, says, title))
+        _append_summary(github_summary(checked, title))
 
 
 @contextmanager

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
 from typing import Any
 
@@ -80,69 +82,54 @@ RIGHT_WAYS = (
 )
 #: A right answer may be so many times as far off as those are from RIGHT.
 MARGIN = 2.0
-
-
-@dataclass(frozen=True)
-class Mistake:
-    """A mistake that students make, known by the figures that it gives on their own recordings.
-
-    Attributes:
-        name: of it.
-        explanation: what went wrong, to the student.
-        ways: in which recordings are worked out with it.
-    """
-
-    name: str
-    explanation: str
-    ways: tuple[Way, ...]
-
-
-MISTAKES = (
-    Mistake(
+#: Mistakes that students make, known by the figures that they give on their own recordings: name, what went wrong, to
+#: the student, and ways in which recordings are worked out with it.
+MISTAKES: tuple[tuple[str, str, tuple[Way, ...]], ...] = (
+    (
         "degrees for radians",
         "The speed went in in deg/s: divide by 180/π to get rad/s before anything else.",
         (Way(velocity=180.0 / math.pi),),
     ),
-    Mistake(
+    (
         "milliamperes for amperes",
         "The current went in in mA: divide by 1000 before kT(Iq).",
         (Way(current=1e3), Way(current=1e3, constant="stall"), Way(current=1e3, constant="zero")),
     ),
-    Mistake(
+    (
         "no kT(Iq)",
         "One torque constant was used at every current: torque is kT(Iq)·Iq with the curve of task 4.",
         (Way(constant="stall"), Way(constant="peak"), Way(constant="zero")),
     ),
-    Mistake(
+    (
         "half-sample lag",
         "The mean was set back by its own delay alone: the backward difference is half a sample late besides, and "
         "J·α of that half sample is taken for friction.",
         (*(Way(width=width, set_back=(width - 1) // 2) for width in (3, 5, 7)), Way(set_back=1)),
     ),
-    Mistake(
+    (
         "filter not synchronised",
         "alpha_filt was used as the filter delivers it: set it back by its delay, so that it belongs to the same time "
         "as speed and torque.",
         tuple(Way(width=width, set_back=0) for width in (3, WIDTH, 5, 7)),
     ),
-    Mistake(
+    (
         "backward difference",
         "The bare backward difference went into least squares: it is noisy and half a sample late; use alpha_filt on "
         "t_sync.",
         (Way(width=1, set_back=0),),
     ),
-    Mistake(
+    (
         "2π",
         "A factor of 2π is missing: rad/s = 2π·(turns per second), n/rpm = 60/(2π)·ω.",
         (Way(velocity=0.5 / math.pi), Way(rpm=2.0 * math.pi), Way(velocity=2.0 * math.pi)),
     ),
-    Mistake("rpm for rad/s", "The speed went in in rpm: rad/s = 2π/60·n.", (Way(velocity=RPM),)),
-    Mistake(
+    ("rpm for rad/s", "The speed went in in rpm: rad/s = 2π/60·n.", (Way(velocity=RPM),)),
+    (
         "wrong sign",
         "Current and speed are counted in opposite directions: an inertia is positive. Turn one of them.",
         (Way(current=-1.0),),
     ),
-    Mistake(
+    (
         "peak value for RMS",
         "The current is √2 times too large: kT of the datasheet is per ampere RMS.",
         (Way(current=math.sqrt(2.0)),),
@@ -152,59 +139,54 @@ MISTAKES = (
 
 @dataclass(frozen=True)
 class Worked:
-    """Recordings that are worked out in one way after the other: what no way changes is done once.
+    """A student's recordings that are worked out in one way after the other: what no way changes is done once.
 
-    Attributes:
-        recordings: a student's.
-        corner: of the fastest run - rad/s; NaN where its current does not tell one.
-        unchanged: answers of the catapult and of the datasheet.
+    Whatever is asked of it raises InputError where a file is missing or cannot be read.
     """
 
     recordings: LabRecordings
-    corner: float
-    unchanged: dict[str, float]
 
-    @classmethod
-    def of(cls, recordings: LabRecordings) -> Worked:
-        """Read all of a folder.
+    @cached_property
+    def unchanged(self) -> dict[str, float]:
+        """Answers of the catapult and of the datasheet."""
+        theta, error = fit_path(*np.concatenate(self.recordings.flights.points).T)
+        stall, peak = datasheet_points(self.recordings.rig)[1].tolist()
+        of_curve = coefficients(self.recordings.rig).tolist()
+        found = {f"catapult_{name}": value for name, value in zip("abc", theta.tolist(), strict=True)}
+        found |= {"catapult_E": error, "kT_stall": stall, "kT_peak": peak}
+        return found | {f"kT_{name}": value for name, value in zip("abc", of_curve, strict=True)}
 
-        Raises:
-            InputError: a file is missing or cannot be read.
-        """
-        rig = recordings.rig
-        theta, error = fit_path(*np.concatenate(recordings.flights.points).T)
-        stall, peak = datasheet_points(rig)[1].tolist()
-        unchanged = {f"catapult_{name}": value for name, value in zip("abc", theta.tolist(), strict=True)}
-        unchanged |= {"catapult_E": error, "kT_stall": stall, "kT_peak": peak}
-        unchanged |= {f"kT_{name}": value for name, value in zip("abc", coefficients(rig).tolist(), strict=True)}
-        return cls(recordings, _corner(recordings.fastest), unchanged)
+    @cached_property
+    def corner(self) -> float:
+        """Of the fastest run, read from the torque's top on, whatever is made of it - rad/s; NaN where it has none."""
+        run = self.recordings.fastest
+        start = int(np.argmax(run.torque > AT_THE_TOP * run.torque.max()))
+        try:
+            return decline(run.velocity[start:], run.current[start:], run.sample_period).corner
+        except UndeterminedError:
+            return math.nan
 
     def answers(self, way: Way = RIGHT) -> dict[str, float]:
         """Every quantity of the form, in its unit, in one way; those are left out that it gives no value of."""
-        rig = self.recordings.rig
-        return {
-            **self.unchanged,
-            **_task6(_seen(self.recordings.without_friction, rig, way), rig),
-            **_task9(_seen(self.recordings.with_friction, rig, way), rig, way),
-            "M_max": float(_torque(rig, self.recordings.fastest.current, way).max()),
-            **({"corner": self.corner * way.velocity * RPM * way.rpm} if math.isfinite(self.corner) else {}),
-        }
-
-
-def _corner(run: LabRun) -> float:
-    """The corner, read from the torque's top on, whatever unit or constant is made of it."""
-    start = int(np.argmax(run.torque > AT_THE_TOP * run.torque.max()))
-    try:
-        return decline(run.velocity[start:], run.current[start:], run.sample_period).corner
-    except UndeterminedError:
-        return math.nan
+        recordings, rig = self.recordings, self.recordings.rig
+        found, corner = {**self.unchanged}, self.corner * way.velocity * RPM * way.rpm
+        run, rotor = _seen(recordings.without_friction, rig, way), motor_value(rig, "rotor_inertia")
+        inertia, found["alpha_max"], _ = mean_inertia(run.acceleration, run.torque)
+        found["J_without_friction"] = inertia * KG_CM2
+        found["J_load_without_friction"] = (inertia - rotor) * KG_CM2
+        run = _seen(recordings.with_friction, rig, way)
+        with suppress(UndeterminedError):  # as with speeds so small by a wrong unit that none reaches the threshold
+            (inertia, viscous, coulomb), error = _balance(run, way)
+            found |= {"J": inertia * KG_CM2, "K_fric_w": viscous, "K_fric_0": coulomb, "E": error}
+            found["J_load"] = (inertia - rotor) * KG_CM2
+        found["M_max"] = float(_torque(rig, recordings.fastest.current, way).max())
+        return found | ({"corner": corner} if math.isfinite(corner) else {})
 
 
 def _seen(run: LabRun, rig: Rig, way: Way) -> LabRun:
     """The run with speed, acceleration and torque as one way makes them."""
     velocity = run.velocity * way.velocity
-    differentiated = METHODS.get(way.method, backward_difference)
-    alpha = differentiated(velocity, run.sample_period)
+    alpha = METHODS.get(way.method, backward_difference)(velocity, run.sample_period)
     return replace(run, velocity=velocity, acceleration=alpha, torque=_torque(rig, run.current, way))
 
 
@@ -216,11 +198,22 @@ def _torque(rig: Rig, current: Array, way: Way) -> Array:
     return constants[way.constant] * current * way.current
 
 
+def _balance(run: LabRun, way: Way) -> tuple[list[float], float]:
+    """J, K_w and K_0 in SI by least squares over the fast samples, and the remaining quadratic error."""
+    alpha, synchronous = run.acceleration, slice(None)
+    if not way.method:
+        alpha, synchronous = filtered_acceleration(run, way.width, way.set_back)
+    velocity, torque = run.velocity[synchronous], run.torque[synchronous]
+    fast = np.abs(velocity) >= way.least
+    theta, _, error = least_squares(alpha[fast], velocity[fast], torque[fast])
+    return theta.tolist(), error
+
+
 def _inertias(figures: Mapping[str, float], factor: float) -> dict[str, float]:
     return {name: factor * value for name, value in figures.items() if name.startswith("J")}
 
 
-#: Mistakes made after the work is done: name, explanation, and what they change of the figures.
+#: The same of mistakes made after the work is done, and what they change of the figures.
 SLIPS: tuple[tuple[str, str, Callable[[Mapping[str, float]], dict[str, float]]], ...] = (
     (
         "J_motor not subtracted",
@@ -244,7 +237,7 @@ SLIPS: tuple[tuple[str, str, Callable[[Mapping[str, float]], dict[str, float]]],
 
 def every_mistake(worked: Worked) -> list[tuple[tuple[str, ...], dict[str, float]]]:
     """Figures of each known mistake in the work, and of each two of them at once, with their names."""
-    singles = [(mistake.name, way) for mistake in MISTAKES for way in mistake.ways]
+    singles = [(name, way) for name, _, ways in MISTAKES for way in ways]
     found: list[tuple[tuple[str, ...], dict[str, float]]] = [((name,), worked.answers(way)) for name, way in singles]
     for (one, first), (two, second) in combinations(singles, 2):
         both = first.and_also(second)
@@ -255,29 +248,6 @@ def every_mistake(worked: Worked) -> list[tuple[tuple[str, ...], dict[str, float
 
 def tolerances(worked: Worked) -> dict[str, float]:
     """Shares by which right answers may be off on these recordings, by how far right ways are apart on them."""
-    right, others = worked.answers(), [worked.answers(way) for way in RIGHT_WAYS]
-    return {
-        name: MARGIN * max(abs(other[name] / value - 1.0) for other in others) for name, value in right.items() if value
-    }
-
-
-def _task6(run: LabRun, rig: Rig) -> dict[str, float]:
-    inertia, largest, _ = mean_inertia(run.acceleration, run.torque)
-    load = (inertia - motor_value(rig, "rotor_inertia")) * KG_CM2
-    return {"alpha_max": largest, "J_without_friction": inertia * KG_CM2, "J_load_without_friction": load}
-
-
-def _task9(run: LabRun, rig: Rig, way: Way) -> dict[str, float]:
-    if way.method:
-        alpha, synchronous = run.acceleration, slice(None)
-    else:
-        alpha, synchronous = filtered_acceleration(run, way.width, way.set_back)
-    velocity, torque = run.velocity[synchronous], run.torque[synchronous]
-    fast = np.abs(velocity) >= way.least
-    try:
-        theta, _, error = least_squares(alpha[fast], velocity[fast], torque[fast])
-    except UndeterminedError:  # as with speeds so small by a wrong unit that none reaches the threshold
-        return {}
-    inertia, viscous, coulomb = theta.tolist()
-    load = (inertia - motor_value(rig, "rotor_inertia")) * KG_CM2
-    return {"J": inertia * KG_CM2, "K_fric_w": viscous, "K_fric_0": coulomb, "E": error, "J_load": load}
+    others = [worked.answers(way) for way in RIGHT_WAYS]
+    right = {name: value for name, value in worked.answers().items() if value}
+    return {name: MARGIN * max(abs(other[name] / value - 1.0) for other in others) for name, value in right.items()}

@@ -87,8 +87,11 @@ class Sources:
         given = {} if path is None else read_toml(path, "a rig file")
         return cls(given, given.get("motor", embedded()["motor"]).get("model"))
 
-    def __call__(self, table: str, key: str) -> str:
-        """Source of `[table] key`."""
+    def __call__(self, table: str, *keys: str) -> str:
+        """Source of `[table] key`; of several keys those that they have."""
+        return joined(*(self._source(table, key) for key in keys))
+
+    def _source(self, table: str, key: str) -> str:
         if key in self.given.get(table, {}):
             return "rig file"
         entry = motor_sources(self.model) if table == "motor" and self.model is not None else {}

@@ -18,6 +18,7 @@ from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import SimulationError, UndeterminedError
 from bench.files import write_text
 from bench.plant.plant import DIVERGED
+from bench.plant.simulate import SCHEMA
 from bench.report.document import Chart
 from bench.structured import json_text
 
@@ -101,10 +102,10 @@ def record_flights(folder: Path, random: np.random.Generator) -> list[Path]:
         paths.append(folder / f"experiment-{number:02}.csv")
         rows = "\n".join(f"{y:.4f},{z:.4f}" for y, z in seen)
         write_text(paths[-1], f"y [m],z [m]\n{rows}\n")
-    nominal = zip(UNITS, fly().coefficients.tolist(), strict=True)
+    nominal = zip(UNITS.items(), fly().coefficients.tolist(), strict=True)
     content = {
-        "schema": "bench.truth/1",
-        "parameters": {name: {"value": value, "unit": UNITS[name]} for name, value in nominal},
+        "schema": SCHEMA,
+        "parameters": {name: {"value": value, "unit": unit} for (name, unit), value in nominal},
         "flights": [flight.coefficients.tolist() for flight in flights],
         "sensor_scatter": {"value": SENSOR_SCATTER, "unit": "m"},
     }
@@ -163,38 +164,29 @@ def path(recordings: LabRecordings) -> TaskResult:
     y, z = np.concatenate(flights.points).T
     theta, error = fit_path(y, z)
     along = np.linspace(y.min(), y.max(), 300)
-    dots = [
-        curve(flight[:, 0], flight[:, 1], f"experiment {k}", "dots") for k, flight in enumerate(flights.points, start=1)
-    ]
+    numbered = enumerate(flights.points, start=1)
+    dots = [curve(flight[:, 0], flight[:, 1], f"experiment {k}", "dots") for k, flight in numbered]
     fitted = curve(along, columns(along) @ theta, "least squares")
-    coefficients = zip(UNITS, theta.tolist(), strict=True)
-    count = (
-        f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {np.sqrt(error / y.size) * 1e3:.2g} mm."
-    )
+    rms = np.sqrt(error / y.size) * 1e3
+    count = f"{len(flights.points)} experiments, {y.size} points; RMS distance in z {rms:.2g} mm."
     solvers, comparison = compare_solvers(y, z)
-    return TaskResult(
-        (count, solvers, *flights.notes),
-        (
-            *(
-                Number(name, value, UNITS[name], flights.truth.get(name), half=half)
-                for (name, value), half in zip(coefficients, _halves(flights.points, theta), strict=True)
-            ),
-            Number("E", error, "m²"),
-        ),
-        (chart("Task 1: path and all points", panel("y / m", "z / m", *dots, fitted)), comparison),
-    )
+    found = zip(UNITS.items(), theta.tolist(), _halves(flights.points, theta), strict=True)
+    numbers = [Number(name, value, unit, flights.truth.get(name), half=half) for (name, unit), value, half in found]
+    drawn = chart("Task 1: path and all points", panel("y / m", "z / m", *dots, fitted))
+    return TaskResult((count, solvers, *flights.notes), (*numbers, Number("E", error, "m²")), (drawn, comparison))
 
 
 def compare_solvers(y: Array, z: Array) -> tuple[str, Chart]:
     """How far the two solvers' paths are apart as y is measured from further away, which leaves the path as it is."""
-    shifted = [(shift, columns(y + shift)) for shift in SHIFTS]
-    # AᵀA of the furthest has a pivot of exactly 0, and no inverse, for one set of flights in fifty
-    shifts, matrices = zip(*((shift, one) for shift, one in shifted if np.linalg.det(one.T @ one) != 0.0), strict=True)
-    condition = [float(np.linalg.cond(matrix)) for matrix in matrices]
-    apart = [
-        float(np.max(np.abs(matrix @ by_normal_equations(matrix, z) - matrix @ by_orthogonal_solver(matrix, z))))
-        for matrix in matrices
-    ]
+    shifts, condition, apart = [], [], []
+    for shift in SHIFTS:
+        matrix = columns(y + shift)
+        # AᵀA of the furthest has a pivot of exactly 0, and no inverse, for one set of flights in fifty
+        if np.linalg.det(matrix.T @ matrix) != 0.0:
+            paths = matrix @ by_normal_equations(matrix, z), matrix @ by_orthogonal_solver(matrix, z)
+            shifts.append(shift)
+            condition.append(float(np.linalg.cond(matrix)))
+            apart.append(float(np.max(np.abs(paths[0] - paths[1]))))
     worst = next((k for k, value in enumerate(apart) if value > APART), len(shifts) - 1)
     finding = (
         f"(AᵀA)⁻¹Aᵀb and QR agree within {apart[0]:.1g} m here (condition number {condition[0]:.0f}). They part when "

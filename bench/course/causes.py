@@ -13,7 +13,6 @@ from itertools import combinations, permutations, product
 
 import numpy as np
 
-from bench.arrays import Array
 from bench.course.axis import RPM
 from bench.course.plausible import (
     FASTEST,
@@ -43,6 +42,7 @@ TRIED = ((1, False, False), (1, True, False), (2, False, False), (2, True, False
 #: Rounds in which a delay is searched, as a long one is not linear.
 ROUNDS = 6
 TURN = 'turn one of them by a rig.toml beside it with [trace.columns] current = "-name of its column [unit]"'
+TOGETHER = "record both in one task of the drive"
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,9 @@ def _in_time(run: LabRun, rig: Rig) -> LabRun | None:
     """With the current set back by as many samples as it is late."""
     late = 0
     for _ in range(ROUNDS):
-        shifted = _shifted(run, late, rig)
+        size = run.time.size - abs(late)
+        velocity, current = run.velocity[max(-late, 0) :][:size], run.current[max(late, 0) :][:size]
+        shifted = made_run(velocity, current, run.sample_period, rig)
         found = balance(shifted)
         if found is None or abs(found.late) <= LATE:
             return shifted if late and found is not None else None
@@ -90,22 +92,15 @@ def _in_time(run: LabRun, rig: Rig) -> LabRun | None:
     return None
 
 
-def _shifted(run: LabRun, late: int, rig: Rig) -> LabRun:
-    velocity = run.velocity[: run.velocity.size - late] if late >= 0 else run.velocity[-late:]
-    current = run.current[late:] if late >= 0 else run.current[:late]
-    return made_run(velocity, current, run.sample_period, rig)
-
-
 def _without_glitches(run: LabRun, rig: Rig) -> LabRun | None:
     """With samples that stand alone replaced by the line through their neighbours."""
-    signals: list[Array] = []
-    found = False
-    for values, smooth in ((run.velocity, True), (run.current, False)):
-        kept = np.ones(values.size, dtype=bool)
-        kept[glitches(values, smooth)] = False
-        found = found or not kept.all()
-        signals.append(np.interp(run.time, run.time[kept], values[kept]))
-    return made_run(signals[0], signals[1], run.sample_period, rig) if found else None
+    alone = (run.velocity, glitches(run.velocity, smooth=True)), (run.current, glitches(run.current, smooth=False))
+    if not any(places.size for _, places in alone):
+        return None
+    velocity, current = (
+        np.interp(run.time, np.delete(run.time, places), np.delete(values, places)) for values, places in alone
+    )
+    return made_run(velocity, current, run.sample_period, rig)
 
 
 def _columns_swapped(run: LabRun, rig: Rig, speed: float = 1.0, ampere: float = 1.0) -> LabRun:
@@ -139,9 +134,7 @@ MISTAKES = (
     KnownMistake("sign", f"current and speed are counted in opposite directions: {TURN}", _scaled(current=-1.0)),
     KnownMistake("time", "the times look like ms that are labelled s: correct their unit", _scaled(period=1e-3)),
     KnownMistake("time", "the times look like s that are labelled ms: correct their unit", _scaled(period=1e3)),
-    KnownMistake(
-        "delay", "current and speed are not of the same instants: record both in one task of the drive", _in_time
-    ),
+    KnownMistake("delay", f"current and speed are not of the same instants: {TOGETHER}", _in_time),
     KnownMistake("glitch", "a glitch: take these samples out, or record again", _without_glitches),
 )
 
@@ -185,7 +178,11 @@ def _causes(runs: Mapping[str, LabRun], choices: Sequence[Sequence[str]], rig: R
     for (most, mixed, more), names in product(TRIED, choices):
         found: list[tuple[int, Undone]] = []
         for order in permutations(names) if mixed else [names]:
-            exchanged = _exchanged(names, order)
+            exchanged = {
+                other: (KnownMistake("files", f"the files look exchanged: it looks like {name}", lambda run, rig: run),)
+                for name, other in zip(names, order, strict=True)
+                if name != other
+            }
             options = [possible(name, other, most, more) for name, other in zip(names, order, strict=True)]
             for chosen in product(*options):
                 if between({name: inertia for name, (_, inertia) in zip(names, chosen, strict=True)}):
@@ -210,15 +207,6 @@ def _scale(runs: Mapping[str, LabRun], rig: Rig) -> Iterator[KnownMistake]:
         if 1.0 / SCALE < factor < SCALE and not FULL_CURRENT < factor < LARGEST_CURRENT:
             words = f"the current is {factor:.3g} times what the drive's limit says: correct its scale"
             yield KnownMistake("amplitude", words, _scaled(current=1.0 / factor))
-
-
-def _exchanged(names: Sequence[str], order: Sequence[str]) -> Undone:
-    """Recordings that stand under another one's name."""
-    return {
-        other: (KnownMistake("files", f"the files look exchanged: it looks like {name}", lambda run, rig: run),)
-        for name, other in zip(names, order, strict=True)
-        if name != other
-    }
 
 
 def _options(

@@ -20,10 +20,10 @@ from bench.course.run import LabRun
 from bench.errors import BenchError, InputError
 from bench.files import read_text, write_text
 from bench.fit.lab import LEAST_SPEED
-from bench.report.document import Document, Neighbour, Neighbours, Paragraph, Section
+from bench.report.document import Document, Paragraph, Section, neighbours, section
 from bench.report.html import html
-from bench.rig.limits import HOT, Circuit, peak_curve
-from bench.rig.rig import Rig
+from bench.rig.limits import HOT, peak_curve
+from bench.rig.rig import Load, Rig
 
 TITLE = "Industrial Drives, Part 2: colloquium"
 TEXTS = asset("data", "lab", "questions.md")
@@ -45,8 +45,7 @@ class AskedQuestion:
 def questions(recordings: LabRecordings, number: int) -> list[AskedQuestion]:
     """One of each group; the next number has other ones, and 36 numbers in a row no three in common.
 
-    Raises:
-        BenchError: a recording is missing or cannot be of the axis.
+    Raises BenchError where a recording is missing or cannot be of the axis.
     """
     own, texts = figures(recordings), _QUESTION.findall(read_text(TEXTS, "questions"))
     asked = []
@@ -60,18 +59,15 @@ def questions(recordings: LabRecordings, number: int) -> list[AskedQuestion]:
 
 def figures(recordings: LabRecordings) -> dict[str, float]:
     """Every figure that a question or an answer holds, by its name there, in its unit there."""
-    worked = Worked.of(recordings)
-    right, rig = worked.answers(), recordings.rig
+    worked = Worked(recordings)
+    right = worked.answers()
+    same = {"J": "J", "K_w": "K_fric_w", "K_0": "K_fric_0", "M_max": "M_max", "kT_stall": "kT_stall"}
     return {
-        "J": right["J"],
-        "K_w": right["K_fric_w"],
-        "K_0": right["K_fric_0"],
-        "M_max": right["M_max"],
-        "kT_stall": right["kT_stall"],
+        **{name: right[answer] for name, answer in same.items()},
         **_of_ways(worked, right),
         **_of_filter(recordings.with_friction, right),
         **_of_torque(recordings, right),
-        **_of_corner(rig, circuit(rig), worked.corner),
+        **_of_corner(recordings.rig, worked.corner),
         **_of_axis(recordings, right),
         **_of_throw(right, sum(len(flight) for flight in recordings.flights.points)),
     }
@@ -144,9 +140,9 @@ def _of_torque(recordings: LabRecordings, right: dict[str, float]) -> dict[str, 
     }
 
 
-def _of_corner(rig: Rig, motor: Circuit, corner: float) -> dict[str, float]:
+def _of_corner(rig: Rig, corner: float) -> dict[str, float]:
     """What a corner - rad/s - says of the winding, by the course's circuit and by one that balances."""
-    sheet = peak_curve(rig.motor, MAINS, rig.source)
+    motor, sheet = circuit(rig), peak_curve(rig.motor, MAINS, rig.source)
     share = (sheet.no_load_speed - corner) / (sheet.no_load_speed - sheet.corner_speed)
     other = next((curve for curve in rig.motor.peak_curves if curve is not sheet), None)
     both = circuits(rig, other)[3].resistance_share(corner) if other is not None else math.nan
@@ -166,10 +162,9 @@ def _of_axis(recordings: LabRecordings, right: dict[str, float]) -> dict[str, fl
     """Coasting, the hub, and friction by speed."""
     inertia, viscous, coulomb = right["J"] / KG_CM2, right["K_fric_w"], right["K_fric_0"]
     top = float(np.abs(recordings.with_friction.velocity).max())
-    load, disk = right["J_load"] / KG_CM2, recordings.rig.load
-    theory = (disk.disk_inertia if disk else None) or math.nan
+    load, disk = right["J_load"] / KG_CM2, recordings.rig.load or Load()
+    theory, rotor = disk.disk_inertia or math.nan, inertia - load
     diameter = (load / theory) ** 0.25 - 1.0
-    rotor = inertia - load
     return {
         "coast": inertia / viscous * math.log1p(viscous * top / coulomb),
         "coast_0": inertia * top / coulomb,
@@ -177,7 +172,7 @@ def _of_axis(recordings: LabRecordings, right: dict[str, float]) -> dict[str, fl
         "extra": (load - theory) * KG_CM2,
         "ring": 1e3 * (load - theory) / RING**2,
         "diameter": diameter,
-        "millimetres": 1e3 * diameter * ((disk.outer_diameter if disk else None) or math.nan),
+        "millimetres": 1e3 * diameter * (disk.outer_diameter or math.nan),
         "rotor": rotor * KG_CM2,
         "rotor_share": rotor / load,
         "equal": coulomb / viscous,
@@ -200,17 +195,14 @@ def _of_throw(right: dict[str, float], points: int) -> dict[str, float]:
 
 
 def write_questions(folder: Path, out: Path) -> tuple[list[Path], list[BenchError]]:
-    """Write `questions.html` with the answers, and a page without them for each student of a class.
+    """Write `questions.html` with the answers, and a page without them for each student, into a folder.
 
     Args:
-        folder: with a folder of recordings for each student, or one student's.
-        out: folder to write to.
+        folder: with a folder of recordings for each student, or one student's; InputError where there is none.
+        out: where to write.
 
     Returns:
         The paths, and why a student has none.
-
-    Raises:
-        InputError: no such folder.
     """
     if not folder.is_dir():
         raise InputError(folder, "no such folder", "give the folder of the class, with a folder for each student")
@@ -226,13 +218,11 @@ def write_questions(folder: Path, out: Path) -> tuple[list[Path], list[BenchErro
         name = re.sub(r"[^\w.-]", "-", student.resolve().name)
         sections.append(_section(student.name, asked, name))
         alone = _section(student.name, [replace(one, answer="") for one in asked], name)
-        pages[f"questions/{name}.html"] = _page(f"{student.name}: three questions", (alone,))
+        pages[f"questions/{name}.html"] = _page(f"{student.name}: three questions", alone)
     if sections:
-        near = Neighbours(files=tuple(Neighbour(name=name, about=name[10:-5]) for name in pages))
-        pages["questions.html"] = _page(
-            f"Three questions for each of {len(sections)}, with answers",
-            (*sections, Section(key="pages", heading="Without answers", blocks=(near,))),
-        )
+        near = section("pages", "Without answers", neighbours({name: name[10:-5] for name in pages}))
+        title = f"Three questions for each of {len(sections)}, with answers"
+        pages["questions.html"] = _page(title, *sections, near)
     for name, page in pages.items():
         write_text(out / name, page)
     return [out / name for name in pages], missing
@@ -240,12 +230,12 @@ def write_questions(folder: Path, out: Path) -> tuple[list[Path], list[BenchErro
 
 def _section(student: str, asked: list[AskedQuestion], key: str) -> Section:
     """Questions, each with its answer where it has one."""
-    blocks = []
+    texts = []
     for one in asked:
-        blocks.append(Paragraph(text=f"{one.name[0].upper()}{one.name[1:]}. {one.text}"))
-        blocks += [Paragraph(text=f"Answer: {one.answer}")] if one.answer else []
-    return Section(key=f"of-{key}", heading=student, blocks=tuple(blocks))
+        texts.append(f"{one.name[0].upper()}{one.name[1:]}. {one.text}")
+        texts += [f"Answer: {one.answer}"] if one.answer else []
+    return section(f"of-{key}", student, *(Paragraph(text=text) for text in texts))
 
 
-def _page(verdict: str, sections: tuple[Section, ...]) -> str:
+def _page(verdict: str, *sections: Section) -> str:
     return html(Document(title=TITLE, subject=TITLE, verdict=verdict, tone="sure", answers={}, sections=sections))

@@ -12,7 +12,7 @@ import numpy as np
 from bench.arrays import Array, column_rms
 from bench.axis_kind import OFFSET
 from bench.course.axis import KG_CM2, motor_value, simulated_with, torque_constant, without_friction
-from bench.course.friction import EquationOfMotion, identify_friction
+from bench.course.friction import identify_friction
 from bench.course.recordings import LabRecordings, run_of
 from bench.course.result import Number, TaskResult
 from bench.fit.identify import identify
@@ -45,12 +45,12 @@ def estimators(recordings: LabRecordings) -> TaskResult:
     bare = [run_of(trace, rig) for trace in _repeated(without_friction(rig))]
     mean = np.array([[mean_inertia(run.acceleration, run.torque)[0]] for run in bare])
     numbers = [Number("J, mean of M/α", _rms_error(mean, known[:1])[0], "%")]
-    found: dict[str, list[list[float]]] = {STEP: [], LATE: [], BENCH: []}
-    for trace in _repeated(rig):
-        own = identify_friction(run_of(trace, rig))
-        found[STEP].append([own.inertia, own.viscous, own.coulomb])
-        for words, estimate in ((LATE, identify_as_in_the_lab(trace, rig)), (BENCH, identify(trace, rig))):
-            found[words].append([estimate[name].value for name in NAMES])
+    traces = _repeated(rig)
+    own = [identify_friction(run_of(trace, rig)) for trace in traces]
+    found = {STEP: [[one.inertia, one.viscous, one.coulomb] for one in own]}
+    for words, estimator in ((LATE, identify_as_in_the_lab), (BENCH, identify)):
+        estimates = [estimator(trace, rig) for trace in traces]
+        found[words] = [[estimate[name].value for name in NAMES] for estimate in estimates]
     errors = {words: _rms_error(np.array(values), known) for words, values in found.items()}
     for words, error in errors.items():
         numbers += [Number(f"{name}, {words}", e, "%") for name, e in zip(NAMES.values(), error, strict=True)]
@@ -102,23 +102,18 @@ def emulated_friction(recordings: LabRecordings) -> TaskResult:
     traces = record_each(rig)
     found = {words: identify_friction(run_of(trace, rig)) for words, trace in traces.items()}
     numbers = []
-    for words, trace in traces.items():
-        default, share = identify(trace, rig), 0.0 if words == PHASES else 1.0  # phases carry no friction
+    for words, own in found.items():
+        bench, share = identify(traces[words], rig), 0.0 if words == PHASES else 1.0  # phases carry no friction
         viscous, coulomb = share * truth.viscous_friction_coefficient, share * truth.coulomb_friction
-        own = found[words]
         numbers += [
             Number(f"J, {words}", own.inertia * KG_CM2, "kg·cm²", truth.inertia * KG_CM2),
             Number(f"K_fric_w, {words}", own.viscous, "N·m·s/rad", viscous),
             Number(f"K_fric_0, {words}", own.coulomb, "N·m", coulomb),
-            Number(f"K_fric_w, {words}, bench", default["viscous_friction_coefficient"].value, "N·m·s/rad", viscous),
-            Number(f"K_fric_0, {words}, bench", default["coulomb_friction_torque"].value, "N·m", coulomb),
+            Number(f"K_fric_w, {words}, bench", bench["viscous_friction_coefficient"].value, "N·m·s/rad", viscous),
+            Number(f"K_fric_0, {words}, bench", bench["coulomb_friction_torque"].value, "N·m", coulomb),
         ]
-    return TaskResult(_emulation_findings(found, truth), tuple(numbers))
-
-
-def _emulation_findings(found: dict[str, EquationOfMotion], truth: AxisParameters) -> tuple[str, ...]:
     mechanics, setpoint, phases = found[MECHANICS], found[SETPOINT], found[PHASES]
-    return (
+    findings = (
         "Which current is recorded decides whether software friction is seen.",
         f"The set-point, before the drive subtracts the friction: K_fric_w is "
         f"{abs(setpoint.viscous / mechanics.viscous - 1.0):.2%} and K_fric_0 "
@@ -129,6 +124,7 @@ def _emulation_findings(found: dict[str, EquationOfMotion], truth: AxisParameter
         f"{truth.coulomb_friction:.2g}, {phases.viscous:.2g} N·m·s/rad of {truth.viscous_friction_coefficient:.2g}. "
         "Friction that is found in such a recording sits in the mechanics.",
     )
+    return TaskResult(findings, tuple(numbers))
 
 
 def geared(rig: Rig) -> Rig:
@@ -148,12 +144,12 @@ def equation_of_motion(recordings: LabRecordings) -> TaskResult:
     truth = AxisParameters.from_rig(axis)
     found = {name: parameter.value for name, parameter in identify(simulate(axis).trace, axis).parameters.items()}
     load, offset = (truth.inertia - truth.motor_inertia) * RATIO**2, axis.axis_kind.parameter(OFFSET)
-    friction = truth.viscous_friction_coefficient, truth.coulomb_friction
+    viscous, coulomb = found["viscous_friction_coefficient"], found["coulomb_friction_torque"]
     numbers = (
         Number("J", found["moment_of_inertia"] * KG_CM2, "kg·cm²", truth.inertia * KG_CM2),
         Number("J_load behind the gear", found["load_moment_of_inertia"] * KG_CM2, "kg·cm²", load * KG_CM2),
-        Number("K_fric_w", found["viscous_friction_coefficient"], "N·m·s/rad", friction[0]),
-        Number("K_fric_0", found["coulomb_friction_torque"], "N·m", friction[1]),
+        Number("K_fric_w", viscous, "N·m·s/rad", truth.viscous_friction_coefficient),
+        Number("K_fric_0", coulomb, "N·m", truth.coulomb_friction),
         Number("M_load behind the gear", found[offset] * RATIO, "N·m", LOAD_TORQUE),
     )
     findings = (

@@ -7,12 +7,14 @@ or, seldom, anywhere. Where none does, each answer is right or anything: "not kn
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
+from typing import Any, Literal
 
-from bench.course.answers import SLIPS
+from bench.course.answers import MISTAKES, SLIPS
+from bench.course.submission import GivenAnswer, Question
+from bench.units import dimensionality
 
 #: Probability that a task was done with one mistake, and with two; copied, of any neighbour; and in a way not known.
 ONE, TWO, COPIED, UNKNOWN = 1e-2, 1e-4, 1e-3, 1e-3
@@ -25,9 +27,12 @@ SURE = 20.0
 #: A mistake made in another task, by one and the same function, is so many times likelier made in this one too.
 CARRIED = 50.0
 NOT_KNOWN, COPY = "not known", "copied from student "
+#: What a student reads of each mistake.
+WHY = {name: why for name, why, _ in (*MISTAKES, *SLIPS)}
 
 #: What a way of working gives, by the names of the form.
 Figures = Mapping[str, float]
+Verdict = Literal["right", "wrong", "wrong unit", "not answered", "not judged"]
 
 
 @dataclass(frozen=True)
@@ -49,107 +54,144 @@ class Explanation:
     @property
     def text(self) -> str:
         """The mistakes, or both explanations where none is much likelier."""
-        own = " and ".join(self.names)
-        return (
-            own
-            if self.odds >= SURE or NOT_KNOWN in (*self.names, *self.next)
-            else f"{own}, or {' and '.join(self.next)}"
-        )
+        alone = self.odds >= SURE or NOT_KNOWN in (*self.names, *self.next)
+        return ", or ".join(" and ".join(names) for names in (self.names, self.next)[: 1 if alone else 2])
 
     @property
     def likelier(self) -> str:
         """How much likelier than the next, in words."""
         if self.names == (NOT_KNOWN,):
             return ""
-        times = (
-            f"10^{math.log10(self.odds):.0f}" if self.odds > 1e4 else f"{self.odds:.{0 if self.odds > 10.0 else 1}f}"
-        )
+        digits = 0 if self.odds > 10.0 else 1
+        times = f"10^{math.log10(self.odds):.0f}" if self.odds > 1e4 else f"{self.odds:.{digits}f}"
         return f"{times} times likelier than {' and '.join(self.next)}"
 
 
+@dataclass(frozen=True)
+class GradedAnswer:
+    """One answer and what is to be said of it.
+
+    Attributes:
+        question: what was asked.
+        given: as it was handed in.
+        value: the same in the form's unit; NaN without one.
+        expected: what the course's way gives on the student's recordings, in that unit.
+        verdict: right, wrong, in a unit of another dimension, not answered, or not judged.
+        tolerance: share by which a right answer may be off.
+        explained: how the task's answers were made, where that gives this one and it is wrong; None otherwise.
+    """
+
+    question: Question
+    given: GivenAnswer | None
+    value: float
+    expected: float
+    verdict: Verdict
+    tolerance: float
+    explained: Explanation | None = None
+
+    @property
+    def mistake(self) -> str:
+        """What went wrong in the task; empty where nothing did, it is not known, or does not give this answer."""
+        return "" if self.explained is None or self.explained.names == (NOT_KNOWN,) else self.explained.text
+
+    @property
+    def off(self) -> str:
+        """Share by which it is off what is expected; empty where that is not known."""
+        if not math.isfinite(self.value) or not self.expected:
+            return ""
+        ratio = self.value / self.expected
+        return f"{ratio - 1.0:+.2%}" if 0.0 < ratio < 2.0 else f"{ratio:.3g} times"
+
+    @property
+    def as_given(self) -> str:
+        """Value and unit; empty without an answer."""
+        return "" if self.given is None else f"{self.given.value:.6g} {self.given.unit or self.question.unit}"
+
+    @property
+    def remark(self) -> str:
+        """What the student reads beside it."""
+        if self.explained is not None and self.mistake:
+            why = " ".join(WHY[name] for name in self.explained.names if name in WHY)
+            return f"{self.mistake}: {why}" if why else self.mistake
+        if self.verdict == "wrong unit" and self.given is not None:
+            return f"{_measures(self.given.unit)}; give {self.question.unit}, or another unit of the same quantity."
+        if self.verdict == "wrong":
+            return "Off by more than other right ways would be; no mistake that is known gives this figure."
+        return ""
+
+    def near(self, figures: Figures) -> float:
+        """Density of its logarithm, normal about its figure with half the tolerance for a standard deviation."""
+        figure, deviation = figures.get(self.question.name, math.nan), 0.5 * self.tolerance
+        if not math.isfinite(figure) or self.value * figure <= 0.0:
+            return 0.0
+        apart = math.log(self.value / figure) / deviation
+        return math.exp(-0.5 * min(apart**2, 1400.0)) / (deviation * math.sqrt(2.0 * math.pi))
+
+    @property
+    def anywhere(self) -> float:
+        """Density of its logarithm where it may be anything."""
+        return 0.25 / WIDE * math.exp(-abs(math.log(abs(self.value / self.expected) or 1e-300)) / WIDE)
+
+    def would_be_wrong(self, figures: Figures) -> bool:
+        """Whether a way's figure for it is further from what is expected than a right answer may be."""
+        figure = figures.get(self.question.name, math.nan)
+        known = math.isfinite(figure) and figure != 0.0
+        return not known or abs(self.expected / figure - 1.0) / self.tolerance > 1.0
+
+
+def _measures(unit: str) -> str:
+    """What a wrong unit is one of."""
+    try:
+        return f"'{unit}' measures {dimensionality(unit)}"
+    except ValueError:
+        return f"'{unit}' is no unit"
+
+
 def explanation(
-    answers: Figures,
-    tolerances: Mapping[str, float],
-    of_student: Mapping[str, Any],
-    others: Mapping[str, Figures],
-    elsewhere: Collection[str] = (),
-) -> Explanation:
-    """The likeliest of how answers were made that are not all right.
+    answers: Sequence[GradedAnswer], student: str, known: Mapping[str, Any], elsewhere: Collection[str] = ()
+) -> Explanation | None:
+    """The likeliest of how a task was done, which is done in one way; None where no answer is wrong.
 
     Args:
-        answers: of a task, in the form's units.
-        tolerances: share by which a right answer may be off, of each.
-        of_student: what the truth of a class has of the student: `expected`, and `mistakes` with their figures.
-        others: what is expected of each other student.
+        answers: of the task.
+        student: who gave them.
+        known: truth of the class by student: `expected`, and `mistakes` with their figures.
         elsewhere: mistakes that the student's other tasks tell.
     """
-    expected = of_student["expected"]
-    asked = {name: value for name, value in answers.items() if expected.get(name)}
-    anything = (_log_density(asked[name], name, expected, expected, tolerances, HALF) for name in asked)
-    weighed = [((NOT_KNOWN,), expected, math.log(UNKNOWN) + sum(anything))]
-    ways = [
-        *_singles_and_pairs(of_student),
-        *(((COPY + name,), COPIED / len(others), own) for name, own in others.items()),
-    ]
-    for names, prior, figures in ways:
-        if any(_apart(expected, figures, name, tolerances) > 1.0 for name in asked):
-            likely = sum(
-                _log_density(value, name, figures, expected, tolerances, SLIPPED) for name, value in asked.items()
-            )
+    if all(answer.verdict != "wrong" for answer in answers):
+        return None
+    expected = known[student]["expected"]
+    asked = [answer for answer in answers if math.isfinite(answer.value) and expected.get(answer.question.name)]
+
+    def log_likelihood(figures: Figures, missed: float) -> float:
+        densities = ((1.0 - missed) * answer.near(figures) + missed * answer.anywhere for answer in asked)
+        return sum(math.log(density + 1e-300) for density in densities)
+
+    weighed: list[tuple[tuple[str, ...], Figures, float]] = []
+    weighed.append(((NOT_KNOWN,), expected, math.log(UNKNOWN) + log_likelihood(expected, HALF)))
+    for names, prior, figures in _ways(student, known):
+        if any(answer.would_be_wrong(figures) for answer in asked):
             carried = CARRIED if elsewhere and {*names} <= {*elsewhere} else 1.0
-            weighed.append((names, figures, math.log(prior * carried) + likely))
+            weighed.append((names, figures, math.log(prior * carried) + log_likelihood(figures, SLIPPED)))
     weighed.sort(key=lambda one: -one[2])
     names, figures, best = weighed[0]
     after = next((one for one in weighed[1:] if one[0] != names), weighed[0])
-    given = frozenset(
-        name
-        for name, value in asked.items()
-        if _near(value, name, figures, tolerances) > SLIPPED * _wide(value, name, expected)
-    )
+    given = frozenset(answer.question.name for answer in asked if answer.near(figures) > SLIPPED * answer.anywhere)
     return Explanation(names, math.exp(min(best - after[2], 600.0)), after[0], given)
 
 
-def _singles_and_pairs(of_student: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], float, Figures]]:
-    """Names, probability and figures of mistakes in the work, of slips after it, and of two of them."""
-    expected = of_student["expected"]
-    for names, changed in of_student["mistakes"]:
-        figures = {**expected, **changed}
-        yield tuple(names), ONE if len(names) == 1 else TWO, figures
-        if len(names) == 1:
-            for slip, _, change in SLIPS:
-                yield (*names, slip), TWO, {**figures, **change(figures)}
-    for slip, _, change in SLIPS:
-        yield (slip,), ONE, {**expected, **change(expected)}
+def _ways(student: str, known: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], float, Figures]]:
+    """Names, probability and figures of mistakes in the work, of slips after it, of two of them, and of copies."""
+    expected, prior = known[student]["expected"], {1: ONE, 2: TWO}
+    works = [(tuple(names), {**expected, **changed}) for names, changed in known[student]["mistakes"]]
+    for names, figures in (*works, ((), expected)):
+        if names:
+            yield names, prior[len(names)], figures
+        for slip, _, change in SLIPS if len(names) < 2 else ():
+            yield (*names, slip), prior[len(names) + 1], {**figures, **change(figures)}
     for (one, _, first), (two, _, second) in combinations(SLIPS, 2):
         figures = {**expected, **first(expected)}
         yield (one, two), TWO, {**figures, **second(figures)}
-
-
-def _apart(answers: Figures, figures: Figures, name: str, tolerances: Mapping[str, float]) -> float:
-    """Distance from a figure in shares of what is allowed."""
-    figure = figures.get(name, math.nan)
-    if not math.isfinite(figure) or figure == 0.0:
-        return math.inf
-    return abs(answers[name] / figure - 1.0) / tolerances[name]
-
-
-def _log_density(
-    value: float, name: str, figures: Figures, expected: Figures, tolerances: Mapping[str, float], missed: float
-) -> float:
-    """Of an answer's logarithm: about its figure, or anywhere."""
-    near = _near(value, name, figures, tolerances)
-    return math.log((1.0 - missed) * near + missed * _wide(value, name, expected) + 1e-300)
-
-
-def _near(value: float, name: str, figures: Figures, tolerances: Mapping[str, float]) -> float:
-    """Density of a logarithm that is normal about its figure, twice its deviation being what is allowed."""
-    figure, deviation = figures.get(name, math.nan), 0.5 * tolerances[name]
-    if not math.isfinite(figure) or value * figure <= 0.0:
-        return 0.0
-    apart = math.log(value / figure) / deviation
-    return math.exp(-0.5 * min(apart**2, 1400.0)) / (deviation * math.sqrt(2.0 * math.pi))
-
-
-def _wide(value: float, name: str, expected: Figures) -> float:
-    """Density of a logarithm that may be anything."""
-    return 0.25 / WIDE * math.exp(-abs(math.log(abs(value / expected[name]) or 1e-300)) / WIDE)
+    for name, other in known.items():
+        if name != student:
+            yield (COPY + name,), COPIED / (len(known) - 1), other["expected"]

@@ -13,14 +13,14 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB
 from bench.course.axis import KG_CM2
-from bench.course.inertia import half_width, inertia_without_friction, load_inertia, require_positive
+from bench.course.inertia import half_width, inertia_without_friction, load_inertia, require_positive, torque_chart
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.lab import LEAST_SPEED, least_squares
 from bench.fit.rows import ONE_WAY
-from bench.report.document import Chart, Series
+from bench.report.document import Chart
 from bench.trace.filter import LEAST_WIDTH, GaussianFilter
 
 #: Backward differences that the filter takes the mean of; an even number, so that it is late by whole samples.
@@ -58,15 +58,13 @@ def in_step(run: LabRun) -> LabRun:
 def fast_samples(run: LabRun) -> LabRun:
     """Samples with |omega| >= 20 rad/s on t_sync, where alpha_filt belongs to the other signals.
 
-    Raises UndeterminedError where the recording is too short or too slow.
+    Raises UndeterminedError where the recording is too slow.
     """
-    least = f"a run that passes {LEAST_SPEED:g} rad/s in both directions"
-    if run.time.size <= WIDTH + 1:
-        raise UndeterminedError("inertia and friction", f"the recording has {run.time.size} samples", least)
     _, synchronous = filtered_acceleration(run)
     fast = np.zeros(run.time.size, dtype=bool)
     fast[synchronous] = np.abs(run.velocity[synchronous]) >= LEAST_SPEED
     if not fast.any():
+        least = f"a run that passes {LEAST_SPEED:g} rad/s in both directions"
         raise UndeterminedError("inertia and friction", f"no sample is faster than {LEAST_SPEED:g} rad/s", least)
     return in_step(run).at(fast)
 
@@ -132,39 +130,34 @@ def steepest(run: LabRun) -> int:
 
 
 def _edge_chart(run: LabRun) -> Chart:
-    """alpha and alpha_filt, all of them, and around the steepest change of the torque."""
-    mean, synchronous = filtered_acceleration(run)
-    t_sync = run.time[synchronous]
-    edge = steepest(run)
-    near = slice(edge - EDGE, edge + EDGE)
-    within = slice(near.start - DELAY, near.stop - DELAY)
-    late = t_sync + DELAY * run.sample_period
-    whole = curve(run.time, run.acceleration, "α", "wide"), curve(t_sync, mean, "α_filt on t_sync")
-    close = (
-        curve(run.time[near], run.acceleration[near], "α, original", "wide"),
-        curve(run.time[near], mean[within], "α_filt on t_sync", "large dots"),
-        curve(late[within], mean[within], "α_filt as it comes", "dashes"),
-    )
-    return chart(
-        "Task 8: filtered acceleration over the original one",
-        panel("t_sync / s", "acceleration α / (rad/s²)", *whole),
-        panel("t_sync / s, one edge", "acceleration α / (rad/s²)", *close),
-        panel("t_sync / s, a few samples of it", "acceleration α / (rad/s²)", *_half_sample(run, edge)),
-    )
+    """alpha and alpha_filt: all of them, around the steepest change of the torque, and closer.
 
-
-def _half_sample(run: LabRun, edge: int) -> tuple[Series, ...]:
-    """The mean set back by its own delay alone, by half a sample more, and the speed's derivative in step."""
+    There the mean set back by its own delay alone, by half a sample more, and the speed's derivative in step.
+    """
     mean, synchronous = filtered_acceleration(run)
+    alpha, edge = in_step(run).acceleration, steepest(run)
+    near, closer = slice(edge - EDGE, edge + EDGE), slice(edge - CLOSE, edge + CLOSE)
     smooth = GaussianFilter(LEAST_WIDTH * run.sample_period, run.sample_period)
-    near = slice(edge - CLOSE, edge + CLOSE)
-    slope = smooth(run.velocity, 1)[0][near.start - smooth.margin : near.stop - smooth.margin]
-    time, values = run.time[near], mean[near.start - synchronous.start : near.stop - synchronous.start]
-    return (
-        curve(time, slope, "dω/dt in step", "wide"),
-        curve(time, values, f"α_filt set back by {DELAY} samples", "large dots"),
-        curve(time + 0.5 * run.sample_period, values, f"by {DELAY - 0.5:g}, half a sample later", "large dots"),
-    )
+    slope = smooth(run.velocity, 1)[0][closer.start - smooth.margin : closer.stop - smooth.margin]
+    half_later = run.time[closer] + 0.5 * run.sample_period
+    panels = {
+        "t_sync / s": (
+            curve(run.time, run.acceleration, "α", "wide"),
+            curve(run.time[synchronous], mean, "α_filt on t_sync"),
+        ),
+        "t_sync / s, one edge": (
+            curve(run.time[near], run.acceleration[near], "α, original", "wide"),
+            curve(run.time[near], alpha[near], "α_filt on t_sync", "large dots"),
+            curve(run.time[near] + DELAY * run.sample_period, alpha[near], "α_filt as it comes", "dashes"),
+        ),
+        "t_sync / s, a few samples of it": (
+            curve(run.time[closer], slope, "dω/dt in step", "wide"),
+            curve(run.time[closer], alpha[closer], f"α_filt set back by {DELAY} samples", "large dots"),
+            curve(half_later, alpha[closer], f"by {DELAY - 0.5:g}, half a sample later", "large dots"),
+        ),
+    }
+    drawn = (panel(label, "acceleration α / (rad/s²)", *curves) for label, curves in panels.items())
+    return chart("Task 8: filtered acceleration over the original one", *drawn)
 
 
 @dataclass(frozen=True)
@@ -183,7 +176,7 @@ class EquationOfMotion:
     viscous: float
     coulomb: float
     error: float
-    halves: tuple[float, float, float]
+    halves: tuple[float, ...]
 
     def torque(self, run: LabRun) -> Array:
         """J*alpha + K_fric_w*omega + K_fric_0*sgn(omega) - N*m."""
@@ -194,8 +187,7 @@ class EquationOfMotion:
 def identify_friction(run: LabRun) -> EquationOfMotion:
     """The course's least squares on the fast samples of a recording.
 
-    Raises:
-        UndeterminedError: they do not tell inertia and friction apart, or torque and acceleration oppose each other.
+    Raises UndeterminedError where they do not tell inertia and friction apart, or torque and acceleration are opposed.
     """
     samples = fast_samples(run)
     weaker = 0.5 * (1.0 - abs(float(np.mean(np.sign(samples.velocity)))))
@@ -204,9 +196,9 @@ def identify_friction(run: LabRun) -> EquationOfMotion:
         raise UndeterminedError("Coulomb friction", reason, RECORD[COULOMB])
     theta, std_error, error = least_squares(samples.acceleration, samples.velocity, samples.torque)
     require_positive(float(theta[0]))
-    estimates = zip(("inertia", "viscous", "coulomb"), theta.tolist(), std_error.tolist(), strict=True)
-    inertia, viscous, coulomb = (half_width(value, deviation, name, run) for name, value, deviation in estimates)
-    return EquationOfMotion(*theta.tolist(), error=error, halves=(inertia, viscous, coulomb))
+    estimates = zip(theta.tolist(), std_error.tolist(), ("inertia", "viscous", "coulomb"), strict=True)
+    halves = tuple(half_width(value, deviation, name, run) for value, deviation, name in estimates)
+    return EquationOfMotion(*theta.tolist(), error=error, halves=halves)
 
 
 def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
@@ -214,8 +206,7 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
     run = recordings.with_friction
     found, fitted, every = identify_friction(run), fast_samples(run), in_step(run)
     estimated = found.torque(every)
-    residual = run.torque - estimated
-    left, left_of_fitted = rms(residual), np.sqrt(found.error / fitted.time.size)
+    left, left_of_fitted = rms(run.torque - estimated), np.sqrt(found.error / fitted.time.size)
     true = run.true("moment_of_inertia", KG_CM2)
     half = found.halves
     loads, _ = load_inertia(found.inertia, half[0], recordings, true)
@@ -235,13 +226,8 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
         Number("samples of M_est", float(every.time.size), "1"),
         Number("RMS of M - M_est, all samples", left, "N·m"),
     )
-    measured = curve(run.time, run.torque, "measured torque M", "wide")
-    drawn = chart(
-        "Task 9: reconstructed torque over the measured one",
-        panel("time / s", "torque / (N·m)", measured, curve(run.time, estimated, "M_est, all samples")),
-        panel("time / s", "M - M_est / (N·m)", curve(run.time, residual)),
-    )
-    return TaskResult(findings, numbers, (drawn,))
+    title, name = "Task 9: reconstructed torque over the measured one", "M_est, all samples"
+    return TaskResult(findings, numbers, (torque_chart(title, run, estimated, name, "M_est"),))
 
 
 def _beside_task_6(loads: list[Number], recordings: LabRecordings) -> tuple[str, ...]:
@@ -250,12 +236,10 @@ def _beside_task_6(loads: list[Number], recordings: LabRecordings) -> tuple[str,
         before = inertia_without_friction(recordings)
     except BenchError:
         return ()
-    sentences = []
-    for load in loads[:1]:
-        other = before["J_load"]
-        apart, half = load.value - other.value, math.hypot(load.half or 0.0, other.half or 0.0)
-        agree = "the two agree" if abs(apart) <= half else "the two contradict each other"
-        sentences.append(
-            f"J_load is {apart / other.value:+.2%} off the one of task 6, {apart:+.2g} ± {half:.2g} kg·cm²: {agree}."
-        )
-    return tuple(sentences)
+    if not loads:
+        return ()
+    load, other = loads[0], before["J_load"]
+    apart, half = load.value - other.value, math.hypot(load.half or 0.0, other.half or 0.0)
+    agree = "the two agree" if abs(apart) <= half else "the two contradict each other"
+    share = apart / other.value
+    return (f"J_load is {share:+.2%} off the one of task 6, {apart:+.2g} ± {half:.2g} kg·cm²: {agree}.",)

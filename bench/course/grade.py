@@ -7,87 +7,29 @@ import hashlib
 import io
 import json
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import groupby
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from bench.course.answers import MISTAKES, SLIPS
-from bench.course.explain import NOT_KNOWN, SURE, Explanation, explanation
+from bench.course.explain import NOT_KNOWN, SURE, GradedAnswer, explanation
 from bench.course.submission import QUESTIONS, GivenAnswer, Question, Submission, find_submissions, read_submission
 from bench.errors import InputError
 from bench.files import read_text, write_text
 from bench.names import cell
-from bench.report.document import Document, Neighbour, Neighbours, Paragraph, Points, Section, Table, table
+from bench.report.document import AnyPart, Document, Paragraph, Points, Table, neighbours, section, table
 from bench.report.html import html
 from bench.structured import parse_json
-from bench.units import convert, dimensionality, same_dimension
+from bench.units import convert
 
 TITLE = "Industrial Drives, Part 2: grades"
 #: Schema of the truth of a class.
 SEALED = "bench.lab.class/2"
 #: An answer is a mistake's figure within the tolerance of a right one; E, which has none, within this share of it.
 OF_ERROR = 0.04
-#: What a student reads of each mistake.
-WHY = {mistake.name: mistake.explanation for mistake in MISTAKES} | {name: why for name, why, _ in SLIPS}
-
-Verdict = Literal["right", "wrong", "wrong unit", "not answered", "not judged"]
-
-
-@dataclass(frozen=True)
-class GradedAnswer:
-    """One answer and what is to be said of it.
-
-    Attributes:
-        question: what was asked.
-        given: as it was handed in.
-        value: the same in the form's unit; NaN without one.
-        expected: what the course's way gives on the student's recordings, in that unit.
-        verdict: right, wrong, in a unit of another dimension, not answered, or not judged.
-        tolerance: share by which a right answer may be off.
-        explained: how the task's answers were made, where that gives this one and it is wrong; None otherwise.
-    """
-
-    question: Question
-    given: GivenAnswer | None
-    value: float
-    expected: float
-    verdict: Verdict
-    tolerance: float
-    explained: Explanation | None = None
-
-    @property
-    def mistake(self) -> str:
-        """What went wrong in the task; empty where nothing did, it is not known, or does not give this answer."""
-        return "" if self.explained is None or self.explained.names == (NOT_KNOWN,) else self.explained.text
-
-    @property
-    def off(self) -> str:
-        """Share by which it is off what is expected; empty where that is not known."""
-        if not math.isfinite(self.value) or not self.expected:
-            return ""
-        ratio = self.value / self.expected
-        return f"{ratio - 1.0:+.2%}" if 0.0 < ratio < 2.0 else f"{ratio:.3g} times"
-
-    @property
-    def as_given(self) -> str:
-        """Value and unit; empty without an answer."""
-        return "" if self.given is None else f"{self.given.value:.6g} {self.given.unit or self.question.unit}"
-
-    @property
-    def remark(self) -> str:
-        """What the student reads beside it."""
-        if self.explained is not None and self.mistake:
-            why = " ".join(WHY[name] for name in self.explained.names if name in WHY)
-            return f"{self.mistake}: {why}" if why else self.mistake
-        if self.verdict == "wrong unit" and self.given is not None:
-            return f"{_measures(self.given.unit)}; give {self.question.unit}, or another unit of the same quantity."
-        if self.verdict == "wrong":
-            return "Off by more than other right ways would be; no mistake that is known gives this figure."
-        return ""
 
 
 @dataclass(frozen=True)
@@ -140,27 +82,27 @@ class GradedClass:
 def grade_class(submissions: Path, truth: Path) -> GradedClass:
     """Grade every submission of a folder by a sealed truth; a bad one, or two of one student, leave the others alone.
 
-    Raises:
-        InputError: no submissions, or no truth.
+    Raises InputError where there are no submissions, or no truth.
     """
     known = read_truth_of_class(truth)
-    graded: dict[str, list[tuple[GradedStudent, Path]]] = {}
+    graded: dict[str, GradedStudent] = {}
+    forms: dict[str, list[str]] = {}
     unread: list[InputError] = []
     for path in find_submissions(submissions):
         try:
-            found = grade(read_submission(path), known)
+            submission = read_submission(path)
+            graded[submission.student] = grade(submission, known)
         except InputError as error:
             unread.append(error)
         else:
-            graded.setdefault(found.student, []).append((found, path))
-    for student, forms in graded.items():
-        if len(forms) > 1:
-            paths = ", ".join(str(path) for _, path in forms)
-            unread.append(
-                InputError(submissions, f"found {len(forms)} of student {student} ({paths})", "leave one of them")
-            )
-    students = tuple(graded[student][0][0] for student in sorted(graded) if len(graded[student]) == 1)
-    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(graded))))
+            forms.setdefault(submission.student, []).append(submission.source)
+    for student, paths in forms.items():
+        if len(paths) > 1:
+            del graded[student]
+            found = f"found {len(paths)} of student {student} ({', '.join(paths)})"
+            unread.append(InputError(submissions, found, "leave one of them"))
+    students = tuple(one for _, one in sorted(graded.items()))
+    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))))
 
 
 def seal(content: Mapping[str, Any]) -> str:
@@ -171,8 +113,7 @@ def seal(content: Mapping[str, Any]) -> str:
 def read_truth_of_class(path: Path) -> Mapping[str, Any]:
     """Truth, expected answers and figures of mistakes by student, as `bench lab --record --students` wrote them.
 
-    Raises:
-        InputError: no such file, none of these, or one that was changed.
+    Raises InputError where there is no such file, or one that was changed.
     """
     advice = "give the file that bench lab --record FOLDER --students N wrote beside FOLDER"
     try:
@@ -187,73 +128,41 @@ def read_truth_of_class(path: Path) -> Mapping[str, Any]:
 
 
 def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:
-    """Grade every quantity of a student's form by what `read_truth_of_class` knows.
-
-    Raises:
-        InputError: the submission's student is not in it; names those that are.
-    """
+    """Grade every quantity of a student's form by what `read_truth_of_class` knows; InputError without the student."""
     if submission.student not in known:
         allowed = f"allowed: {', '.join(sorted(known))}"
         raise InputError(f"{submission.source}: student", f"found '{submission.student}'", allowed)
     of_student = known[submission.student]
     graded = [_graded(question, submission.answers.get(question.name), of_student) for question in QUESTIONS]
     tasks = [list(of_task) for _, of_task in groupby(graded, lambda answer: answer.question.task)]
-    explanations = [_explanation(of_task, submission.student, known) for of_task in tasks]
+    explanations = [explanation(of_task, submission.student, known) for of_task in tasks]
     sure = [{*one.names} - {NOT_KNOWN} if one is not None and one.odds >= SURE else set() for one in explanations]
-    for k, of_task in enumerate(tasks):
-        if explanations[k] is not None and not sure[k]:  # what a task leaves open the others may settle
-            explanations[k] = _explanation(of_task, submission.student, known, set().union(*sure))
-    named = [_named(answer, one) for of_task, one in zip(tasks, explanations, strict=True) for answer in of_task]
-    return GradedStudent(submission.student, tuple(named))
+    answers = []
+    for of_task, found, alone in zip(tasks, explanations, sure, strict=True):
+        if found is not None and not alone:  # what a task leaves open the others may settle
+            found = explanation(of_task, submission.student, known, set().union(*sure))
+        given = found.given if found is not None else ()
+        answers += [
+            replace(answer, explained=found if answer.verdict == "wrong" and answer.question.name in given else None)
+            for answer in of_task
+        ]
+    return GradedStudent(submission.student, tuple(answers))
 
 
 def _graded(question: Question, given: GivenAnswer | None, known: Mapping[str, Any]) -> GradedAnswer:
     expected, true = (known[name].get(question.name, math.nan) for name in ("expected", "truth"))
-    value, verdict = math.nan, "not answered"
     own = known["tolerance"].get(question.name, 0.0)
     tolerance = OF_ERROR if question.tolerance is None else max(question.tolerance, own)
+    value, verdict = math.nan, "not answered"
     if given is not None:
-        if not _fits(given.unit, question.unit):
+        try:
+            value = float(convert(np.asarray(given.value), given.unit or question.unit, question.unit))
+        except ValueError:
             return GradedAnswer(question, given, value, expected, "wrong unit", tolerance)
-        value = float(convert(np.asarray(given.value), given.unit or question.unit, question.unit))
         right = (abs(value - one) <= tolerance * (abs(one) or question.near_zero) for one in (expected, true))
         verdict = "right" if any(right) else "wrong"
     verdict = "not judged" if question.tolerance is None else verdict
     return GradedAnswer(question, given, value, expected, verdict, tolerance)
-
-
-def _fits(unit: str, wanted: str) -> bool:
-    """Whether a unit is one of the quantity's; none is the form's own."""
-    try:
-        return not unit or same_dimension(unit, wanted)
-    except ValueError:
-        return False
-
-
-def _measures(unit: str) -> str:
-    """What a wrong unit is one of."""
-    try:
-        return f"'{unit}' measures {dimensionality(unit)}"
-    except ValueError:
-        return f"'{unit}' is no unit"
-
-
-def _explanation(
-    answers: list[GradedAnswer], student: str, known: Mapping[str, Any], elsewhere: Collection[str] = ()
-) -> Explanation | None:
-    """What explains most answers of a task, which is done in one way; None where nothing is wrong."""
-    if all(answer.verdict != "wrong" for answer in answers):
-        return None
-    given = {answer.question.name: answer.value for answer in answers if math.isfinite(answer.value)}
-    tolerances = {answer.question.name: answer.tolerance for answer in answers}
-    others = {name: one["expected"] for name, one in known.items() if name != student}
-    return explanation(given, tolerances, known[student], others, elsewhere)
-
-
-def _named(answer: GradedAnswer, explanation: Explanation | None) -> GradedAnswer:
-    """A wrong answer with what explains its task, if that gives it."""
-    explained = explanation is not None and answer.verdict == "wrong" and answer.question.name in explanation.given
-    return replace(answer, explained=explanation) if explained else answer
 
 
 def write_grades(graded: GradedClass, out: Path) -> list[Path]:
@@ -271,20 +180,20 @@ def class_document(graded: GradedClass) -> Document:
     for one in graded.students:
         wrong = ", ".join(f"{answer.question.name} {answer.off}".strip() for answer in one.wrong)
         rows.append((one.student, one.score, wrong, ", ".join(one.mistakes)))
-    missing = f"No submission of: {', '.join(graded.missing)}."
-    blocks = (
-        *((Paragraph(text=missing),) if graded.missing else ()),
-        *((Points(items=tuple(map(str, graded.unread))),) if graded.unread else ()),
-        table("Answers", ("student", "right", "wrong~", "mistakes~"), rows),
-        Neighbours(files=tuple(Neighbour(name=one.page, about=f"student {one.student}") for one in graded.students)),
-    )
+    blocks: list[AnyPart] = []
+    if graded.missing:
+        blocks.append(Paragraph(text=f"No submission of: {', '.join(graded.missing)}."))
+    if graded.unread:
+        blocks.append(Points(items=tuple(map(str, graded.unread))))
+    blocks.append(table("Answers", ("student", "right", "wrong~", "mistakes~"), rows))
+    blocks.append(neighbours({one.page: f"student {one.student}" for one in graded.students}))
     return Document(
         title=TITLE,
         subject=TITLE,
         verdict=f"{len(graded.students)} forms graded, {len(graded.unread)} not.",
         tone="open" if graded.missing or graded.unread else "sure",
         answers={},
-        sections=(Section(key="students", heading="Students", blocks=blocks),),
+        sections=(section("students", "Students", *blocks),),
     )
 
 
@@ -299,7 +208,7 @@ def student_document(one: GradedStudent) -> Document:
         verdict=f"Student {one.student}: {one.score} right",
         tone="open" if one.wrong else "sure",
         answers={},
-        sections=(Section(key="answers", heading="Answers", blocks=(answers,)),),
+        sections=(section("answers", "Answers", answers),),
     )
 
 

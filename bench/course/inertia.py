@@ -10,13 +10,14 @@ import math
 
 import numpy as np
 
-from bench.arrays import NORMAL95, rms
+from bench.arrays import NORMAL95, Array, rms
 from bench.course.axis import KG_CM2, joined
 from bench.course.plausible import WITH_FRICTION, WITHOUT_FRICTION, balance
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import COMPUTED, RECORDING, Number, TaskResult, chart, curve, panel
 from bench.errors import InputError, UndeterminedError
 from bench.fit.lab import backward_difference, mean_inertia
+from bench.report.document import Chart
 from bench.trace.filter import GaussianFilter
 
 #: Of the sine - s.
@@ -25,6 +26,11 @@ SAMPLE_PERIOD = 1e-3
 DURATION = 2.0 * np.pi
 #: Width of the bench's filter, as it chooses it for the lab's recordings - s.
 WIDTH = 2.0 * SAMPLE_PERIOD
+#: Of the diagrams of tasks 5 and 7.
+TITLES = {
+    WITHOUT_FRICTION: "Task 5: recording without friction",
+    WITH_FRICTION: "Task 7: recording with friction",
+}
 
 
 def backward_difference_of_a_sine(recordings: LabRecordings) -> TaskResult:
@@ -59,29 +65,19 @@ def backward_difference_of_a_sine(recordings: LabRecordings) -> TaskResult:
     return TaskResult((findings,), numbers, (drawn,))
 
 
-def signals_without_friction(recordings: LabRecordings) -> TaskResult:
-    """Task 5: the signals of the recording without friction."""
-    return _signals(recordings, WITHOUT_FRICTION, "Task 5: recording without friction")
-
-
-def signals_with_friction(recordings: LabRecordings) -> TaskResult:
-    """Task 7: the signals of the recording with friction."""
-    return _signals(recordings, WITH_FRICTION, "Task 7: recording with friction")
-
-
-def _signals(recordings: LabRecordings, name: str, title: str) -> TaskResult:
-    """Angle, speed, acceleration and torque one above the other, and how far they reach.
+def signals(name: str, recordings: LabRecordings) -> TaskResult:
+    """Tasks 5 and 7: angle, speed, acceleration and torque of a recording one above the other, and how far they reach.
 
     They are drawn of a recording that cannot be of the axis, too, for what is wrong with it to be seen.
     """
     run = recordings.run(name)
-    signals = {
+    shown = {
         "angle φ / rad": run.angle,
         "speed ω / (rad/s)": run.velocity,
         "acceleration α / (rad/s²)": run.acceleration,
         "torque M / (N·m)": run.torque,
     }
-    drawn = chart(title, *(panel("time / s", label, curve(run.time, values)) for label, values in signals.items()))
+    drawn = chart(TITLES[name], *(panel("time / s", label, curve(run.time, values)) for label, values in shown.items()))
     try:
         recordings.sound(name)
     except InputError as reason:
@@ -153,8 +149,7 @@ def load_inertia(
 def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
     """Task 6: alpha_max, J from samples with |alpha| >= alpha_max/4, J_load = J - J_motor beside theory.
 
-    Raises:
-        UndeterminedError: the axis never accelerates, or torque and acceleration oppose each other.
+    Raises UndeterminedError where the axis never accelerates, or torque and acceleration oppose each other.
     """
     run = recordings.without_friction
     inertia, largest, taken = mean_inertia(run.acceleration, run.torque)
@@ -163,8 +158,8 @@ def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
     ratio = run.torque[taken] / run.acceleration[taken]
     half = half_width(inertia, float(np.std(ratio)) / math.sqrt(ratio.size), "inertia", run)
     loads, of_load = load_inertia(inertia, half, recordings, true)
-    residual = run.torque - inertia * run.acceleration
-    left = rms(residual[taken])
+    modelled = inertia * run.acceleration
+    left = rms((run.torque - modelled)[taken])
     findings = (
         f"{taken.sum()} of {taken.size} samples accelerate at alpha_max/4 or more; J is the mean of M/α over them.",
         "In which unit? N·m over rad/s² is N·m·s² = kg·m², as the radian counts as 1; 1 kg·m² = 10⁴ kg·cm².",
@@ -179,10 +174,15 @@ def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
         *loads,
         Number("RMS of M - J·α", left, "N·m"),
     )
-    measured = curve(run.time, run.torque, "measured torque M", "wide")
-    drawn = chart(
-        "Task 6: J·α over the measured torque",
-        panel("time / s", "torque / (N·m)", measured, curve(run.time, inertia * run.acceleration, "J·α")),
-        panel("time / s", "M - J·α / (N·m)", curve(run.time, residual)),
-    )
+    drawn = torque_chart("Task 6: J·α over the measured torque", run, modelled, "J·α", "J·α")
     return TaskResult(findings, numbers, (drawn,))
+
+
+def torque_chart(title: str, run: LabRun, modelled: Array, name: str, symbol: str) -> Chart:
+    """A modelled torque (n,) - N*m - over the measured one, and what it leaves; `symbol` stands for it there."""
+    measured, over_it = curve(run.time, run.torque, "measured torque M", "wide"), curve(run.time, modelled, name)
+    return chart(
+        title,
+        panel("time / s", "torque / (N·m)", measured, over_it),
+        panel("time / s", f"M - {symbol} / (N·m)", curve(run.time, run.torque - modelled)),
+    )

@@ -24,10 +24,9 @@ HINT = "# your turn\n"
 
 
 def write_notebooks(folder: Path) -> list[Path]:
-    """Write `task01.ipynb`, ... into a student's folder, beside the recordings; none that is there is overwritten.
+    """Write `task01.ipynb`, ... into a student's folder, beside the recordings.
 
-    Raises:
-        InputError: one of them is there, and may hold a student's work.
+    Raises InputError where one of them is there, as it may hold a student's work.
     """
     texts = sorted(TEXTS.glob("task*.md"))
     paths = [folder / f"{text.stem}.ipynb" for text in texts]
@@ -40,12 +39,7 @@ def write_notebooks(folder: Path) -> list[Path]:
 
 
 def notebook(text: str, filled: Mapping[str, str] | None = None) -> str:
-    """A notebook (nbformat 4.5) as JSON.
-
-    Args:
-        text: of the task.
-        filled: code for cells by their names, instead of what the skeleton has.
-    """
+    """A notebook (nbformat 4.5) of a task's text, as JSON; cells named in `filled` have that code, not a skeleton."""
     cells = [{"id": f"cell-{k}", "metadata": {}, **cell} for k, cell in enumerate(_cells(text, filled or {}))]
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
     content = {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
@@ -53,20 +47,15 @@ def notebook(text: str, filled: Mapping[str, str] | None = None) -> str:
 
 
 def _cells(text: str, filled: Mapping[str, str]) -> Iterator[dict[str, Any]]:
-    start = 0
-    for match in _CELL.finditer(text):
-        yield from _markdown(text[start : match.start()])
-        kind, name, file, code = match.groups()
-        source = filled.get(name, HINT + code) if kind == "yours" else code
-        source = f"%%writefile {file}\n{source}" if file else source
-        yield {"cell_type": "code", "execution_count": None, "outputs": [], "source": source.rstrip("\n")}
-        start = match.end()
-    yield from _markdown(text[start:])
-
-
-def _markdown(text: str) -> Iterator[dict[str, Any]]:
-    if text.strip():
-        yield {"cell_type": "markdown", "source": text.strip()}
+    parts = _CELL.split(text)  # text, and of each cell of code its kind, name, file, code, and the text behind it
+    for start in range(0, len(parts), 5):
+        if parts[start].strip():
+            yield {"cell_type": "markdown", "source": parts[start].strip()}
+        if parts[start + 1 :]:
+            kind, name, file, code = parts[start + 1 : start + 5]
+            source = filled.get(name, HINT + code) if kind == "yours" else code
+            source = f"%%writefile {file}\n{source}" if file else source
+            yield {"cell_type": "code", "execution_count": None, "outputs": [], "source": source.rstrip("\n")}
 
 
 class NotYetError(Exception):

@@ -84,7 +84,8 @@ def _part(block: AnyPart, file: Path, row: float) -> dict[str, Any]:
 @figures.in_style
 def _diagram(chart: Chart) -> Figure:
     """A diagram without its title, which stands below it."""
+    height, draw = figures.drawing(chart)
     with rc_context({"legend.fontsize": LEGEND}):
-        figure = Figure(figsize=(WIDTH, min(SHARE * figures.height(chart), MOST)), layout="constrained")
-        figures.draw(figure, chart.model_copy(update={"title": ""}))
+        figure = Figure(figsize=(WIDTH, min(SHARE * height, MOST)), layout="constrained")
+        draw(figure, chart.model_copy(update={"title": ""}))
     return figure

@@ -12,6 +12,7 @@ alpha*tau.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -21,7 +22,7 @@ from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
 from bench.arrays import NORMAL95, Array
-from bench.course.axis import MAINS, RPM, circuit, joined, motor_value, torque_constant
+from bench.course.axis import MAINS, RPM, circuit, motor_value, torque_constant
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import InputError, UndeterminedError
@@ -163,10 +164,11 @@ def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
 
 
 def cold_curve(rig: Rig) -> tuple[Array, Array]:
-    """The same of the winding at COLD, U = R*Iq + Ke*omega, from its corner on; raises InputError as `circuit`."""
+    """The same of the winding at COLD, U = R*Iq + Ke*omega, with its corner second; raises InputError as `circuit`."""
     own, current = circuit(rig), np.linspace(motor_value(rig, "peak_current"), 0.0, POINTS)
     speed = (own.voltage - own.resistance_at(COLD) * current) / own.back_emf_constant
-    return speed, torque_constant(rig).torque(current)
+    torque = torque_constant(rig).torque(current)
+    return np.append(0.0, speed), np.append(torque[0], torque)
 
 
 def measured_at_speeds(velocity: Array, torque: Array) -> Array:
@@ -188,29 +190,22 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
     limit, allowed = datasheet_curve(rig)
     found = fall(run, rig)
     corner, corner_of_datasheet = found.corner * RPM, float(limit[1]) * RPM
-    measured = measured_at_speeds(kept.velocity, torque)
+    measured = dict(zip(SPEEDS, measured_at_speeds(kept.velocity, torque).tolist(), strict=True))
+    sheet = dict(zip(SPEEDS, np.interp(SPEEDS, limit * RPM, allowed).tolist(), strict=True))
     numbers = [
         Number("peak torque", float(torque.max()), "N·m", rig.motor.peak_torque if run.truth else None),
         Number("measured corner", corner, "rpm", run.true("corner_speed", RPM), half=found.half * RPM),
         Number("datasheet's corner", corner_of_datasheet, "rpm", source=sources("motor", "peak_curves")),
     ]
-    sheet = np.interp(SPEEDS, limit * RPM, allowed)
-    read = [
-        Number(f"M_max at {at:.0f} rpm, datasheet", value, "N·m", source=sources("motor", "peak_torque"))
-        for at, value in zip(SPEEDS, sheet.tolist(), strict=True)
-    ]
-    read += [
-        Number(f"M_max at {at:.0f} rpm", value, "N·m")
-        for at, value in zip(SPEEDS, measured.tolist(), strict=True)
-        if math.isfinite(value)
-    ]
+    source = sources("motor", "peak_torque")
+    read = [Number(f"M_max at {n:.0f} rpm, datasheet", value, "N·m", source=source) for n, value in sheet.items()]
+    read += [Number(f"M_max at {n:.0f} rpm", value, "N·m") for n, value in measured.items() if math.isfinite(value)]
     findings = (
         f"The torque starts to decline at {corner:.0f} rpm, {corner - corner_of_datasheet:+.0f} rpm from "
         "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
         "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
         *run.notes,
-        *_tail_findings(kept, found),
-        *_missing_findings(measured),
+        *_end_findings(kept, found, measured),
     )
     curves = [
         curve(speed, torque, "measured", "dots"),
@@ -219,43 +214,36 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
     ]
     with suppress(InputError):  # a rig without a winding's values has no such curve
         reached, driven = cold_curve(rig)
-        curves.append(
-            curve(np.append(0.0, reached) * RPM, np.append(driven[0], driven), f"its circuit at {COLD:g} °C", "dotted")
-        )
-        source = joined(*(sources("motor", name) for name in ("peak_curves", "cold_resistance_share")))
-        numbers.append(Number("corner of the cold circuit", float(reached[0]) * RPM, "rpm", source=source))
+        curves.append(curve(reached * RPM, driven, f"its circuit at {COLD:g} °C", "dotted"))
+        source = sources("motor", "peak_curves", "cold_resistance_share")
+        numbers.append(Number("corner of the cold circuit", float(reached[1]) * RPM, "rpm", source=source))
     axes = panel("speed n / rpm", "torque M / (N·m)", *curves)
     shown = (chart("Task 10: peak torque", axes),)
     return TaskResult(findings, tuple(numbers), shown, tables=(_at_speeds(sheet, measured),), tabled=tuple(read))
 
 
-def _at_speeds(sheet: Array, measured: Array) -> Table:
+def _at_speeds(sheet: Mapping[float, float], measured: Mapping[float, float]) -> Table:
     """The course's table in two lines, and the measured torque below it."""
     rows = [
-        (f"M_max of the datasheet at {MAINS:g} V / (N·m)", *(f"{value:.3g}" for value in sheet)),
-        ("M_max measured / (N·m)", *(f"{value:.3g}" if math.isfinite(value) else "-" for value in measured)),
+        (f"M_max of the datasheet at {MAINS:g} V / (N·m)", *(f"{value:.3g}" for value in sheet.values())),
+        ("M_max measured / (N·m)", *(f"{value:.3g}" if math.isfinite(value) else "-" for value in measured.values())),
     ]
     return table("Peak torque at the speeds of the drawing", ("n / rpm", *(f"{n:.0f}>" for n in SPEEDS)), rows)
 
 
-def _tail_findings(kept: LabRun, found: Decline) -> tuple[str, ...]:
+def _end_findings(kept: LabRun, found: Decline, measured: Mapping[float, float]) -> Iterator[str]:
     """What ends the run before the no-load speed: the drive's set speed, which the axis then keeps."""
     top = float(kept.velocity.max())
-    if top > 0.99 * found.no_load:
-        return ()
-    tail = kept.velocity > STILL_RISING * top
-    return (
-        f"The tail above {STILL_RISING * top * RPM:.0f} rpm is not the motor's limit. The drive was set to about "
-        f"{top * RPM:.0f} rpm: as the axis gets there its speed control takes the torque back, to "
-        f"{float(kept.torque[tail].min()):.2g} N·m, where the winding would still give it up to "
-        f"{found.no_load * RPM:.0f} rpm.",
-    )
-
-
-def _missing_findings(measured: Array) -> tuple[str, ...]:
-    missing = [f"{speed:.0f}" for speed, value in zip(SPEEDS, measured, strict=True) if not math.isfinite(value)]
-    note = f"At {', '.join(missing)} rpm the motor's torque was not measured: the drive's set speed ends the run-up."
-    return (note,) if missing else ()
+    if top <= 0.99 * found.no_load:
+        yield (
+            f"The tail above {STILL_RISING * top * RPM:.0f} rpm is not the motor's limit. The drive was set to about "
+            f"{top * RPM:.0f} rpm: as the axis gets there its speed control takes the torque back, to "
+            f"{float(kept.torque[kept.velocity > STILL_RISING * top].min()):.2g} N·m, where the winding would still "
+            f"give it up to {found.no_load * RPM:.0f} rpm."
+        )
+    if missing := [f"{n:.0f}" for n, value in measured.items() if not math.isfinite(value)]:
+        speeds = ", ".join(missing)
+        yield f"At {speeds} rpm the motor's torque was not measured: the drive's set speed ends the run-up."
 
 
 def operating_range(recordings: LabRecordings) -> TaskResult:

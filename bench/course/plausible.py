@@ -10,8 +10,9 @@ real axis.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,83 +110,75 @@ def holes(name: str, run: LabRun) -> str:
 
 def fault(name: str, run: LabRun, rig: Rig) -> str:
     """What cannot be so in one recording, in words; empty where nothing is."""
-    found = balance(run)
-    speed, current = (float(np.abs(signal).max()) for signal in (run.velocity, run.current))
+    found = chain([holes(name, run)], _of_signals(run, rig), _of_balance(name, run, rig))
+    return next(filter(None, found), "")
+
+
+def _of_signals(run: LabRun, rig: Rig) -> Iterator[str]:
+    """What is beyond the motor, or no reading of a sensor."""
     limit, peak = peak_curve(rig.motor, MAINS, rig.source) if rig.motor.peak_curves else None, rig.motor.peak_current
-    if cut := holes(name, run):
-        return cut
+    signals = (("speed", "rad/s", run.velocity), ("current", "A", run.current))
+    speed, current = (float(np.abs(values).max()) for _, _, values in signals)
     if limit is not None and speed > FASTEST_SPEED * limit.no_load_speed:
         top = limit.no_load_speed * RPM
-        return f"its highest speed is {speed * RPM:,.0f} rpm, and the motor has {top:,.0f} rpm at {MAINS:g} V at most"
+        yield f"its highest speed is {speed * RPM:,.0f} rpm, and the motor has {top:,.0f} rpm at {MAINS:g} V at most"
     if peak is not None and current > LARGEST_CURRENT * peak:
-        return f"its largest current is {current:.4g} A, and the drive gives {peak:.4g} A at most"
-    if odd := _no_readings(run, peak):
-        return odd
-    for signal, unit, values in (("speed", "rad/s", run.velocity), ("current", "A", run.current)):
+        yield f"its largest current is {current:.4g} A, and the drive gives {peak:.4g} A at most"
+    step = 0.0
+    for signal, unit, values in signals:
+        largest = float(np.abs(values).max()) or 1.0
+        levels = np.unique(np.round(values / largest, 9))
+        step = float(np.diff(levels).min()) if levels.size > 1 else 0.0
+        if step > COARSE:
+            yield f"its {signal} comes in steps of {step * largest:.2g} {unit}, {step:.1%} of the largest: too coarse"
+    changes = np.flatnonzero(np.diff(run.current, prepend=np.nan, append=np.nan))
+    for start, length in zip(changes, np.diff(changes), strict=False):
+        value = abs(run.current[start])
+        if step < FINE and length > HELD and 0.0 < value < AT_LIMIT * (peak or math.inf):  # the current's step
+            where = f"{length} samples after {run.time[start]:.4g} s"
+            yield f"its current is {run.current[start]:.4g} A to the last digit for {where}: it was cut off, or held"
+    for signal, unit, values in signals:
         alone = glitches(values, signal == "speed")
         if alone.size:
             k = int(alone[0])
             which = f"one of {alone.size} samples" if alone.size > 1 else "a sample"
             where = f"{values[k]:.4g} {unit} at {run.time[k]:.4g} s"
-            return f"{which} of the {signal}, {where}, stands alone, far from those beside it"
+            yield f"{which} of the {signal}, {where}, stands alone, far from those beside it"
+
+
+def _of_balance(name: str, run: LabRun, rig: Rig) -> Iterator[str]:
+    """What the torque's balance contradicts, and what is no run-up with full torque past the corner."""
+    found = balance(run)
     if found is None:
-        return ""
-    return _of_balance(name, found, rig) or (_of_run_up(run, rig) if name == FASTEST else "")
-
-
-def _no_readings(run: LabRun, peak: float | None) -> str:
-    """Why signals are not what a sensor reads; empty where they are."""
-    for signal, unit, values in (("speed", "rad/s", run.velocity), ("current", "A", run.current)):
-        largest = float(np.abs(values).max()) or 1.0
-        levels = np.unique(np.round(values / largest, 9))
-        step = float(np.diff(levels).min()) if levels.size > 1 else 0.0
-        if step > COARSE:
-            return f"its {signal} comes in steps of {step * largest:.2g} {unit}, {step:.1%} of the largest: too coarse"
-    changes = np.flatnonzero(np.diff(run.current, prepend=np.nan, append=np.nan))
-    for start, length in zip(changes, np.diff(changes), strict=False):
-        value = abs(run.current[start])
-        if step < FINE and length > HELD and 0.0 < value < AT_LIMIT * (peak or math.inf):
-            where = f"{length} samples after {run.time[start]:.4g} s"
-            return f"its current is {run.current[start]:.4g} A to the last digit for {where}: it was cut off, or held"
-    return ""
-
-
-def _of_balance(name: str, found: TorqueBalance, rig: Rig) -> str:
-    """What the torque's balance contradicts."""
+        return
     theory = rig.load.disk_inertia if rig.load else None
     inertia = found.inertia * KG_CM2
     if inertia < 0.0:
-        return f"its J comes out as {inertia:.3g} kg*cm**2, as torque and acceleration have opposite signs"
+        yield f"its J comes out as {inertia:.3g} kg*cm**2, as torque and acceleration have opposite signs"
     if theory is not None and rig.motor.rotor_inertia is not None:
         ratio = (found.inertia - rig.motor.rotor_inertia) / theory
         if not OVER_THEORY[0] < ratio < OVER_THEORY[1]:
-            return (
+            yield (
                 f"its J comes out as {inertia:.4g} kg*cm**2 and J_load as {ratio:.3g} times what the disk's geometry "
                 f"gives, allowed: {OVER_THEORY[0]:g} to {OVER_THEORY[1]:g} times, as hub and bolts turn, too"
             )
     if abs(found.late) > LATE:
-        return f"its torque comes {found.late:+.1f} samples after the acceleration that it makes"
+        yield f"its torque comes {found.late:+.1f} samples after the acceleration that it makes"
     if found.left > LEFT:
-        return f"inertia and friction leave {found.left:.0%} of its torque unexplained, noise alone is below {LEFT:.0%}"
+        yield f"inertia and friction leave {found.left:.0%} of its torque unexplained, noise alone is below {LEFT:.0%}"
     friction = found.coulomb / found.torque
     if name == WITHOUT_FRICTION and friction > FRICTION:
-        return f"it shows friction, {found.coulomb:.3g} N*m, which was to be switched off"
+        yield f"it shows friction, {found.coulomb:.3g} N*m, which was to be switched off"
     if name == WITH_FRICTION and friction < FRICTION:
-        return f"it shows no friction ({found.coulomb:.2g} N*m), which was to be switched on"
-    return ""
-
-
-def _of_run_up(run: LabRun, rig: Rig) -> str:
-    """What is no run-up with full torque past the corner."""
+        yield f"it shows no friction ({found.coulomb:.2g} N*m), which was to be switched on"
     top, peak = float(run.current.max()), rig.motor.peak_current
-    if peak is not None and top < FULL_CURRENT * peak:
-        return f"its largest current is {top:.4g} A, and the run-up with full torque takes {peak:.4g} A"
-    if rig.motor.peak_curves:
-        corner = peak_curve(rig.motor, MAINS, rig.source).corner_speed
-        if run.velocity.max() < corner:
-            reached = float(run.velocity.max()) * RPM
-            return f"its highest speed is {reached:.0f} rpm, below the corner of the datasheet, {corner * RPM:.0f} rpm"
-    return ""
+    if name == FASTEST and peak is not None and top < FULL_CURRENT * peak:
+        yield f"its largest current is {top:.4g} A, and the run-up with full torque takes {peak:.4g} A"
+    if name == FASTEST and rig.motor.peak_curves:
+        corner, reached = peak_curve(rig.motor, MAINS, rig.source).corner_speed, float(run.velocity.max())
+        if reached < corner:
+            sheet = f"the corner of the datasheet, {corner * RPM:.0f} rpm"
+            yield f"its highest speed is {reached * RPM:.0f} rpm, below {sheet}"
 
 
 def between(inertias: Mapping[str, float | None]) -> dict[str, str]:

@@ -25,7 +25,7 @@ from bench.course.grade import SEALED, seal
 from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.recordings import LabRecordings, read_truth
 from bench.course.submission import FORM, form
-from bench.course.winding import STEP, WindingModel, WindingRun, run_winding
+from bench.course.winding import STEP, WindingModel, run_winding
 from bench.errors import InputError
 from bench.files import whole, write_text
 from bench.plant.axis_model import AxisParameters
@@ -56,7 +56,7 @@ def record(folder: Path, seed: int = 0, progress: Progress = lambda share: None,
     """Simulate an axis and write its recordings, each with its truth, and the catapult's flights; returns the paths.
 
     Args:
-        folder: to write to.
+        folder: where to write.
         seed: of the sensors' noise.
         progress: called with the share done.
         rig: of the axis, with `[drive]` and `[simulation]`; the lab's without.
@@ -76,25 +76,18 @@ def record(folder: Path, seed: int = 0, progress: Progress = lambda share: None,
     return paths
 
 
-def fastest_run(rig: Rig) -> WindingRun:
+def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[Path]:
     """The run-up with full torque, cold and with inductance, then the stop."""
     time = np.arange(0.0, STOP + TOP_SPEED / BRAKING + START, STEP)
     demand = np.where(time < START, 0.0, np.clip(TOP_SPEED - BRAKING * (time - STOP), 0.0, TOP_SPEED))
-    return run_winding(WindingModel.of(rig, COLD, True), AxisParameters.from_rig(rig), demand)
-
-
-def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[Path]:
-    run, sensors, axis = fastest_run(rig), Sensors.from_rig(rig), AxisParameters.from_rig(rig)
+    sensors, axis = Sensors.from_rig(rig), AxisParameters.from_rig(rig)
+    run = run_winding(WindingModel.of(rig, COLD, True), axis, demand)
     every = slice(None, None, round(sensors.sample_period / STEP))
     time, velocity, current = run.time[every], run.velocity[every], run.current[every]
     velocity = velocity + sensors.velocity_noise * random.standard_normal(time.size)
     _write(path, time, velocity, current + sensors.current_noise * random.standard_normal(time.size))
-    parameters = {
-        "moment_of_inertia": {"value": axis.inertia, "unit": "kg*m**2"},
-        "viscous_friction_coefficient": {"value": axis.viscous_friction_coefficient, "unit": "N*m*s/rad"},
-        "coulomb_friction_torque": {"value": axis.coulomb_friction, "unit": "N*m"},
-        "corner_speed": {"value": run.corner, "unit": "rad/s"},
-    }
+    known = {**dict([*axis.values.items()][:3]), "corner_speed": (run.corner, "rad/s")}
+    parameters = {name: {"value": value, "unit": unit} for name, (value, unit) in known.items()}
     content = {"schema": SCHEMA, "rig": rig.name, "kind": "rotary", "profile": "fastest run-up"}
     write_text(truth_path(path), json_text({**content, "parameters": parameters}) + "\n")
     return [path, truth_path(path)]
@@ -159,7 +152,7 @@ def _record_student(folder: Path, name: str, random: np.random.Generator) -> dic
     public["drive"] = {key: value for key, value in table["drive"].items() if key != "inertia_feedforward"}
     write_text(folder / "rig.toml", tomli_w.dumps({**public, "name": f"axis of student {name}"}))
     write_text(folder / FORM, form(name))
-    worked = Worked.of(LabRecordings.in_folder(folder))
+    worked = Worked(LabRecordings.in_folder(folder))
     # seven digits: a class of forty is 3 MB then
     mistakes = [
         [names, {name: float(f"{value:.7g}") for name, value in figures.items() if name not in worked.unchanged}]

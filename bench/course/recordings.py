@@ -12,8 +12,7 @@ from pathlib import Path
 from bench.assets import asset
 from bench.course.axis import Sources, embedded, lab_rig
 from bench.course.causes import refusals
-from bench.course.flights import Flights, find_flights, read_flights
-from bench.course.flying import contradiction
+from bench.course.flights import Flights, contradiction, find_flights, read_flights
 from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.run import LabRun, in_words_of_the_course, run_of
 from bench.errors import BenchError, InputError
@@ -22,7 +21,6 @@ from bench.names import nearest
 from bench.plant.simulate import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
-from bench.trace.channel import Recording
 from bench.trace.choose import choose, reading_options
 from bench.trace.read import read_recording, readers
 from bench.trace.trace import assemble
@@ -81,8 +79,7 @@ class LabRecordings:
     def flights(self) -> Flights:
         """The catapult's experiments, with the throw's truth where that lies beside them.
 
-        Raises:
-            InputError: as `read_flights`, or they are no flights of one throw.
+        Raises InputError as `read_flights`, and where they are no flights of one throw.
         """
         path = find_flights(self.folder)
         found = read_flights(path)
@@ -97,13 +94,18 @@ class LabRecordings:
         return self.rig if "simulation" in given and "drive" in given else lab_rig()
 
     @cached_property
-    def refused(self) -> Mapping[str, str]:
-        """Recordings that cannot be of the rig's axis, each with the reason; those that cannot be read are none."""
+    def readable(self) -> Mapping[str, LabRun]:
+        """Recordings that can be read, whether or not they can be of the axis."""
         runs = {}
         for name in (WITHOUT_FRICTION, WITH_FRICTION, FASTEST):
             with suppress(BenchError):  # raised where a task needs it
                 runs[name] = self.run(name)
-        return refusals(runs, self.rig)
+        return runs
+
+    @cached_property
+    def refused(self) -> Mapping[str, str]:
+        """Recordings that cannot be of the rig's axis, each with the reason."""
+        return refusals(self.readable, self.rig)
 
     def sound(self, name: str) -> LabRun:
         """A recording that nothing contradicts; InputError with what does and why, and raises as `run`."""
@@ -115,14 +117,14 @@ class LabRecordings:
     def files(self, name: str) -> tuple[Path, list[Path]]:
         """File of a recording, whatever its ending, the case of its letters, and what else its name says; and others.
 
-        `MaxAcc_Gruppe7.trace` and `MaxAcc (1).trace` serve where there is no plain `MaxAcc.trace`.
-
-        Raises:
-            InputError: none, or several.
+        `MaxAcc_Gruppe7.trace` and `MaxAcc (1).trace` serve where there is no plain `MaxAcc.trace`. Raises InputError
+        where there is none, or several.
         """
-        files = sorted(path for path in self.folder.iterdir() if path.is_file() and _ending(path) in ENDINGS)
-        alike = [path for path in files if name.lower() in _letters(path)]
-        found = [path for path in files if path.name.split(".")[0].lower() == name.lower()] or alike
+        files = sorted(path for path in self.folder.iterdir() if path.is_file())
+        files = [path for path in files if Path(path.name.lower().removesuffix(".gz")).suffix in ENDINGS]
+        stems = {path: path.name.split(".")[0].lower() for path in files}
+        alike = [path for path, stem in stems.items() if name.lower() in re.sub("[^a-z]", "", stem)]
+        found = [path for path, stem in stems.items() if stem == name.lower()] or alike
         if len(found) == 1:
             return found[0], [path for path in alike if path != found[0]]
         if found:
@@ -135,12 +137,20 @@ class LabRecordings:
     def run(self, name: str) -> LabRun:
         """A recording in SI units as it is, with its truth where that lies beside it.
 
-        Raises:
-            InputError: no such file, not a recording, or a signal missing in it.
+        Raises InputError where there is no such file, it is no recording, or a signal is missing in it.
         """
         path, others = self.files(name)
-        recording = in_words_of_the_course(read_recording(path), self.rig.trace.columns)
-        _require_signals(recording, path, self.rig.trace.columns)
+        columns = self.rig.trace.columns
+        recording = in_words_of_the_course(read_recording(path), columns)
+        chosen, _ = choose(recording, reading_options(columns))
+        if missing := [name for name in NEEDED if name not in chosen]:
+            labels = ", ".join(f"'{channel.label}'" for channel in recording.channels)
+            raise InputError(
+                path,
+                f"holds no {' and no '.join(missing)} by a name the bench knows; its columns are {labels}",
+                "write a file rig.toml beside it with the line [trace.columns] and under it a line for each, "
+                f'e.g. {missing[0]} = "column [unit]"; what else a rig file has may be left out',
+            )
         notes = tuple(f"{other.name} passed over, as {path.name} has the name of the course." for other in others)
         return run_of(assemble(recording, self.rig.trace), self.rig, read_truth(truth_path(path)), notes)
 
@@ -154,26 +164,3 @@ def read_truth(path: Path) -> Mapping[str, float]:
         return {name: float(item["value"]) for name, item in content["parameters"].items()}
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(path, f"is no truth of a simulated trace ({error})", "remove it, or record again") from error
-
-
-def _ending(path: Path) -> str:
-    """Of the file inside, where it is compressed."""
-    return Path(path.name.lower().removesuffix(".gz")).suffix
-
-
-def _letters(path: Path) -> str:
-    return re.sub("[^a-z]", "", path.name.split(".")[0].lower())
-
-
-def _require_signals(recording: Recording, path: Path, columns: Mapping[str, str]) -> None:
-    chosen, _ = choose(recording, reading_options(columns))
-    missing = [name for name in NEEDED if name not in chosen]
-    if not missing:
-        return
-    labels = ", ".join(f"'{channel.label}'" for channel in recording.channels)
-    raise InputError(
-        path,
-        f"holds no {' and no '.join(missing)} by a name the bench knows; its columns are {labels}",
-        "write a file rig.toml beside it with the line [trace.columns] and under it a line for each, "
-        f'e.g. {missing[0]} = "column [unit]"; what else a rig file has may be left out',
-    )

@@ -15,14 +15,12 @@ from bench.assets import asset
 from bench.course.axis import KG_CM2
 from bench.course.course import TASKS, course
 from bench.course.pdf import write_pdf
-from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult
 from bench.course.sliders import sliders
-from bench.errors import BenchError, InputError
+from bench.errors import InputError
 from bench.files import held, whole, write_text
-from bench.report.document import AnyPart, Chart, Document, Paragraph, Section, Table, table
-from bench.report.figures import quiet_about_glyphs
+from bench.report.document import AnyPart, Chart, Document, Paragraph, Section, Table, section, table
 from bench.report.html import Program, html
 from bench.report.serial import known
 from bench.rig.motor import DATASHEET
@@ -69,7 +67,10 @@ class Cover:
         content = read_toml(path, f"a cover sheet, {EXAMPLE},")
         students = content.get("student", [])
         unknown = sorted(set(content) - {"group", "student"})
-        if unknown or not isinstance(students, list) or not all(_is_student(entry) for entry in students):
+        named = isinstance(students, list) and all(
+            isinstance(entry, dict) and {"name", "number"} == set(entry) for entry in students
+        )
+        if unknown or not named:
             found = f"found {', '.join(unknown) or 'a student without name or number'}"
             raise InputError(path, found, f"allowed: {EXAMPLE}")
         return cls(str(content.get("group", "")), tuple((str(s["name"]), str(s["number"])) for s in students))
@@ -80,11 +81,7 @@ class Cover:
         students = self.students or (("", ""),) * BLANK_ROWS
         rows = [(name or "_" * 26, number or "_" * 12, "_" * 24) for name, number in students]
         signed = table(f"Group: {self.group or '_' * 12}", ("name", "student number", "signature"), rows)
-        return Section(key="cover", heading="Cover sheet", blocks=(signed, Paragraph(text=DECLARATION)))
-
-
-def _is_student(entry: object) -> bool:
-    return isinstance(entry, dict) and {"name", "number"} == set(entry)
+        return section("cover", "Cover sheet", signed, Paragraph(text=DECLARATION))
 
 
 @dataclass(frozen=True)
@@ -97,16 +94,16 @@ class CourseReport:
     @property
     def usable(self) -> bool:
         """Whether any task that needs a recording was done."""
-        recorded = {task.key for task in TASKS if task.recorded}
+        recorded = {task.key for task in TASKS if task.needs == "recordings"}
         return any(result.reason is None and result.key in recorded for result in self.results)
 
 
 def report_course(data: Path | None, out: Path, progress: Callable[[float], None]) -> CourseReport:
-    """Do the course and write `lab.json`, `lab.html` and `lab.pdf`, and the sources to hand in.
+    """Do the course and write `lab.json`, `lab.html` and `lab.pdf`, and the sources to hand in, into a folder.
 
     Args:
         data: folder with a student's recordings, or None for the synthetic ones.
-        out: folder of the report.
+        out: where to write.
         progress: called with the share done.
 
     Raises:
@@ -127,7 +124,7 @@ def write_lab_report(
 ) -> list[Path]:
     """Write results as `lab.json`, `lab.html`, alive or not, and `lab.pdf` into a folder, which is made; the paths."""
     paths = [out / f"lab.{ending}" for ending in ("json", "html", "pdf")]
-    with held(out), quiet_about_glyphs():
+    with held(out):
         write_text(paths[0], json)
         write_text(paths[1], html(document, own=live))
         progress(0.5)
@@ -168,31 +165,30 @@ def summary(results: Sequence[TaskResult]) -> Section:
     rows: list[tuple[str, ...]] = []
     columns = ("quantity", "value>", "± (95 %)>", "unit")
     for result in (result for result in results if result.key.isdigit()):
-        heads = [(result.key, result.title), *[("", "")] * (FIRST - 1)]
         if result.reason is not None:
-            rows.append((*heads[0], "not done, see there", "", "", ""))
-        for head, number in zip(heads, result.numbers[:FIRST], strict=False):
+            rows.append((result.key, result.title, "not done, see there", "", "", ""))
+        for place, number in enumerate(result.numbers[:FIRST]):
+            head = ("", "") if place else (result.key, result.title)
             rows.append((*head, *_cells(number, columns)))
-    answers = table("The answers", ("task", "about", *columns), rows)
-    return Section(key="answers", heading="Answers", blocks=(answers,))
+    return section("answers", "Answers", table("The answers", ("task", "about", *columns), rows))
 
 
 def numbered(sections: Iterable[Section]) -> Iterator[Section]:
     """Sections with their diagrams, tables and equations numbered through."""
-    counts = {kind: itertools.count(1) for kind in (Chart, Table, Paragraph)}
-    for section in sections:
-        yield section.model_copy(update={"blocks": tuple(_numbered(block, counts) for block in section.blocks)})
+    figures, tables, equations = (itertools.count(1) for _ in range(3))
 
+    def with_number(block: AnyPart) -> AnyPart:
+        match block:
+            case Chart():
+                return block.model_copy(update={"title": f"Figure {next(figures)}: {block.title}"})
+            case Table():
+                return block.model_copy(update={"caption": f"Table {next(tables)}: {block.caption}"})
+            case Paragraph() if block.text.endswith(EQUATION):
+                return block.model_copy(update={"text": f"{block.text}({next(equations)})"})
+        return block
 
-def _numbered(block: AnyPart, counts: Mapping[type, Iterator[int]]) -> AnyPart:
-    match block:
-        case Chart():
-            return block.model_copy(update={"title": f"Figure {next(counts[Chart])}: {block.title}"})
-        case Table():
-            return block.model_copy(update={"caption": f"Table {next(counts[Table])}: {block.caption}"})
-        case Paragraph() if block.text.endswith(EQUATION):
-            return block.model_copy(update={"text": f"{block.text}({next(counts[Paragraph])})"})
-    return block
+    for each in sections:
+        yield each.model_copy(update={"blocks": tuple(map(with_number, each.blocks))})
 
 
 def task_section(result: TaskResult) -> Section:
@@ -200,13 +196,12 @@ def task_section(result: TaskResult) -> Section:
     key = f"task-{result.key}"
     heading = f"Task {result.key}: {result.title}" if result.key.isdigit() else result.title
     if result.reason is not None:
-        return Section(key=key, heading=heading, blocks=(Paragraph(text=f"Not done: {result.reason}"), *result.charts))
+        return section(key, heading, Paragraph(text=f"Not done: {result.reason}"), *result.charts)
     if result.example:
         heading = f"{heading} (embedded example)"
-    solved = [Paragraph(text=f"{result.equation}{EQUATION}")] if result.equation else []
-    findings = (Paragraph(text=finding) for finding in result.findings)
-    blocks = (*solved, *findings, *result.tables, _numbers_table(result.numbers), *result.charts)
-    return Section(key=key, heading=heading, blocks=blocks)
+    solved = [f"{result.equation}{EQUATION}"] if result.equation else []
+    said = (Paragraph(text=text) for text in (*solved, *result.findings))
+    return section(key, heading, *said, *result.tables, _numbers_table(result.numbers), *result.charts)
 
 
 def _numbers_table(numbers: Sequence[Number]) -> Table:
@@ -263,27 +258,20 @@ def _task(result: TaskResult) -> dict[str, object]:
 def write_sources(folder: Path, recordings: LabRecordings, results: Sequence[TaskResult]) -> list[Path]:
     """Write the scripts of the tasks that were done, their recordings and values; `python taskNN.py` runs each.
 
-    Returns:
-        The folder, if anything was written.
+    Returns the folder, if anything was written.
     """
     done = {result.key: result for result in results if result.reason is None}
     scripts = [path for path in sorted(SCRIPTS.glob("task*.py")) if path.stem[4:].lstrip("0") in done]
     if not scripts:
         return []
-    periods = {}
-    for name in (WITHOUT_FRICTION, WITH_FRICTION, FASTEST):
-        try:
-            run = recordings.run(name)
-        except BenchError:  # its tasks are not done, and say why
-            continue
-        periods[name] = run.sample_period
+    for name, run in recordings.readable.items():
         signals = np.column_stack([run.time, run.velocity, run.current])
         _write_table(folder / "recordings" / f"{name}.csv", "time [s],velocity [rad/s],current [A]", signals)
     if "1" in done:
         flights = enumerate(recordings.flights.points, 1)
         rows = np.concatenate([np.column_stack([np.full(len(flight), k), flight]) for k, flight in flights])
         _write_table(folder / "recordings" / "flights.csv", "flight,y [m],z [m]", rows)
-    write_text(folder / "values.json", _values(recordings, done, periods))
+    write_text(folder / "values.json", _values(recordings, done))
     for path in (*scripts, *(SCRIPTS / f"{name}.py" for name in SHARED)):
         write_text(folder / path.name, path.read_text(encoding="utf-8"))
     for path in sorted(SCRIPTS.glob("matlab/*.m")):
@@ -297,20 +285,19 @@ def _write_table(path: Path, header: str, rows: Array) -> None:
     write_text(path, f"{header}\n{lines}\n")
 
 
-def _values(recordings: LabRecordings, done: dict[str, TaskResult], periods: dict[str, float]) -> str:
+def _values(recordings: LabRecordings, done: Mapping[str, TaskResult]) -> str:
     """Values that the scripts take, in SI, each with its source."""
-    motor, sources = recordings.rig.motor, recordings.sources
+    motor, load, sources = recordings.rig.motor, recordings.rig.load, recordings.sources
     found: dict[str, tuple[float | None, str]] = {
         name: (getattr(motor, name), sources("motor", name)) for name in (*DATASHEET, *OF_THE_WINDING)
     }
     for curve in motor.peak_curves[:1]:
         for name in ("corner_speed", "no_load_speed"):
             found[name] = getattr(curve, name), sources("motor", "peak_curves")
-    disk = recordings.rig.load.disk_inertia if recordings.rig.load else None
-    found["disk_inertia"] = disk, f"geometry of the disk: {sources('load', 'outer_diameter')}"
+    geometry = f"geometry of the disk: {sources('load', 'outer_diameter')}"
+    found["disk_inertia"] = load.disk_inertia if load else None, geometry
     if "9" in done:
         found |= {name: (done["9"][name].value * factor, "task 9") for name, factor in OF_TASK_9.items()}
-    found |= {f"T_{name}": (period, "recording") for name, period in periods.items()}
-    return (
-        json_text({name: {"value": v, "source": source} for name, (v, source) in found.items() if v is not None}) + "\n"
-    )
+    found |= {f"T_{name}": (run.sample_period, "recording") for name, run in recordings.readable.items()}
+    given = {name: {"value": v, "source": source} for name, (v, source) in found.items() if v is not None}
+    return json_text(given) + "\n"

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from bench.arrays import Array
 from bench.assets import asset
 from bench.course import peak_torque
 from bench.course.axis import MAINS, RPM, circuit, motor_value, torque_constant
+from bench.course.corner import EVERY, SHARES, TIME_CONSTANTS
 from bench.course.friction import DELAY, EDGE, SMOOTHING, WIDTH, steepest
-from bench.course.power import EVERY
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import TaskResult
-from bench.course.winding import CURRENT_LOOP, LENGTH, SHARES, STEP, TIME_CONSTANTS, VELOCITY_GAIN, identified_axis
+from bench.course.winding import CURRENT_LOOP, LENGTH, STEP, VELOCITY_GAIN, identified_axis
 from bench.fit.lab import LEAST_SPEED
+from bench.report.document import packed
 from bench.report.html import Program
 from bench.rig.limits import COLD, HOT, peak_curve
 from bench.rig.rig import Rig
@@ -81,18 +80,13 @@ def _sliders(data: Mapping[str, Any]) -> list[dict[str, Any]]:
     return found
 
 
-def _packed(values: Array) -> str:
-    """64-bit floats in base 64."""
-    return base64.b64encode(np.asarray(values, dtype="<f8").tobytes()).decode("ascii")
-
-
 def _friction(run: LabRun, rig: Rig) -> dict[str, Any]:
     smooth = GaussianFilter(SMOOTHING * run.sample_period, run.sample_period)
     impulse = np.zeros(4 * smooth.margin + 1)
     impulse[2 * smooth.margin] = 1.0
     return {
-        "velocity": _packed(run.velocity),
-        "torque": _packed(run.torque),
+        "velocity": packed(run.velocity, "<f8"),
+        "torque": packed(run.torque, "<f8"),
         "period": run.sample_period,
         "width": WIDTH,
         "delay": DELAY,
@@ -107,8 +101,8 @@ def _fastest(run: LabRun, rig: Rig, task: TaskResult) -> dict[str, Any]:
     speed, torque = peak_torque.datasheet_curve(rig)
     corner = next(one for one in task.charts[0].panels[0].series if one.name == "corner")
     return {
-        "velocity": _packed(run.velocity),
-        "torque": _packed(run.torque),
+        "velocity": packed(run.velocity, "<f8"),
+        "torque": packed(run.torque, "<f8"),
         "full": peak_torque.FULL_SHARE * (rig.motor.peak_torque or 0.0),
         "least": peak_torque.LEAST_TORQUE,
         "speeds": peak_torque.SPEEDS,

@@ -118,8 +118,7 @@ def _is_form(path: Path) -> bool:
 def read_submission(path: Path) -> Submission:
     """A filled form.
 
-    Raises:
-        InputError: a row that cannot be read, a quantity that is not asked for or given twice, or no student.
+    Raises InputError where a row cannot be read, a quantity is not asked for or given twice, or there is no student.
     """
     text = text_of(read_bytes(path, "a filled form"))
     entries = _of_json(text, path) if path.suffix.lower() == ".json" else _of_csv(text, path)
@@ -137,7 +136,11 @@ def read_submission(path: Path) -> Submission:
         if value.strip() and name in answers:
             raise InputError(where, f"'{written}' stands there twice", "give it once")
         if value.strip():
-            answers[name] = GivenAnswer(_number(value, where), _unit(unit))
+            plain = value.strip().replace("−", "-")
+            if not _NUMBER.fullmatch(plain):
+                allowed = "allowed: a number, and its unit in a column of its own"
+                raise InputError(where, f"found the value '{value}'", allowed)
+            answers[name] = GivenAnswer(float(plain), _unit(unit))
     if not student:
         raise InputError(f"{path}: student", "missing", "allowed: the row student,NUMBER as the form has it")
     return Submission(student.zfill(2) if student.isdigit() else student, answers, str(path))
@@ -171,13 +174,6 @@ def _of_json(text: str, path: Path) -> list[Entry]:
         allowed = 'allowed: {"student": "07", "answers": {"J": {"value": 22.4, "unit": "kg*cm**2"}, ...}}'
         raise InputError(path, f"is no filled form ({error!r})", allowed) from error
     return entries
-
-
-def _number(text: str, where: str) -> float:
-    plain = text.strip().replace("−", "-")
-    if not _NUMBER.fullmatch(plain):
-        raise InputError(where, f"found the value '{text}'", "allowed: a number, and its unit in a column of its own")
-    return float(plain)
 
 
 def _unit(text: str) -> str:

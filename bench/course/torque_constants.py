@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from bench.arrays import Array
-from bench.course.axis import Sources, joined
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import InputError
@@ -32,11 +31,6 @@ def coefficients(rig: Rig) -> Array:
     return np.array([a, 0.0, c])
 
 
-def _datasheet(sources: Sources) -> str:
-    """Source of the four values."""
-    return joined(*(sources("motor", name) for name in DATASHEET))
-
-
 def at_both_points(recordings: LabRecordings) -> TaskResult:
     """kT at stall and at peak."""
     stall, peak = datasheet_points(recordings.rig)[1].tolist()
@@ -46,7 +40,7 @@ def at_both_points(recordings: LabRecordings) -> TaskResult:
         "proportion, so torque grows more slowly than current."
     )
     constants = {"kT from stall": stall, "kT from peak": peak}
-    source = _datasheet(recordings.sources)
+    source = recordings.sources("motor", *DATASHEET)
     return TaskResult((findings,), tuple(Number(name, kt, "N·m/A", source=source) for name, kt in constants.items()))
 
 
@@ -62,7 +56,7 @@ def over_current(recordings: LabRecordings) -> TaskResult:
         f"Checked: slope at zero {b:g} N·m/A²; {falls} "
         f"up to {points[1]:g} A; both points of the datasheet met within {off.max():.1g} N·m/A."
     )
-    source = _datasheet(recordings.sources)
+    source = recordings.sources("motor", *DATASHEET)
     named = {"a": (a, "N·m/A³"), "b": (b, "N·m/A²"), "c": (c, "N·m/A")}
     axes = panel(
         "current Iq / A",

@@ -18,23 +18,12 @@ from bench.plant.drive import Cascade
 from bench.plant.plant import Plant
 from bench.plant.profiles import MotionLimits, plan
 from bench.plant.run import run
-from bench.rig.rig import Rig
-
-
-def feedforwards(rig: Rig, identified: float) -> dict[str, float]:
-    """J_load - kg*m**2 - that each drive is set to; raises InputError where the rig has no geometry of a disk."""
-    theory = rig.load.disk_inertia if rig.load else None
-    if theory is None:
-        raise InputError(f"{rig.source}: load", "found no geometry of a disk", "the theoretical J_load comes from it")
-    return {"J_load = 0": 0.0, "J_load theoretical": theory, "J_load identified": identified}
 
 
 def tracking(recordings: LabRecordings) -> TaskResult:
     """The recording's axis with each feed-forward.
 
-    Raises:
-        InputError: the rig lacks a drive, the rotor's inertia or the disk's geometry.
-        UndeterminedError: task 9 cannot be done.
+    Raises InputError as `track`, and UndeterminedError where task 9 cannot be done.
     """
     identified = identify_friction(recordings.with_friction).inertia - motor_value(recordings.rig, "rotor_inertia")
     known = bool(recordings.with_friction.truth)
@@ -52,7 +41,11 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
         known: whether `axis` is the recording's truth, or itself what was identified from it.
     """
     rig, sources = recordings.rig, recordings.sources
-    loads, rotor, cascade = feedforwards(rig, identified), motor_value(rig, "rotor_inertia"), Cascade.from_rig(rig)
+    theory = rig.load.disk_inertia if rig.load else None
+    if theory is None:
+        raise InputError(f"{rig.source}: load", "found no geometry of a disk", "the theoretical J_load comes from it")
+    loads = {"J_load = 0": 0.0, "J_load theoretical": theory, "J_load identified": identified}
+    rotor, cascade = motor_value(rig, "rotor_inertia"), Cascade.from_rig(rig)
     plant = Plant(AxisModel(axis), cascade, cascade.control_period, emulated=True)
     references = plan("fast_reversals", MotionLimits.from_rig(rig, axis, cascade.control_period))
     plants = [replace(plant, cascade=replace(cascade, inertia_feedforward=rotor + load)) for load in loads.values()]
@@ -66,7 +59,6 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
         for what, value in zip(("largest", "RMS"), both, strict=True)
     )
     truly = "as it truly is." if known else "as task 9 found it, so that the identified J_load fits it by construction."
-    theory = loads["J_load theoretical"]
     findings = (
         f"The simulated axis is that of the recording: J = {axis.inertia * KG_CM2:.4g} kg·cm², {truly}"
         f" The disk's geometry is {theory / (axis.inertia - rotor) - 1.0:+.1%} off its J_load, as hub, coupling and "

@@ -20,7 +20,7 @@ flux of both axes from one coenergy, L*Iq**2/2 + kT(Iq)*Id/p, and a drive that h
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -30,27 +30,22 @@ from bench.course.axis import circuit, motor_value, torque_constant
 from bench.course.friction import identify_friction
 from bench.course.peak_torque import extrapolated_corner
 from bench.course.recordings import LabRecordings
+from bench.effects.acting import DRIVE
 from bench.errors import BenchError, SimulationError
 from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.plant import DIVERGED
-from bench.rig.limits import COLD, HOT, Circuit
+from bench.rig.limits import HOT, Circuit
 from bench.rig.motor import TorqueConstant
 from bench.rig.rig import Rig
 
-#: Name of the motor's actuator in mjcf/rotary_axis.xml.
-DRIVE = "drive"
 #: Step of the integration - s. MuJoCo's current errs to first order: the corner by 0.3 rpm (tests/course).
 STEP = 25e-6
 #: Time constant of the current loop - s.
 CURRENT_LOOP = 0.4e-3
-#: Electrical time constants that the split is shown for - s.
-TIME_CONSTANTS = (1e-3, 2e-3, 3e-3, 5e-3, 8e-3)
 #: The run-up lasts as many times J*omega_0/M_max.
 LENGTH = 5.0
 #: Of the drive, torque asked for per missing speed - N*m*s/rad.
 VELOCITY_GAIN = 0.9
-#: Shares of the peak torque at which speeds with and without inductance are compared.
-SHARES = (0.98, 0.9, 0.7, 0.5)
 
 
 @dataclass(frozen=True)
@@ -90,9 +85,9 @@ class WindingModel:
 
     def back_emf_constant(self, current: float) -> float:
         """Voltage per speed in phase with a current - A - in V*s/rad."""
-        constant = self.torque_constant
-        saturating = constant.constant + constant.curvature * current**2
-        return self.circuit.back_emf_constant if self.across is None else saturating
+        if self.across is None:
+            return self.circuit.back_emf_constant
+        return self.torque_constant.constant + self.torque_constant.curvature * current**2
 
     def voltages(self, wanted: float, taken: float, omega: float, current: float) -> tuple[float, float]:
         """u_q as near to the wanted as the drive's voltage allows, and u_d - V.
@@ -206,61 +201,11 @@ def _model(winding: WindingModel, axis: AxisParameters) -> mujoco.MjModel:
     return spec.compile()
 
 
-@dataclass(frozen=True)
-class Split:
-    """The run-up by one cause after the other.
-
-    Attributes:
-        hot: winding at 120 degC, quasi-static.
-        cold: at 20 degC, quasi-static.
-        inductive: at 20 degC with the assumed inductance.
-        others: at 20 degC with an inductance of each of TIME_CONSTANTS.
-        acceleration: at full torque - rad/s**2.
-    """
-
-    hot: WindingRun
-    cold: WindingRun
-    inductive: WindingRun
-    others: tuple[WindingRun, ...]
-    acceleration: float
-
-    @property
-    def by_temperature(self) -> float:
-        """Shift of the corner - rad/s."""
-        return self.cold.corner - self.hot.corner
-
-    @property
-    def by_inductance(self) -> float:
-        """Shift of the corner - rad/s."""
-        return self.inductive.corner - self.cold.corner
-
-    @property
-    def faster(self) -> dict[float, float]:
-        """By how much inductance raises the speed of the same share of the peak torque - rad/s, by the share."""
-        return {share: self.inductive.speed_at(share) - self.cold.speed_at(share) for share in SHARES}
-
-
 def full_speed(rig: Rig, axis: AxisParameters) -> tuple[float, Array]:
     """Peak torque - N*m, and the no-load speed asked for - rad/s, (steps,), as long as a run-up with an axis takes."""
     own, full = circuit(rig), float(torque_constant(rig).torque(np.asarray(motor_value(rig, "peak_current"))))
     top = own.voltage / own.back_emf_constant
     return full, np.full(round(LENGTH * axis.inertia * top / full / STEP), top)
-
-
-def split(rig: Rig, axis: AxisParameters) -> Split:
-    """Let a rig's motor run up an axis hot, then cold, then cold with L, and with other values of L/R."""
-    own, (full, demand) = circuit(rig), full_speed(rig, axis)
-
-    def simulated(temperature: float, inductive: bool, winding: Circuit = own) -> WindingRun:
-        return run_winding(WindingModel.of(rig, temperature, inductive, winding), axis, demand)
-
-    return Split(
-        hot=simulated(HOT, False),
-        cold=simulated(COLD, False),
-        inductive=simulated(COLD, True),
-        others=tuple(simulated(COLD, True, replace(own, time_constant=tau)) for tau in TIME_CONSTANTS),
-        acceleration=(full - axis.coulomb_friction) / axis.inertia,
-    )
 
 
 def identified_axis(recordings: LabRecordings) -> AxisParameters:

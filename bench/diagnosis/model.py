@@ -26,8 +26,7 @@ from bench.effects.waves import Wave
 from bench.errors import InputError
 from bench.fit.determined import INDEPENDENT_SHARE
 from bench.fit.fit import Fit, fit
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.layout import lay_out
+from bench.fit.hypothesis import Hypothesis, lay_out
 from bench.fit.rows import Rows
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
 from bench.plant.model_file import Mounting, StoredModel

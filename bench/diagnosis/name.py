@@ -23,11 +23,9 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect, Occasional, Standout
 from bench.effects.signals import Axis
 from bench.fit.estimate import load_inertia
-from bench.fit.fit import Fit, fit
+from bench.fit.fit import Fit, fit, hint, shaped, unbiased
 from bench.fit.hypothesis import Term
 from bench.fit.quantities import uncertain
-from bench.fit.shapes import shaped, unbiased
-from bench.fit.systematic import hint
 from bench.parameter import Parameter
 
 

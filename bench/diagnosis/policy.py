@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.effects.effect import Contact, Effect, Occasional, Replacing
-from bench.fit.fit import Fit, explained
-from bench.fit.shapes import free_shapes
+from bench.fit.fit import Fit, explained, free_shapes
 from bench.fit.solution import NOISE_ALONE
 
 #: Squares of impacts at wrong instants, or waves out of phase, over their own: they err where they are and are not.

@@ -37,8 +37,7 @@ from bench.effects.rivals import RIVALS, WAVES, Outside
 from bench.effects.signals import Scope
 from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit
-from bench.fit.hypothesis import Term
-from bench.fit.layout import lay_out
+from bench.fit.hypothesis import Term, lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 

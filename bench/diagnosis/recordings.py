@@ -17,12 +17,12 @@ from bench.effects.effect import Detectable, Detected, Effect
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import require_friction, require_inertia
 from bench.fit.fit import Fit, fit
-from bench.fit.gathered import TELLS, TERMS, solved, steady
 from bench.fit.hum import with_hum
-from bench.fit.layout import lay_out, plain
+from bench.fit.hypothesis import lay_out, plain
+from bench.fit.identify import TELLS, TERMS, steady
 from bench.fit.quantities import Uncertain
 from bench.fit.rows import Rows, clear_motion
-from bench.fit.solution import equations_of
+from bench.fit.solution import equations_of, solution_of
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.trace.filter import LEAST_WIDTH
@@ -117,7 +117,7 @@ class Recordings:
         """
         if not found.rows.stretches[0].signals.known:
             return self, ()
-        calm, chosen = steady(solved(found.rows, found.hypothesis, self.rig), self.rig)
+        calm, chosen = steady(solution_of(found.rows, found.hypothesis, self.rig.offset), self.rig)
         doubt = dict(zip(TERMS, chosen.doubt.tolist(), strict=True))
         moves = tuple(warning.removesuffix(f"; {TELLS}") for warning in chosen.warnings)
         if calm.rows is found.rows:

@@ -18,7 +18,7 @@ from bench.arrays import Array, known_rms, rms
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.model import holding_bandwidth, tracking
 from bench.errors import InputError, SimulationError, UndeterminedError
-from bench.fit.layout import lay_out
+from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
 from bench.plant.model_file import StoredModel, load_model, read_table

@@ -17,8 +17,7 @@ from bench.errors import UndeterminedError
 from bench.fit.determined import left_open, require_determined
 from bench.fit.estimate import Alone, load_inertia
 from bench.fit.fit import Fit, fit
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.layout import lay_out
+from bench.fit.hypothesis import Hypothesis, lay_out
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.solution import equations_of

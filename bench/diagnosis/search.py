@@ -14,11 +14,10 @@ from functools import partial
 from bench.diagnosis.policy import Policy, worth
 from bench.effects.effect import Effect, Replacing
 from bench.effects.rivals import Outside
-from bench.fit.fit import Fit, fit
+from bench.fit.fit import Fit, fit, shaped, together
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Term, on_other_side, outer_loads
 from bench.fit.rows import Rows
-from bench.fit.shapes import shaped, together
 
 #: Said of a search that its limit ended.
 LIMIT = "limit of effects reached"

@@ -316,7 +316,7 @@ class Columns(Effect):
 
 
 class CopiesTorque(Columns):
-    """Columns computed from the torque that reaches it and its noise, see `bench.fit.layout.not_reaching`."""
+    """Columns computed from the torque that reaches it and its noise, see `bench.fit.hypothesis.not_reaching`."""
 
 
 class OfSpeed(Columns):

@@ -111,7 +111,7 @@ class Effects:
         """The effects on a simulation; others if it is another one."""
         known = self._simulated
         if self._running is None or known is None or known[0] is not model or known[1] is not data:
-            if self._running is not None:
+            if self._running is not None and self._running.joints:
                 self._running.place.restore_inertia()
             simulations = Simulations(
                 model,

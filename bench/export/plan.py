@@ -18,11 +18,10 @@ from bench.diagnosis.search import candidates
 from bench.effects.effect import Columns, Effect
 from bench.effects.present import Present
 from bench.errors import InputError, UndeterminedError
-from bench.fit.fit import fit
+from bench.fit.fit import fit, shaped
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
-from bench.fit.shapes import shaped
 from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.drive import References

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, OFFSET, VISCOUS, AxisKind
 from bench.errors import UndeterminedError
-from bench.fit.estimate import Estimate
-from bench.fit.normal_equations import NormalEquations
-from bench.fit.rows import ONE_WAY
+from bench.fit.estimate import Estimate, RefusedEstimateError
+from bench.fit.solution import INDEPENDENT_SHARE, NormalEquations
 from bench.names import words
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 
 #: Least number of rows for each column of the regression.
 ROWS_PER_COLUMN = 20
-#: Least share of a column's power that the others do not explain; 1 % inflates its standard error tenfold.
-INDEPENDENT_SHARE = 0.01
-
 #: Least share of the effort's variance that a model has to explain.
 LEAST_EXPLAINED = 0.5
 
@@ -25,7 +22,6 @@ RECORD = {
     INERTIA: "a motion that accelerates and brakes hard several times",
     VISCOUS: "a motion with at least two clearly different speeds in each direction",
     COULOMB: "a motion in both directions, several seconds each",
-    OFFSET: "a motion in both directions, several seconds each",
 }
 
 #: Why a motion does not show a term, as far as it goes without a number.
@@ -33,15 +29,14 @@ PLAINLY = {
     INERTIA: "it hardly accelerates",
     VISCOUS: "its speed hardly varies",
     COULOMB: "it hardly moves in both directions",
-    OFFSET: "it hardly moves in both directions",
 }
 
 LOAD = "load_moment_of_inertia"
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
 PUSHING = (
-    "signals that are sound throughout: a sign that turns, a drop-out or a delay makes friction negative; else ask "
+    "signals that are sound throughout: a sign that turns, a drop-out or a delay makes friction negative; "
+    "else ask bench diagnose what acts beside friction"
 )
-PUSHING += "bench diagnose what acts beside friction"
 LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
 SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
 EXPLAINED = "a motion in which inertia and friction take most of the effort, and ask bench diagnose what else acts"
@@ -61,9 +56,9 @@ def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     """Raise UndeterminedError if the rows are too few or do not determine the inertia."""
-    refusal = _refusals(equations, kind).get(INERTIA)
-    if refusal is not None:
-        raise refusal
+    refused = _refusals(equations, kind)
+    if INERTIA in refused:
+        raise refused[INERTIA]
 
 
 def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
@@ -71,15 +66,6 @@ def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
     for term, refusal in _not_excited(equations, kind).items():
         if term != INERTIA:
             raise refusal
-
-
-def only_direction(equations: NormalEquations) -> str | None:
-    """`forward` or `backward` if the axis moves one way only: Coulomb friction and offset are then inseparable."""
-    sign, constant = equations.place(COULOMB), equations.place(OFFSET)
-    mean_direction = equations.total[sign, constant] / equations.count
-    if 0.5 * (1.0 - abs(mean_direction)) >= ONE_WAY:
-        return None
-    return "forward" if mean_direction > 0.0 else "backward"
 
 
 def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
@@ -90,11 +76,10 @@ def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, Undetermi
         return {INERTIA: UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])}
     if INERTIA in open_terms:
         return {INERTIA: open_terms[INERTIA]}
-    side = only_direction(equations)
-    if side is None:
+    if equations.one_way is None:
         return open_terms
     name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
-    one_way = UndeterminedError(name, f"the axis moves {side} only", RECORD[COULOMB])
+    one_way = UndeterminedError(name, f"the axis moves {equations.one_way} only", RECORD[COULOMB])
     open_terms.pop(COULOMB, None)
     return {COULOMB: one_way, OFFSET: one_way, **open_terms}
 
@@ -147,29 +132,34 @@ def negative_friction(
     parameters: Mapping[str, Parameter], kind: AxisKind, suspicions: Sequence[str]
 ) -> dict[str, UndeterminedError]:
     """Why a friction is none, by name, with what else is suspicious: its interval lies below zero."""
-    found = {
-        term: parameters[kind.parameter(term)] for term in (VISCOUS, COULOMB) if kind.parameter(term) in parameters
-    }
-    return {
-        kind.parameter(term): UndeterminedError(
-            kind.in_words(term),
-            "; ".join([f"it comes out negative, {one.value:.3g} {one.unit} (at most {one.ci95[1]:.3g})", *suspicions]),
-            PUSHING,
-        )
-        for term, one in found.items()
-        if one.ci95[1] < 0.0
-    }
+    refused = {}
+    for term in (VISCOUS, COULOMB):
+        name, one = kind.parameter(term), parameters.get(kind.parameter(term))
+        if one is not None and one.ci95[1] < 0.0:
+            reason = f"it comes out negative, {one.value:.3g} {one.unit} (at most {one.ci95[1]:.3g})"
+            refused[name] = UndeterminedError(words(name), "; ".join([reason, *suspicions]), PUSHING)
+    return refused
 
 
-def require_sound(estimate: Estimate, rig: Rig, suspicions: Sequence[str]) -> None:
-    """Raise UndeterminedError, with what else is suspicious about the recording, if an estimate is meaningless.
+def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: Sequence[str]) -> Estimate:
+    """The estimate, if its equations, of every column and a constant, determine it and it means something.
 
-    Its inertia may be zero or is negative, the load's is negative, or the model explains less than half of the effort's
-    variance.
+    It means nothing where its inertia may be zero or is negative, the load's is negative, a friction surely is, or the
+    model explains less than half of the effort's variance.
+
+    Raises:
+        RefusedEstimateError: else, with what is determined, and with what else is suspicious.
     """
-    for refusal in refused_masses(estimate.parameters, rig, suspicions).values():
-        raise refusal
-    kind = rig.axis_kind
+    kind, refused = rig.axis_kind, _refusals(equations, rig.axis_kind)
+    negative = negative_friction(estimate.parameters, kind, suspicions)
+    reasons = [*refused.values(), *refused_masses(estimate.parameters, rig, suspicions).values()]
     if estimate.explained < LEAST_EXPLAINED:
         share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
-        raise UndeterminedError(f"{kind.in_words(INERTIA)} and friction", "; ".join([share, *suspicions]), EXPLAINED)
+        what = f"{kind.in_words(INERTIA)} and friction"
+        reasons.append(UndeterminedError(what, "; ".join([share, *suspicions]), EXPLAINED))
+    reasons += negative.values()
+    if not reasons:
+        return estimate
+    unknown = {kind.parameter(term) for term in left_open(equations, kind)} | negative.keys()
+    determined = {name: value for name, value in estimate.parameters.items() if name not in unknown}
+    raise RefusedEstimateError(reasons[0], replace(estimate, parameters=determined)) from reasons[0]

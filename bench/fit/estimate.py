@@ -170,26 +170,27 @@ def load_inertia(parameters: Mapping[str, Parameter], rig: Rig) -> dict[str, Par
     torque is measured behind the rotor.
     """
     inertia = parameters.get(rig.axis_kind.inertia)
-    if rig.load is not None and rig.load.behind_rotor:
+    if inertia is None or (rig.load is not None and rig.load.behind_rotor):
         return {}
-    if inertia is not None and rig.load is not None and rig.load.link_inertia is not None:
-        square, links = rig.load.gear_ratio**2, rig.load.link_inertia
-        low, high = (bound * square - links for bound in inertia.ci95)
-        load = Parameter(inertia.value * square - links, inertia.unit, inertia.std_error * square, (low, high))
-        return {ARMATURE: load}
-    if inertia is None or rig.motor.rotor_inertia is None or inertia.unit != "kg*m**2":
+    if rig.load is not None and rig.load.link_inertia is not None:
+        return {ARMATURE: _beyond(inertia, rig.load.link_inertia, rig.load.gear_ratio**2)}
+    if rig.motor.rotor_inertia is None or inertia.unit != "kg*m**2":
         return {}
-    value, square = _beyond(inertia.value, rig), _beyond(1.0, rig) - _beyond(0.0, rig)
-    low, high = (value + (bound - inertia.value) * square for bound in inertia.ci95)
-    load = Parameter(value, inertia.unit, inertia.std_error * square, (low, high))
-    moved = (_beyond(inertia.value, other) - value for other in rig.within_tolerance())
+    load = _beyond(inertia, *_before_load(rig))
+    moved = (_beyond(inertia, *_before_load(other)).value - load.value for other in rig.within_tolerance())
     return {"load_moment_of_inertia": load.widened(*moved)}
 
 
-def _beyond(inertia: float, rig: Rig) -> float:
-    """An inertia without motor and gear, on the load's side - kg*m**2."""
+def _before_load(rig: Rig) -> tuple[float, float]:
+    """Inertia of motor and gear as the load sees it - kg*m**2 -, and the square of the gear's ratio."""
     gear, ratio = (rig.load.gear_inertia or 0.0, rig.load.gear_ratio) if rig.load else (0.0, 1.0)
-    return (inertia - (rig.motor.rotor_inertia or 0.0) - gear) * ratio**2
+    return ((rig.motor.rotor_inertia or 0.0) + gear) * ratio**2, ratio**2
+
+
+def _beyond(inertia: Parameter, less: float, square: float) -> Parameter:
+    """An inertia times the square of a gear's ratio, less another one - kg*m**2."""
+    low, high = (bound * square - less for bound in inertia.ci95)
+    return Parameter(inertia.value * square - less, inertia.unit, inertia.std_error * square, (low, high))
 
 
 def modelled_effort(motion: Motion, estimate: Estimate, kind: AxisKind) -> Array:

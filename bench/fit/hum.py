@@ -33,8 +33,10 @@ def with_hum(fitted: Fit) -> Fit:
 
 def mains(rows: Rows, residual: Array, known: tuple[float, ...] = ()) -> tuple[float, ...]:
     """Lines of the mains that are known, and those that a residual (m,) of the used rows shows beside - Hz."""
-    width, duration, recordings = rows.conditioning.filter.width, rows.scope.duration, _by_recording(rows, residual)
-    found = list(known)
+    width, duration, found = rows.conditioning.filter.width, rows.scope.duration, list(known)
+    edges = np.searchsorted(rows.time, rows.starts[1:])
+    pairs = zip(np.split(rows.time, edges), np.split(residual, edges), strict=True)
+    recordings = [_Turned(time, left) for time, left in pairs if time.size]
     for line in LINES:
         if any(abs(line - other) < 1.0 for other in found) or not passes(line, width):
             continue
@@ -54,15 +56,8 @@ def passes(line: float, width: float) -> bool:
     return bool(np.exp(-((2.0 * np.pi * line * width) ** 2)) >= PASSED)
 
 
-def _by_recording(rows: Rows, residual: Array) -> list[_Turned]:
-    """Residuals of the rows of each recording that has some."""
-    edges = np.searchsorted(rows.time, [*rows.starts[1:], np.inf])
-    times, residuals = np.split(rows.time, edges)[:-1], np.split(residual, edges)[:-1]
-    return [_Turned(time, residual) for time, residual in zip(times, residuals, strict=True) if time.size]
-
-
 class _Turned:
-    """A residual turned to one frequency after another - m rows at uneven times."""
+    """A recording's residual turned to one frequency after another - m rows at uneven times."""
 
     def __init__(self, time: Array, residual: Array) -> None:
         self.time, self.residual = time, residual

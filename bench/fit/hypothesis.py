@@ -1,4 +1,4 @@
-"""A hypothesis: which effects there are and of what shape, and what is in the recording beside them.
+"""A hypothesis - which effects there are, of what shape, and what is in the recording beside them - and its columns.
 
 Dry frictions of one axis multiply: what scales the level scales all that other effects add to it.
 
@@ -8,22 +8,65 @@ Linear in the strengths only with the other strengths held, as share of K_0. So 
 of a load, which is a matter of other strengths. An outer load - drag, a spring, an unbalance, an event - on the motor
 stands in the balance as it is; on the load of a soft coupling it shakes the coupling first, and its strength also
 drives the load's motion. A fit brings all of these in line.
+
+Among the columns is the last digit of a current that is reported in coarse steps. A current that is rounded errs by up
+to half a step, evenly; one whose fraction is cut off stands half a step nearer to zero on average, which a balance of
+torque takes for friction or saturation. So half a step at most, in the direction of the torque, is a nuisance of the
+recording wherever a step could be seen. What is left is noise (see `bench.fit.solution`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array
-from bench.axis_kind import COULOMB
-from bench.effects.acting import CarriesFriction, FollowsLoad, FrictionLevel, LoadTorque, ScalesFriction
-from bench.effects.effect import Coupling, Effect, Lag, Load, OuterTorque, Repeatable
+from bench.arrays import Array, rms
+from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
+from bench.effects.acting import (
+    CarriesFriction,
+    FollowsLoad,
+    FrictionLevel,
+    LoadTorque,
+    MisreadEffort,
+    ScalesFriction,
+    ScalesTorque,
+    TorqueLoss,
+)
+from bench.effects.effect import (
+    Columns,
+    CopiesTorque,
+    Coupling,
+    Distortion,
+    Effect,
+    EffortLag,
+    Lag,
+    MotionLag,
+    OuterTorque,
+    Repeatable,
+)
 from bench.effects.signals import Signals
-from bench.fit.rows import Rows
+from bench.fit.rows import Rows, effort_of, known_of
+from bench.trace.filter import Column
+from bench.trace.motion import SIGN_REACH
+
+#: Name of a column: a term of the equation of motion, what a recording has beside, or the index of an effect's term.
+Name = str | int
+#: Names of columns that belong to no effect: of the axis and the shift of torque against speed, and what else a
+#: recording has - sines and cosines of the mains, what the last digit of the effort cuts off, what varies slowly around
+#: a short event. Those of an effect are named by the index of its term.
+BASE = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT)
+HUM, DIGIT, AROUND = "hum", "last digit", "around"
+#: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
+FREQUENCIES, REACH = 400, 4.0
+#: Share of the filtered white noise below which half a step is not seen.
+UNSEEN = 0.1
+#: Change of what copies of torque miss, as share of it, at which they are in line with what is found.
+IN_LINE = 0.01
+#: What the torque passes from its reading to the motion, by kinds of effects that copy it.
+STAGES = (MisreadEffort, TorqueLoss, ScalesTorque, FrictionLevel)
 
 
 @dataclass(frozen=True)
@@ -97,33 +140,212 @@ class Hypothesis:
 
     def admits(self, effect: Effect) -> bool:
         """Whether an effect may come beside these: one coupling, one lag."""
-        present = [term.effect for term in self.terms]
-        if effect in present and not isinstance(effect, Repeatable):
+        if any(term.effect is effect for term in self.terms) and not isinstance(effect, Repeatable):
             return False
-        alone = [kind for kind in (Coupling, Lag) if isinstance(effect, kind)]
-        return not any(isinstance(other, kind) for other in present for kind in alone)
+        return not any(isinstance(effect, kind) and self.of_kind(kind) for kind in (Coupling, Lag))
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the effects."""
         return tuple(term.effect.name for term in self.terms)
 
+    def of_kind(self, *kinds: type[Effect]) -> list[int]:
+        """Indices of the terms whose effects are of one of some kinds."""
+        return [index for index, term in enumerate(self.terms) if isinstance(term.effect, kinds)]
+
     @property
     def coupling(self) -> int | None:
         """Index of the term that joins motor and load, None if they are one."""
-        return next((index for index, term in enumerate(self.terms) if isinstance(term.effect, Coupling)), None)
+        return next(iter(self.of_kind(Coupling)), None)
 
 
-def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
-    """The hypothesis with what its terms see of each other's strengths, as fitted coefficients (p,) have them."""
-    found = _with_loads(_with_levels(hypothesis, theta, owners), theta, owners)
-    return _with_pulls(found, theta, owners)
+@dataclass(frozen=True)
+class Layout:
+    """A hypothesis in columns.
+
+    Attributes:
+        columns: (m, p): J, K_w, K_0, misalignment, the effort's last digit where it matters, sines and cosines of hum,
+            then the effects' in order, each followed by what varies around it.
+        owners: (p,) index of the term a column belongs to, or one of the names of BASE, DIGIT, HUM or AROUND.
+        effort: (m,) what they are to explain - N*m (N).
+        noise: (p, p) covariance of what the sensors' noise makes of the columns in a row.
+        bounds: lowest and highest value of strengths that are not free, by their places.
+    """
+
+    columns: Array
+    owners: NDArray[np.object_]
+    effort: Array
+    noise: Array
+    bounds: Mapping[int, tuple[float, float]]
 
 
-def terms_interact(hypothesis: Hypothesis) -> bool:
-    """Whether the columns of a term depend on the strengths of another."""
-    loaded = any(term.load is not None for term in hypothesis.terms)
-    return loaded or _follows_load(hypothesis) or _multiply(hypothesis)
+def plain(rows: Rows) -> Hypothesis:
+    """The hypothesis without an effect: with the effort's last digit where half a step of it could be seen."""
+    conditioning = rows.conditioning
+    noise = conditioning.effort_noise * conditioning.filter.noise_gain(0)
+    return Hypothesis(step=conditioning.effort_step if 0.5 * conditioning.effort_step > UNSEEN * noise else 0.0)
+
+
+def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | None = None) -> Layout:
+    """Columns of a hypothesis; `missing`: what each that copies torque is not made of, see `not_reaching`."""
+    seen, late = seen_by(rows, hypothesis), effort_lag(hypothesis)
+    moving, resting = delays(rows, hypothesis)
+    parts = [seen.kept(_axis, lag=(moving, moving, resting, resting + late))]
+    owners: list[Name] = [*BASE]
+    bounds = {BASE.index(MISALIGNMENT): (-rows.scope.latched, rows.scope.latched)}
+    if hypothesis.step:
+        parts.append(seen.kept(_cut_off, lag=resting))
+        bounds[len(owners)] = (0.0, 0.5 * hypothesis.step)
+        owners.append(DIGIT)
+    if hypothesis.hum:
+        parts.append(seen.kept(_of_hum, hypothesis.hum, rows.starts, lag=resting))
+        owners += [HUM] * parts[-1].shape[1]
+    for index, term in enumerate(hypothesis.terms):
+        lag = moving if isinstance(term.effect, Coupling) else resting
+        parts.append(_of_term(seen, hypothesis, index, lag, (missing or {}).get(index)))
+        if isinstance(term.effect, Columns):
+            bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
+        owners += [index] * parts[-1].shape[1]
+        if term.around:
+            parts.append(_around(seen, term.around))
+            owners += [AROUND] * parts[-1].shape[1]
+    columns = np.concatenate(parts, axis=1) if len(parts) > 1 else parts[0]
+    held_by = np.array(owners, dtype=object)
+    effort = seen.kept(effort_of, lag=late)[:, 0] if late else seen.effort
+    if (moving or late) and seen.stretches[0].signals.known:
+        # as the motion tells it, whose lag is undone; all of it of an effort that was made anew
+        known = seen.kept(known_of, lag=moving)[:, 0]
+        effort = effort - (known if late else known - seen.kept(known_of)[:, 0])
+    return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds)
+
+
+def _axis(signals: Signals) -> list[Column]:
+    """Those of BASE."""
+    source, order = (signals.position, 1) if signals.source == "position" else (signals.velocity, 0)
+    return [[(source, order + 1)], [(source, order)], [(signals.sign, 0)], [(-signals.effort, 1)]]
+
+
+def _cut_off(signals: Signals) -> list[Column]:
+    """What a fraction that is cut off takes from the effort, per unit of half a step."""
+    return [[(-np.sign(signals.effort), 0)]]
+
+
+def _of_hum(signals: Signals, lines: tuple[float, ...], starts: tuple[float, ...]) -> list[Column]:
+    """Sine and cosine of every line in every recording: no two of them start at the same phase of the mains."""
+    angles = [2.0 * np.pi * line * signals.time for line in lines]
+    waves = [wave(angle) for angle in angles for wave in (np.sin, np.cos)]
+    return [[(values if start == signals.began else np.zeros_like(values), 0)] for start in starts for values in waves]
+
+
+def _around(seen: Rows, around: tuple[float, ...]) -> Array:
+    """A constant, a ramp and a parabola over a stretch of time and what the filter reaches beside it, else 0 (m, 3).
+
+    Not filtered: what is smooth all the way passes the filter as such, and only its stretch has edges.
+    """
+    first, last = around
+    half = 0.5 * (last - first) + SIGN_REACH * seen.conditioning.filter.width
+    at = (seen.time - 0.5 * (first + last)) / half
+    return np.where(np.abs(at) <= 1.0, at ** np.arange(3)[:, None], 0.0).T
+
+
+def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, missing: Array | None) -> Array:
+    """Columns (m, k) of one term; none of one that only changes how the recording is seen.
+
+    What follows the motion behind a coupling is integrated at length, and only once where nothing but a lag differs.
+    """
+    term, effect = hypothesis.terms[index], hypothesis.terms[index].effect
+    if not isinstance(effect, Columns):
+        return np.empty((seen.effort.size, 0))
+    if isinstance(effect, ScalesFriction | CarriesFriction):
+        seen = with_friction(seen, hypothesis, index)
+    if isinstance(effect, FollowsLoad):
+        seen = with_load(seen, ((other, other.pull) for other in hypothesis.terms))
+    if missing is not None:
+        return _copied(seen, effect, term.shape, lag, missing)
+    if not isinstance(effect, Coupling):
+        return seen.kept(effect.columns, term.shape, lag=lag)
+    outer = [(each.effect, each.shape, each.load) for each in hypothesis.terms if each.load]
+    loads = [(other, shape, load) for other, shape, load in outer if isinstance(other, OuterTorque)]
+    if loads:
+        return seen.table(lambda s: effect.columns_of(s, [term.shape], loads), lag)
+
+    made_of, stretches = (effect.tables_of, term.shape), [part.signals for part in seen.stretches]
+
+    def table() -> Array:
+        made = seen.memory.get((*made_of, seen.motion), lambda: effect.tables_of(stretches, [term.shape]))
+        return seen.table(made, lag)
+
+    return seen.memory.get((made_of, lag, seen.made_by), table)
+
+
+def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, missing: Array) -> Array:
+    """Columns (m, k) of the modelled torque: of samples less what is missing at the rows between them (m,) - N*m (N).
+
+    That has passed the filter, which takes the fastest of it once more: the slope of the columns makes it good.
+    """
+    time, step = seen.time, 1e-3 * rms(seen.effort)
+
+    def columns(s: Signals) -> list[Column]:
+        between = np.interp(s.time + s.began, time, missing)
+        low, high = (replace(s, torque=s.torque - between + more) for more in (0.0, step))
+        return [*effect.columns(low, shape), *effect.columns(high, shape), [(between, 0)]]
+
+    table = seen.table(columns, lag)
+    low, high, twice = np.split(table, [table.shape[1] // 2, table.shape[1] - 1], axis=1)
+    return low - (high - low) / step * (missing[:, None] - twice)
+
+
+def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], moving: float) -> Array:
+    """Covariance (p, p) of what the sensors' white noise makes of the columns.
+
+    A smoothed signal and its derivative are uncorrelated, as G is even and omega*G odd; what follows the motion behind
+    a coupling is not uncorrelated with the motor's acceleration: its transfer says how much of that noise it has.
+    """
+    conditioning = rows.conditioning
+    smooth, order = conditioning.filter, conditioning.order
+    noise = np.zeros((owners.size, owners.size))
+    gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
+    noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = conditioning.effort_noise**2 * gain
+    omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
+    # all of them less the speed's own factor, (1j * omega) ** order * (1.0 + 1j * omega * moving)
+    s = np.asarray(1j * omega, dtype=np.complex128)
+    transfers = {BASE.index(INERTIA): s, BASE.index(VISCOUS): np.ones_like(s)}
+    for index, term in enumerate(hypothesis.terms):
+        if isinstance(term.effect, Coupling):
+            place = int(np.flatnonzero(owners == index)[0])
+            transfers[place] = s * term.effect.noise_of_motion(term.shape, omega)
+    places, spectra = list(transfers), np.stack(list(transfers.values()))
+    weight = conditioning.source_power(omega) * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
+    weight *= omega ** (2 * order) * (1.0 + (omega * moving) ** 2)
+    noise[np.ix_(places, places)] = (omega[1] - omega[0]) * ((spectra * weight) @ spectra.conj().T).real
+    return noise
+
+
+def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
+    """The recording as the hypothesis has it: without the faults of its sensors."""
+    terms = sorted(hypothesis.terms, key=lambda term: term.key)
+    faults = [(term.effect, term.shape) for term in terms if isinstance(term.effect, Distortion)]
+    if not faults:
+        return rows
+
+    def change(signals: Signals) -> Signals:
+        for effect, shape in faults:
+            signals = effect.see(signals, shape)
+        return signals
+
+    return rows.with_signals(change, tuple((effect.name, shape) for effect, shape in faults))
+
+
+def delays(rows: Rows, hypothesis: Hypothesis) -> tuple[float, float]:
+    """Lag to undo on columns of motion, and on all others - s."""
+    lags = [(term.effect, term.shape) for term in hypothesis.terms if isinstance(term.effect, MotionLag)]
+    found = [effect.delays(shape, rows.conditioning.source) for effect, shape in lags]
+    return sum(moving for moving, _ in found), sum(resting for _, resting in found)
+
+
+def effort_lag(hypothesis: Hypothesis) -> float:
+    """Lag to undo on the reported effort - s."""
+    return sum(term.effect.effort_lag(term.shape) for term in hypothesis.terms if isinstance(term.effect, EffortLag))
 
 
 def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
@@ -131,45 +353,23 @@ def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
 
     sgn(omega) and what terms add to it, times what scales it: before the one at the index, or all where it carries it.
     """
-    terms = hypothesis.terms
-    carries = index < len(terms) and isinstance(terms[index].effect, CarriesFriction)
-    others = [
-        (term, term.effect, k < index or carries)
-        for k, term in enumerate(terms)
+    carries = index in hypothesis.of_kind(CarriesFriction)
+    acting = [
+        (term.effect, term.shape, term.level)
+        for k, term in enumerate(hypothesis.terms)
         if isinstance(term.effect, FrictionLevel) and term.level and k != index
+        if k < index or carries or not isinstance(term.effect, ScalesFriction)
     ]
-    acting = [(term, effect) for term, effect, _ in others if not isinstance(effect, ScalesFriction)]
-    acting += [(term, effect) for term, effect, before in others if before and isinstance(effect, ScalesFriction)]
     if not acting:
         return seen
+    acting.sort(key=lambda each: isinstance(each[0], ScalesFriction))  # stable: all that adds first
 
     def change(signals: Signals) -> Signals:
-        for term, effect in acting:
-            more = effect.level(signals, term.shape, term.level)
-            signals = replace(signals, friction=signals.friction + more)
+        for effect, shape, level in acting:
+            signals = replace(signals, friction=signals.friction + effect.level(signals, shape, level))
         return signals
 
     return seen.with_signals(change)
-
-
-def _with_levels(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
-    """The hypothesis with the levels that a fit found: strengths over K_0 where that is positive."""
-    coulomb = float(theta[owners == COULOMB][0])
-
-    def level(index: int, term: Term) -> tuple[float, ...]:
-        if coulomb <= 0.0 or not isinstance(term.effect, FrictionLevel):
-            return ()
-        return tuple((theta[owners == index] / coulomb).tolist())
-
-    return hypothesis.with_terms(replace(term, level=level(index, term)) for index, term in enumerate(hypothesis.terms))
-
-
-def _multiply(hypothesis: Hypothesis) -> bool:
-    """Whether an effect scales what another adds, or carries it."""
-    effects = [term.effect for term in hypothesis.terms]
-    levels = sum(isinstance(effect, FrictionLevel) for effect in effects)
-    scaled = levels > 1 and any(isinstance(effect, ScalesFriction) for effect in effects)
-    return scaled or (levels > 0 and any(isinstance(effect, CarriesFriction) for effect in effects))
 
 
 def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows:
@@ -192,27 +392,93 @@ def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows
     return seen.with_signals(change)
 
 
-def _with_pulls(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
-    """The hypothesis with the strengths that a fit found of its loads, if the friction of a term follows them."""
-    if not _follows_load(hypothesis):
-        return hypothesis
+def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, strengths: Callable[[int], list[float]]) -> Rows:
+    """The recording as one term more would see it, by what is left (m,) - N*m (N) - and the strengths of each term.
 
-    def pull(index: int, term: Term) -> tuple[float, ...]:
-        return tuple(theta[owners == index].tolist()) if isinstance(term.effect, LoadTorque) else ()
+    It sees the modelled torque in the place of the measured. Columns made of the measured torque would hold what a
+    model leaves of it, and so explain it by itself: errors in the variables, for which the modelled torque is the
+    instrument (W. A. Fuller, Measurement Error Models, 1987, 1.4).
+    """
+    seen = seen_by(rows, hypothesis).with_signals(
+        lambda s: replace(s, torque=s.torque - np.interp(s.time + s.began, rows.time, left))
+    )
+    seen = with_friction(seen, hypothesis, len(hypothesis.terms))
+    return with_load(seen, ((term, strengths(index)) for index, term in enumerate(hypothesis.terms)))
 
-    return hypothesis.with_terms(replace(term, pull=pull(k, term)) for k, term in enumerate(hypothesis.terms))
+
+def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[int, Array]:
+    """By the place of each term that copies torque: what of the reported one it is not made of (m,) - N*m (N).
+
+    That is what no term explains, and what those take that the torque passes before: gains of reading, constant and
+    position multiply, and dry friction is caused by the torque that comes of it.
+    """
+    copies, found = hypothesis.of_kind(CopiesTorque), {}
+    if not copies:
+        return found
+
+    def stage(index: int) -> int:
+        passed = (place for place, kind in enumerate(STAGES) if isinstance(hypothesis.terms[index].effect, kind))
+        return next(passed, STAGES.index(ScalesTorque))
+
+    lost = layout.effort - layout.columns @ theta
+    for index in sorted(copies, key=stage):
+        own = layout.owners == index
+        found[index], lost = lost, lost + layout.columns[:, own] @ theta[own]
+    return found
 
 
-def _follows_load(hypothesis: Hypothesis) -> bool:
-    """Whether the friction of a term follows the torque of the load."""
-    return any(isinstance(term.effect, FollowsLoad) for term in hypothesis.terms)
+def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
+    """The hypothesis with what its terms see of each other's strengths, as fitted coefficients (p,) have them.
+
+    Levels of dry friction are strengths over K_0, what acts on the load behind a coupling over its inertia, where these
+    are positive; what loads the transmission is asked for where the friction of a term follows it.
+    """
+    coulomb, follows = float(theta[owners == COULOMB][0]), bool(hypothesis.of_kind(FollowsLoad))
+    coupling = hypothesis.coupling
+    inertia = 0.0 if coupling is None else float(theta[owners == coupling][0])
+
+    def share(own: Array, whole: float) -> tuple[float, ...]:
+        return tuple((own / whole).tolist()) if whole > 0.0 else ()
+
+    def seen(term: Term, own: Array) -> Term:
+        level = share(own, coulomb) if isinstance(term.effect, FrictionLevel) else ()
+        load = None if term.load is None else share(own, inertia)
+        pull = term.pull
+        if follows:
+            pull = tuple(own.tolist()) if isinstance(term.effect, LoadTorque) else ()
+        return replace(term, level=level, load=load, pull=pull)
+
+    return hypothesis.with_terms(seen(term, theta[owners == index]) for index, term in enumerate(hypothesis.terms))
+
+
+def updated(
+    hypothesis: Hypothesis, missing: Mapping[int, Array], layout: Layout, theta: Array
+) -> tuple[Hypothesis, dict[int, Array], bool]:
+    """The hypothesis with the strengths that a fit found, what its copies of torque miss, and if both are as before."""
+    found, after = with_found_strengths(hypothesis, theta, layout.owners), not_reaching(hypothesis, layout, theta)
+    least = IN_LINE * min(map(rms, after.values()), default=0.0)
+    stays = all(rms(now - missing[index]) <= least for index, now in after.items())
+    return found, after, stays and _alike(found, hypothesis)
+
+
+def _alike(found: Hypothesis, before: Hypothesis) -> bool:
+    """Whether no column depends on a strength of another term, by a load or friction that multiplies, that changed."""
+    levels = len(found.of_kind(FrictionLevel))
+    scaled = levels > 1 and found.of_kind(ScalesFriction)
+    carried = levels > 0 and found.of_kind(CarriesFriction)
+    loaded = any(term.load is not None for term in found.terms) or found.of_kind(FollowsLoad)
+    if not (scaled or carried or loaded):
+        return True
+    now, then = (
+        [value for term in each.terms for value in (*term.level, *(term.load or ()), *term.pull)]
+        for each in (found, before)
+    )
+    return len(now) == len(then) and np.allclose(now, then, rtol=1e-3, atol=1e-6)
 
 
 def outer_loads(hypothesis: Hypothesis) -> list[int]:
     """Indices of the terms that may act on the load of a coupling; none without one."""
-    if hypothesis.coupling is None:
-        return []
-    return [index for index, term in enumerate(hypothesis.terms) if isinstance(term.effect, OuterTorque)]
+    return [] if hypothesis.coupling is None else hypothesis.of_kind(OuterTorque)
 
 
 def on_other_side(hypothesis: Hypothesis) -> Hypothesis:
@@ -222,22 +488,3 @@ def on_other_side(hypothesis: Hypothesis) -> Hypothesis:
     return hypothesis.with_terms(
         replace(term, load=onto) if index in outer else term for index, term in enumerate(hypothesis.terms)
     )
-
-
-def loads_of(hypothesis: Hypothesis) -> tuple[Load, ...]:
-    """What acts on the load, as far as its strengths are known."""
-    outer = [(term.effect, term.shape, term.load) for term in hypothesis.terms if term.load]
-    return tuple((effect, shape, load) for effect, shape, load in outer if isinstance(effect, OuterTorque))
-
-
-def _with_loads(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
-    """The hypothesis with the strengths over load inertia that a fit found of what acts on the load."""
-    index = hypothesis.coupling
-    inertia = 0.0 if index is None else float(theta[owners == index][0])
-
-    def moved(k: int, term: Term) -> Term:
-        if term.load is None:
-            return term
-        return replace(term, load=tuple((theta[owners == k] / inertia).tolist()) if inertia > 0.0 else ())
-
-    return hypothesis.with_terms(moved(k, term) for k, term in enumerate(hypothesis.terms))

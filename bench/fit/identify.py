@@ -1,5 +1,13 @@
 """The default estimator: least squares of the torque balance without effects, of a recording or of several together.
 
+A recording's first part decides on filter and hum, all of its parts are summed up. An estimate has to be independent of
+the filter's cut-off, so a decade of cut-offs is tried. What the model of a rigid axis lacks - a drive that reacts to
+noise of its speed, coarse signals, a soft coupling - is mostly at high frequency, and biases the estimate the more of
+it the filter passes. So an estimate is accepted only if it agrees with those at all lower cut-offs within their errors
+(O. V. Lepski, Theory of Probability and its Applications 35(3), 1991, 454-466). Of the accepted ones the highest is
+taken, the most precise on sound recordings, unless another has a clearly narrower interval. If some were rejected, the
+interval includes the bias that may remain.
+
 Of several, what one does not determine another may:
 
     theta = (sum of B_k)**-1 * sum of B_k*theta_k,   B_k = (I + A_k*D)**-1 * A_k
@@ -16,7 +24,10 @@ and D.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -29,422 +40,47 @@ from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
-from bench.fit.determined import left_open, negative_friction, require_determined, require_inertia, require_sound
+from bench.fit.determined import left_open, require_inertia, sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
-from bench.fit.gathered import Gathered, gather
-from bench.fit.layout import BASE
-from bench.fit.normal_equations import NormalEquations, join, solved
-from bench.fit.solution import NOISE_ALONE, SURE, Solution
-from bench.gate.gate import joined
+from bench.fit.fit import by_hint
+from bench.fit.hum import mains, passes
+from bench.fit.hypothesis import BASE, Name, lay_out, plain
+from bench.fit.rows import Rows, effort_of
+from bench.fit.solution import (
+    NOISE_ALONE,
+    SURE,
+    NormalEquations,
+    Solution,
+    equations_of,
+    join,
+    solution_of,
+    solve,
+    solved,
+)
+from bench.gate.check import Check
+from bench.gate.gate import PARTS, gate, joined, passed, require
 from bench.parameter import Parameter
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
+from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
 
+#: Cut-offs tried below the highest, relative to it: a decade in four steps.
+BELOW = 10.0 ** -np.arange(0.25, 1.01, 0.25)
+#: Ratio to the interval at the highest accepted cut-off below which another interval counts as narrower; on 100
+#: recordings of rigid axes the smallest ratio was 0.70.
+NARROWER = 0.6
+#: Share of a value by which filters of different widths may differ without any noise.
+ROUNDING = 1e-4
+#: Terms of the axis, in whose order all numbers here stand.
+TERMS = (INERTIA, VISCOUS, COULOMB)
+TELLS = "bench diagnose may tell why"
 #: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
 #: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
 A_DELAY = 0.25
 
-
-def estimated_alone(gathered: Gathered, rig: Rig) -> Estimate:
-    """Estimate from the normal equations of a recording.
-
-    Raises:
-        RefusedEstimateError: they determine only some parameters.
-        UndeterminedError: they determine none.
-    """
-    kind = rig.axis_kind
-    require_inertia(gathered.equations, kind)
-    estimate = _estimate(gathered, rig, gathered.solved(rig.offset and gathered.one_way is None))
-    return sound(estimate, gathered.equations, rig, (*gathered.warnings, *_remaining(estimate)))
-
-
-def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: tuple[str, ...]) -> Estimate:
-    """The estimate, if its equations, of every column and a constant, determine it and it means something.
-
-    Raises:
-        RefusedEstimateError: else, with what is determined, and with what else is suspicious.
-    """
-    kind = rig.axis_kind
-    negative = negative_friction(estimate.parameters, kind, suspicions)
-    try:
-        require_determined(equations, kind)
-        require_sound(estimate, rig, suspicions)
-        for refusal in negative.values():
-            raise refusal
-    except UndeterminedError as refusal:
-        unknown = {kind.parameter(term) for term in left_open(equations, kind)} | negative.keys()
-        determined = {name: value for name, value in estimate.parameters.items() if name not in unknown}
-        raise RefusedEstimateError(refusal, replace(estimate, parameters=determined)) from refusal
-    return estimate
-
-
-def _estimate(gathered: Gathered, rig: Rig, found: Solution) -> Estimate:
-    equations, unit, kind = gathered.equations, gathered.effort_unit, rig.axis_kind
-    parameters = {}
-    for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
-        margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
-        parameter = parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
-        parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
-    parameters |= load_inertia(parameters, rig)
-    squares, total = gathered.measured
-    if squares == 0.0:
-        reason = "the effort is zero throughout"
-        raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
-    rms, relative = math.sqrt(found.power / equations.count), math.sqrt(found.power / squares)
-    smooth = gathered.rows.conditioning.filter
-    estimate = Estimate(
-        estimator="regression",
-        parameters=parameters,
-        residual=Residual(rms, found.floor.coloured, relative, unit),
-        samples_read=gathered.samples_read,
-        samples_used=equations.count * smooth.stride,
-        cutoff=smooth.cutoff,
-        source=gathered.rows.conditioning.source,
-        warnings=(*gathered.warnings, *_shifted(found)),
-        explained=1.0 - found.power / max(squares - total**2 / equations.count, 1e-300),
-        checks=gathered.checks,
-    )
-    return replace(estimate, warnings=(*estimate.warnings, *_remaining(estimate)))
-
-
-def parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
-    """A coefficient of a solution with the interval that its covariance gives it."""
-    value, error = found.of(term, found.theta), found.of(term, found.errors)
-    interval = (value - found.reach * error, value + found.reach * error)
-    return Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
-
-
-def _remaining(estimate: Estimate) -> Iterator[str]:
-    """What share is explained, where more than noise is left."""
-    residual = estimate.residual
-    if residual.rms > NOISE_ALONE * residual.noise_floor:
-        yield (
-            f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
-            f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
-        )
-
-
-def _shifted(found: Solution) -> Iterator[str]:
-    (shift, error), period = found.shift, found.rows.scope.sample_period
-    if abs(shift) > period and abs(shift) > SURE * error and found.shift_explains > A_DELAY:
-        yield (
-            f"current and speed are {shift * 1e3:.3g} ms apart, more than a sample ({period * 1e3:.3g} ms): "
-            "a lag in the drive or its filters, which bench diagnose can tell"
-        )
-
-
-def estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
-    """Estimate from the normal equations of several recordings of one axis.
-
-    Raises:
-        RefusedEstimateError: together they leave a parameter undetermined; the error carries the others.
-        InputError: no recording, one that is given twice, or efforts in different units.
-    """
-    _require_distinct(gathered)
-    kind, unit, whole = rig.axis_kind, gathered[0].effort_unit, _joined(gathered)
-    members = [Member.of(one, rig) for one in gathered]
-    terms = members[0].terms
-    excesses = {term: _excess(members, kind, term) for term in terms}
-    joint = Joint.of(members, list(excesses.values()))
-    parameters = {}
-    for term, *numbers in zip(terms, joint.theta, joint.errors, joint.reaches, strict=True):
-        value, error, reach = map(float, numbers)
-        tolerance = float(np.mean([member.tolerances[kind.parameter(term)] for member in members]))
-        interval = (value - reach, value + reach)
-        found = Parameter(value, kind.parameter_unit(term, unit), error, interval)
-        parameters[kind.parameter(term)] = found.widened(tolerance)
-    filters = [one.rows.conditioning.filter for one in gathered]
-    left = joint.left(members)
-    squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
-    variation = squares - total**2 / whole.count
-    estimate = Estimate(
-        estimator="regression",
-        parameters=parameters | load_inertia(parameters, rig),
-        residual=_residual(members, left, unit),
-        samples_read=sum(one.samples_read for one in gathered),
-        samples_used=sum(one.equations.count * f.stride for one, f in zip(gathered, filters, strict=True)),
-        cutoff=min(smooth.cutoff for smooth in filters),
-        source=" and ".join(sorted({one.rows.conditioning.source for one in gathered})),
-        warnings=(
-            *(f"{member.alone.origin}: {warning}" for member in members for warning in member.warnings),
-            *(f"{member.alone.origin} alone: {member.alone.reason}" for member in members if member.alone.reason),
-            *_differences(members, excesses, kind),
-            *_offset(gathered, members, rig),
-        ),
-        explained=1.0 - left / max(variation, 1e-300),
-        checks=joined([one.checks for one in gathered]),
-        recordings=tuple(member.alone for member in members),
-        between=_between(members, kind),
-    )
-    spread, suspicions = excesses[INERTIA].variance, ()
-    if spread:
-        apart = f"{math.sqrt(spread):.2g} {estimate[kind.inertia].unit}"
-        suspicions = (f"it differs from recording to recording by {apart}, and few are given",)
-    return sound(estimate, whole, rig, suspicions)
-
-
-@dataclass(frozen=True, eq=False)
-class Member:
-    """One of several recordings: its information about the axis, and its estimate alone.
-
-    Attributes:
-        gathered: its normal equations.
-        terms: that all recordings share: J, K_w, K_0 and, where it is fitted, offset (s,).
-        names: of these in results.
-        solution: its own fit, with these columns and its own shift and hum.
-        alone: its estimate alone.
-        along: if it moves in one direction only, its friction in that direction, offset included; else None.
-        tolerances: half widths of parameters from the rig's tolerances, by name.
-        warnings: of its own fit.
-    """
-
-    gathered: Gathered
-    terms: tuple[str, ...]
-    names: tuple[str, ...]
-    solution: Solution
-    alone: Alone
-    along: Parameter | None
-    tolerances: Mapping[str, float]
-    warnings: tuple[str, ...]
-
-    @classmethod
-    def of(cls, gathered: Gathered, rig: Rig) -> Member:
-        """The fit of one recording alone.
-
-        Raises:
-            InputError: rig and recording do not fit together.
-        """
-        kind, origin = rig.axis_kind, gathered.rows.origin
-        terms = (INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []))
-        names = tuple(kind.parameter(term) for term in terms)
-        # no offset was fitted to a recording in one direction: it is in the friction
-        tolerances = {term: gathered.tolerance.get(term, gathered.tolerance[COULOMB]) for term in terms}
-        reaches = {kind.parameter(term): reach for term, reach in tolerances.items()}
-        reaches |= {"load_moment_of_inertia": tolerances[INERTIA]}
-        found, reason = None, ""
-        try:
-            found = estimated_alone(gathered, rig)
-        except RefusedEstimateError as refusal:
-            found, reason = refusal.estimate, str(refusal)
-        except UndeterminedError as refusal:
-            reason = str(refusal)
-        known = {} if found is None else found.parameters
-        kept = {name: one for name, one in known.items() if name != kind.inertia or one.ci95[0] * one.ci95[1] > 0.0}
-        return cls(
-            gathered,
-            terms,
-            names,
-            gathered.solved(rig.offset),
-            Alone(origin, kept, reason),
-            _along(gathered, kind),
-            reaches,
-            () if found is None else found.warnings,
-        )
-
-    @property
-    def _shared(self) -> list[int]:
-        return [self.solution.names.index(term) for term in self.terms]
-
-    @property
-    def equations(self) -> NormalEquations:
-        """Of the fitted columns."""
-        return self.solution.equations
-
-    @property
-    def theta(self) -> Array:
-        """Coefficients of the shared terms in its own fit (s,)."""
-        return self.solution.theta[self._shared]
-
-    @cached_property
-    def matrix(self) -> Array:
-        """Matrix of the normal equations of these, its own shift and hum eliminated, positive semidefinite (s, s).
-
-        A column with less power than expected from its noise carries no information.
-        """
-        equations, shared, held = self.equations, self._shared, self.solution.held
-        whole, gram, noise = equations.matrix, equations.total, equations.count * equations.noise
-        rest = {k: name for k, name in enumerate(equations.names) if k not in shared}
-        own = [k for k, name in rest.items() if not (held and name == MISALIGNMENT)]
-        beside = whole[np.ix_(own, shared)]
-        taken, _ = solved(gram[np.ix_(own, own)], beside, noise[np.ix_(own, own)])
-        scale = np.sqrt(np.diag(gram)[shared])
-        power, ways = np.linalg.eigh((whole[np.ix_(shared, shared)] - beside.T @ taken) / np.outer(scale, scale))
-        return (ways * np.maximum(power, 0.0)) @ ways.T * np.outer(scale, scale)
-
-    @cached_property
-    def own(self) -> dict[str, Parameter]:
-        """Its estimate alone, without the rig's tolerances, which are common to all recordings."""
-        found = dict(self.alone.parameters)
-        for name, reach in self.tolerances.items():
-            if name in found:
-                before = found[name]
-                half = math.sqrt(max(before.half_width**2 - reach**2, 0.0))
-                error = math.sqrt(max(before.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
-                found[name] = replace(before, std_error=error, ci95=(before.value - half, before.value + half))
-        return found
-
-    @cached_property
-    def known(self) -> Array:
-        """Its information about these: `matrix` over the mean variance implied by its covariance (s, s)."""
-        covariance, _ = self.covariance
-        return self.matrix * len(self.terms) / max(float(np.trace(self.matrix @ covariance)), 1e-300)
-
-    @cached_property
-    def covariance(self) -> tuple[Array, Array]:
-        """Covariance of `theta` in standard errors, and in half widths of intervals of 95 % (s, s) each.
-
-        A parameter that it does not determine alone is as much wider than by its own fit as friction along one
-        direction is.
-        """
-        found = self.solution.covariance[np.ix_(self._shared, self._shared)]
-        errors = np.sqrt(np.maximum(np.diag(found), 1e-300)).tolist()
-        wider = 1.0, self.solution.reach
-        if self.along is not None:
-            bare = self.gathered.solved(offset=False)
-            error = max(bare.of(COULOMB, bare.errors), 1e-300)
-            wider = self.along.std_error / error, self.along.half_width / error
-        scales = np.array(
-            [
-                (self.own[name].std_error / error, self.own[name].half_width / error) if name in self.own else wider
-                for name, error in zip(self.names, errors, strict=True)
-            ]
-        )
-        standard, half = (found * np.outer(scale, scale) for scale in scales.T)
-        return standard, half
-
-
-def _along(gathered: Gathered, kind: AxisKind) -> Parameter | None:
-    """Friction, offset included, of a recording that moves in one direction only."""
-    if gathered.one_way is None:
-        return None
-    bare = gathered.solved(offset=False)
-    alone = parameter_of(bare, COULOMB, kind, gathered.effort_unit)
-    return alone.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
-
-
-@dataclass(frozen=True, eq=False)
-class Joint:
-    """Joint estimate of the shared terms.
-
-    Attributes:
-        theta: (s,).
-        errors: standard errors (s,).
-        reaches: half widths of the intervals of 95 % (s,).
-    """
-
-    theta: Array
-    errors: Array
-    reaches: Array
-
-    @classmethod
-    def of(cls, members: Sequence[Member], excesses: Sequence[Excess]) -> Joint:
-        """Joint fit of recordings that vary beyond their own errors in each quantity (s,)."""
-        between = np.array([found.variance for found in excesses])
-        known = np.array([member.known for member in members])
-        known = np.linalg.solve(np.eye(between.size) + known * between, known)
-        moment = np.einsum("kij,kj->i", known, np.array([member.theta for member in members]))
-        theta, inverse = solved(known.sum(axis=0), moment, np.zeros_like(known[0]))
-        wide = between * np.array([found.reach for found in excesses]) ** 2
-        variance, reached = np.zeros(theta.size), np.zeros(theta.size)
-        for share, member in zip(inverse @ known, members, strict=True):
-            error, half_width = (np.diag(share @ found @ share.T) for found in member.covariance)
-            variance += error + share**2 @ between
-            reached += half_width + share**2 @ wide
-        return cls(theta, np.sqrt(variance), np.sqrt(reached))
-
-    def left(self, members: Sequence[Member]) -> float:
-        """Sum of squared residuals of all recordings, each with its own shift and hum - the effort's unit squared."""
-        away = [self.theta - member.theta for member in members]
-        return sum(m.solution.power + float(d @ m.matrix @ d) for m, d in zip(members, away, strict=True))
-
-
-def _require_distinct(gathered: Sequence[Gathered]) -> None:
-    if not gathered:
-        raise InputError("recordings", "found none", "allowed: at least one")
-    for one, other in combinations(gathered, 2):
-        if one.effort_unit != other.effort_unit:
-            found = f"gives its effort in {other.effort_unit}, {one.rows.origin} in {one.effort_unit}"
-            raise InputError(other.rows.origin, found, "allowed: recordings of one kind of effort; say kT in the rig")
-        if np.array_equal(one.equations.gram, other.equations.gram):
-            found = f"found the same recording as {one.rows.origin}"
-            raise InputError(other.rows.origin, found, "allowed: each recording once; twice would count as two")
-
-
-def _joined(gathered: Sequence[Gathered]) -> NormalEquations:
-    """Equations of all recordings in their common columns: J, K_w, K_0, misalignment, constant."""
-    parts = [one.equations.only(lambda name: name in (*BASE, OFFSET)) for one in gathered]
-    noise = sum((part.count * part.noise for part in parts), np.zeros_like(parts[0].noise))
-    return replace(join(parts), noise=noise / sum(part.count for part in parts))
-
-
-def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
-    """Variance between recordings in a quantity.
-
-    Runs of one direction determine the sum of friction and offset; it is compared among runs of the same direction.
-    """
-    name = kind.parameter(term)
-    groups: dict[str, list[Parameter]] = {}
-    for member in members:
-        if name in member.own:
-            groups.setdefault("both", []).append(member.own[name])
-        elif term == COULOMB and member.along is not None:
-            groups.setdefault(str(member.gathered.one_way), []).append(member.along)
-    return excess(list(groups.values()))
-
-
-def _residual(members: Sequence[Member], left: float, unit: str) -> Residual:
-    """Residual of the joint fit over all recordings."""
-    counts = np.array([member.equations.count for member in members])
-    floors = [member.solution.floor.coloured for member in members]
-    return Residual(
-        rms=math.sqrt(left / counts.sum()),
-        noise_floor=math.sqrt(float(counts @ np.square(floors)) / counts.sum()),
-        relative=math.sqrt(left / sum(member.gathered.measured[0] for member in members)),
-        unit=unit,
-    )
-
-
-def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind: AxisKind) -> Iterator[str]:
-    """Warnings of quantities in which the recordings differ, and of those that cannot be compared."""
-    differing = [term for term, found in excesses.items() if found.chance < ALARM / len(excesses)]
-    for term in differing:
-        name = kind.parameter(term)
-        values = [m.alone.parameters[name] for m in members if name in m.alone.parameters]
-        yield spread_warning(name, values or [member.along for member in members if member.along is not None])
-    silent = [kind.parameter(term) for term, found in excesses.items() if not found.degrees and term != OFFSET]
-    if differing and silent:
-        yield (
-            f"no two recordings tell {' or '.join(silent)} alike, so the interval does not count how recordings "
-            "differ in it: record each direction twice"
-        )
-
-
-def _offset(gathered: Sequence[Gathered], members: Sequence[Member], rig: Rig) -> Iterator[str]:
-    """A warning of an offset that is not fitted, which runs of one direction each attribute to friction."""
-    if rig.offset or all(member.along is None for member in members):
-        return
-    kind, asked = rig.axis_kind, rig.model_copy(update={"offset": True})
-    members = [Member.of(one, asked) for one in gathered]
-    excesses = [_excess(members, kind, term) for term in members[0].terms]
-    joint = Joint.of(members, excesses)
-    value, reach = float(joint.theta[-1]), float(joint.reaches[-1])
-    if abs(value) > reach:
-        unit = kind.parameter_unit(OFFSET, gathered[0].effort_unit)
-        yield (
-            f"the recordings hold a {kind.in_words(OFFSET)} of {value:.3g} ± {reach:.2g} {unit}, which was not fitted: "
-            "set `offset = true` in the rig, or give --offset"
-        )
-
-
-def _between(members: Sequence[Member], kind: AxisKind) -> dict[str, Between]:
-    """Spread of each quantity that at least two recordings determine alone; the shift is no property of the axis."""
-    own = [member.own for member in members]
-    found = {
-        name: [each[name] for each in own if name in each] for name in dict.fromkeys(n for each in own for n in each)
-    }
-    found.pop(kind.parameter(MISALIGNMENT), None)
-    return {name: between(values) for name, values in found.items() if len(values) > 1}
+#: Normal equations, number of samples and checks of a part of a recording.
+Summed = tuple[NormalEquations, int, tuple[Check, ...]]
 
 
 def identify(
@@ -474,6 +110,531 @@ def identify(
     rig = rig_of(rig)
     every = trace if isinstance(trace, list | tuple) else [cast("Given", trace)]
     recordings = [one if isinstance(one, Iterator) else trace_of(one, rig) for one in every]
-    gathered = [gather(one, rig, cutoff) for one in recordings]
-    found = estimated_alone(gathered[0], rig) if len(gathered) == 1 else estimated_together(gathered, rig)
+    gathered = [_gather(one, rig, cutoff) for one in recordings]
+    if len(gathered) == 1:
+        found = _estimated_alone(gathered[0], gathered[0].solution, rig)
+    else:
+        found = _estimated_together(gathered, rig)
     return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
+
+
+@dataclass(frozen=True, eq=False)
+class Gathered:
+    """A recording summed up.
+
+    Attributes:
+        solution: of all of it, with the rows of its first part, at whose filter the others are taken.
+        effort_unit: N*m, N, or what the rig allows.
+        samples_read: of all parts.
+        measured: sum of the squares of the measured effort over all rows - its unit squared -, and its sum.
+        doubt: possible bias of J, K_w and K_0, as they move with the filter's cut-off.
+        hinted: by how much the effect that the recording hints at would move them; empty without one.
+        tolerance: half widths of coefficients from the rig's tolerances.
+        warnings: about the cut-off.
+        checks: of all parts.
+    """
+
+    solution: Solution
+    effort_unit: str
+    samples_read: int
+    measured: tuple[float, float]
+    doubt: Mapping[str, float]
+    hinted: Mapping[str, float]
+    tolerance: Mapping[Name, float]
+    warnings: tuple[str, ...]
+    checks: tuple[Check, ...]
+
+    def solved(self, offset: bool) -> Solution:
+        """Its solution with or without a constant."""
+        found = self.solution
+        if offset == (OFFSET in found.names):
+            return found
+        return solve(found.rows, found.hypothesis, found.laid, found.whole, offset)
+
+
+def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
+    """A recording, or its consecutive parts, summed up at a cut-off - Hz -, or at the one the data choose."""
+    parts = iter([trace] if isinstance(trace, Trace) else trace)
+    gated = passed(next(parts), rig)
+    first = gated.trace
+    found, chosen = choose(first, rig, cutoff)
+
+    def summed(part: Trace) -> Summed:
+        sound = gate(part, rig, PARTS)
+        rows = Rows.of(sound.trace, rig, conditioning=found.rows.conditioning, begins=float(first.time[0]))
+        return equations_of(rows, lay_out(rows, found.hypothesis)), len(sound.trace), sound.checks
+
+    others = list(_in_parallel(summed, parts))
+    checks = joined([gated.checks, *(checked for _, _, checked in others)])
+    require(checks, first)
+    whole = found
+    if others:
+        equations = join([found.whole, *(each for each, _, _ in others)])
+        offset = rig.offset and equations.one_way is None
+        whole = solve(found.rows, found.hypothesis, found.laid, equations, offset)
+    return Gathered(
+        solution=whole,
+        effort_unit=rig.net_effort(first)[1],
+        samples_read=len(first) + sum(read for _, read, _ in others),
+        measured=_measured(whole.whole, None if others else found.rows),
+        doubt=dict(zip(TERMS, chosen.doubt.tolist(), strict=True)),
+        hinted=by_hint(found.rows, found.hypothesis),
+        tolerance=_by_tolerance(first, rig, found),
+        warnings=chosen.warnings,
+        checks=checks,
+    )
+
+
+def _in_parallel(work: Callable[[Trace], Summed], parts: Iterable[Trace]) -> Iterator[Summed]:
+    """Results of `work` on each part, in order, on one thread a core; NumPy releases the interpreter lock.
+
+    At most two parts a core are in memory, so a recording may be larger than it.
+    """
+    cores, waiting = os.cpu_count() or 1, deque[Future[Summed]]()
+    with ThreadPoolExecutor(cores) as pool:
+        for part in parts:
+            waiting.append(pool.submit(work, part))
+            if len(waiting) >= 2 * cores:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+
+
+def _measured(equations: NormalEquations, rows: Rows | None) -> tuple[float, float]:
+    """Sum of the squares of the measured effort, and its sum; `rows`: all that there are, if they are in memory.
+
+    Beside a robot that is what its motor gave, not the small part that its own inertia and friction are to explain.
+    """
+    if rows is not None and rows.stretches[0].signals.known:
+        effort = rows.kept(effort_of)[:, 0]
+        return float(effort @ effort), float(effort.sum())
+    return float(equations.power.sum()), float(equations.moment[:, equations.names.index(OFFSET)].sum())
+
+
+def _by_tolerance(first: Trace, rig: Rig, found: Solution) -> dict[Name, float]:
+    """Half widths at 95 % of coefficients by their names from the rig's tolerances, taken for independent."""
+    moved = np.zeros(found.theta.size)
+    for other in rig.within_tolerance():
+        rows = Rows.of(first, other, conditioning=found.rows.conditioning)
+        moved = np.hypot(moved, solution_of(rows, found.hypothesis, OFFSET in found.names).theta - found.theta)
+    return dict(zip(found.names, moved.tolist(), strict=True))
+
+
+def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chosen]:
+    """The solution of a recording, or of its first part, at the chosen cut-off, unless one is given - Hz.
+
+    Raises:
+        UndeterminedError: the recording is too short, or never moves clearly.
+        InputError: a signal is missing, or rig and recording do not fit together.
+    """
+    rows = Rows.of(first, rig, cutoff=cutoff)
+    highest = solution_of(rows, plain(rows), rig.offset)
+    hum = mains(rows, highest.residual)
+    if hum:
+        highest = solution_of(rows, replace(highest.hypothesis, hum=hum), rig.offset)
+    return (highest, Chosen(0, np.zeros(3))) if cutoff is not None else steady(highest, rig)
+
+
+def steady(highest: Solution, rig: Rig) -> tuple[Solution, Chosen]:
+    """The solution at the cut-off at which J, K_w and K_0 stand still, of one at the highest and those below it."""
+    every = [(found, Tried.of(found, rig.axis_kind)) for found in (highest, *_lower(highest, rig))]
+    usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
+    if not usable:
+        return highest, Chosen(0, np.zeros(3))
+    chosen = among([tried for _, tried in usable], rig.axis_kind)
+    return usable[chosen.place][0], chosen
+
+
+def _lower(highest: Solution, rig: Rig) -> Iterator[Solution]:
+    """Solutions at lower cut-offs, until the filter is too long for the motion."""
+    rows = highest.rows
+    for share in BELOW:
+        smooth = GaussianFilter.from_cutoff(rows.conditioning.filter.cutoff * float(share), rows.scope.sample_period)
+        try:
+            through = rows.through(smooth)
+        except UndeterminedError:
+            return
+        hum = tuple(line for line in highest.hypothesis.hum if passes(line, smooth.width))
+        yield solution_of(through, replace(highest.hypothesis, step=plain(through).step, hum=hum), rig.offset)
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """An estimate at one cut-off: J, K_w and K_0, nan where undetermined.
+
+    Attributes:
+        cutoff: half-power frequency - Hz.
+        theta, by_noise: values, and half widths of their intervals of 95 % as noise alone makes them (3,).
+        misfit: half widths from what stands above the noise (3,); asked only where they may decide, as they take long.
+    """
+
+    cutoff: float
+    theta: Array
+    by_noise: Array
+    misfit: Callable[[], Array]
+
+    @classmethod
+    def of(cls, found: Solution, kind: AxisKind) -> Tried:
+        """The estimate of a solution."""
+        unknown = left_open(found.whole, kind)
+        places = [found.names.index(term) for term in TERMS]
+        known = np.where([term in unknown for term in TERMS], np.nan, 1.0)
+        by_noise = found.reach * found.errors[places] * known
+        cutoff = found.rows.conditioning.filter.cutoff
+        return cls(cutoff, found.theta[places] * known, by_noise, lambda: found.misfit[places])
+
+    @cached_property
+    def half_widths(self) -> Array:
+        """Of the intervals of 95 % (3,)."""
+        return np.hypot(self.by_noise, self.misfit())
+
+    def agrees(self, other: Tried) -> bool:
+        """Whether the parameters that both determine agree within their intervals."""
+        away = np.abs(self.theta - other.theta) - ROUNDING * np.abs(self.theta)
+        if not np.any(away > np.hypot(self.by_noise, other.by_noise)):  # nan: undetermined
+            return True
+        return not np.any(away > np.hypot(self.half_widths, other.half_widths))
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The chosen of several cut-offs, and what the others imply.
+
+    Attributes:
+        place: of the chosen one.
+        doubt: possible bias of J, K_w and K_0 (3,) as the estimate moves with the cut-off; 0 at the highest.
+        warnings: that the estimate moves with the cut-off.
+    """
+
+    place: int
+    doubt: Array
+    warnings: tuple[str, ...] = ()
+
+
+def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
+    """The choice among estimates that determine the inertia, from high to low cut-off."""
+    accepted = [usable[-1]]
+    for tried in usable[-2::-1]:
+        if not all(tried.agrees(lower) for lower in accepted):
+            break
+        accepted.append(tried)
+    rejected = usable[: len(usable) - len(accepted)]
+    if not rejected and all(one.by_noise[0] >= NARROWER * usable[0].half_widths[0] for one in usable[1:]):
+        return Chosen(0, np.zeros(3))
+    beyond = rejected[-1] if rejected else accepted[-1]
+    doubts = [_doubt(tried, beyond, accepted[:k]) for k, tried in enumerate(accepted)]
+    wide = [float(np.hypot(tried.half_widths[0], off[0])) for tried, off in zip(accepted, doubts, strict=True)]
+    best = int(np.argmin(wide))
+    if not rejected and wide[best] >= NARROWER * wide[-1]:
+        best = len(accepted) - 1
+    warnings = (_moves(accepted[best], usable, kind),) if rejected else ()
+    return Chosen(len(usable) - 1 - best, doubts[best], warnings)
+
+
+def _doubt(taken: Tried, beyond: Tried, lower: Sequence[Tried]) -> Array:
+    """Possible bias of J, K_w and K_0 (3,): at most what they moved, and what lower cut-offs allow."""
+    moved = np.abs(beyond.theta - taken.theta)
+    room = [np.abs(other.theta - taken.theta) + other.half_widths for other in lower]
+    return np.nan_to_num(np.fmin.reduce([moved, *room]))
+
+
+def _moves(taken: Tried, usable: Sequence[Tried], kind: AxisKind) -> str:
+    """That a quantity moves with the cut-off, and how."""
+    away = [np.abs(tried.theta - taken.theta) / np.hypot(tried.half_widths, taken.half_widths) for tried in usable]
+    term = int(np.argmax(np.nan_to_num(away).max(axis=0)))
+    course = ", ".join(f"{tried.theta[term]:.4g} at {tried.cutoff:.3g} Hz" for tried in usable)
+    return (
+        f"{kind.parameter(TERMS[term])} moves with the filter's cut-off ({course}): taken at {taken.cutoff:.3g} Hz, "
+        f"its interval counts what it may still be off; {TELLS}"
+    )
+
+
+def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
+    """Estimate from a solution of a recording, without a constant where it moves in one direction only."""
+    kind, unit, parameters = rig.axis_kind, gathered.effort_unit, {}
+    require_inertia(gathered.solution.whole, kind)
+    for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
+        margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
+        parameter = _parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
+        parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
+    estimate = _estimate_of([gathered], [found], parameters, found.power, rig)
+    remaining = tuple(_remaining(estimate))
+    estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *remaining))
+    return sound(estimate, gathered.solution.whole, rig, (*gathered.warnings, *remaining))
+
+
+def _parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
+    """A coefficient of a solution with the interval that its covariance gives it."""
+    value, error = found.of(term, found.theta), found.of(term, found.errors)
+    interval = (value - found.reach * error, value + found.reach * error)
+    return Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
+
+
+def _estimate_of(
+    gathered: Sequence[Gathered],
+    solutions: Sequence[Solution],
+    parameters: Mapping[str, Parameter],
+    left: float,
+    rig: Rig,
+) -> Estimate:
+    """The estimate of recordings, with what explains them; `left`: squared residuals - the effort's unit squared."""
+    kind, counts = rig.axis_kind, np.array([one.solution.whole.count for one in gathered])
+    squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
+    if squares == 0.0:
+        reason = "the effort is zero throughout"
+        raise UndeterminedError(kind.in_words(INERTIA), reason, "the motor's current or torque too")
+    count = int(counts.sum())
+    floor = math.sqrt(float(counts @ np.square([found.floor.coloured for found in solutions])) / count)
+    filters = [one.solution.rows.conditioning.filter for one in gathered]
+    return Estimate(
+        estimator="regression",
+        parameters={**parameters, **load_inertia(parameters, rig)},
+        residual=Residual(math.sqrt(left / count), floor, math.sqrt(left / squares), gathered[0].effort_unit),
+        samples_read=sum(one.samples_read for one in gathered),
+        samples_used=int(counts @ [smooth.stride for smooth in filters]),
+        cutoff=min(smooth.cutoff for smooth in filters),
+        source=" and ".join(sorted({one.solution.rows.conditioning.source for one in gathered})),
+        explained=1.0 - left / max(squares - total**2 / count, 1e-300),
+        checks=joined([one.checks for one in gathered]),
+    )
+
+
+def _remaining(estimate: Estimate) -> Iterator[str]:
+    """What share is explained, where more than noise is left."""
+    residual = estimate.residual
+    if residual.rms > NOISE_ALONE * residual.noise_floor:
+        yield (
+            f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
+            f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
+        )
+
+
+def _shifted(found: Solution) -> Iterator[str]:
+    (shift, error), period = found.shift, found.rows.scope.sample_period
+    if abs(shift) > period and abs(shift) > SURE * error and found.shift_explains > A_DELAY:
+        yield (
+            f"current and speed are {shift * 1e3:.3g} ms apart, more than a sample ({period * 1e3:.3g} ms): "
+            "a lag in the drive or its filters, which bench diagnose can tell"
+        )
+
+
+def _estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
+    """Estimate from several recordings of one axis."""
+    _require_distinct(gathered)
+    kind, unit = rig.axis_kind, gathered[0].effort_unit
+    members = [_member(one, rig) for one in gathered]
+    excesses = {term: _excess(members, kind, term) for term in members[0].terms}
+    theta, errors, reaches = _jointly(members, list(excesses.values()))
+    parameters = {}
+    for term, value, error, reach in zip(excesses, theta.tolist(), errors.tolist(), reaches.tolist(), strict=True):
+        found = Parameter(value, kind.parameter_unit(term, unit), error, (value - reach, value + reach))
+        tolerance = float(np.mean([_tolerance(one, term) for one in gathered]))
+        parameters[kind.parameter(term)] = found.widened(tolerance)
+    away = [theta - each.theta for each in members]
+    left = sum(each.solution.power + float(d @ each.matrix @ d) for each, d in zip(members, away, strict=True))
+    estimate = replace(
+        _estimate_of(gathered, [each.solution for each in members], parameters, left, rig),
+        warnings=(
+            *(f"{each.alone.origin}: {warning}" for each in members for warning in each.warnings),
+            *(f"{each.alone.origin} alone: {each.alone.reason}" for each in members if each.alone.reason),
+            *_differences(members, excesses, kind),
+            *_offset(members, rig),
+        ),
+        recordings=tuple(each.alone for each in members),
+        between=_between(members, kind),
+    )
+    spread, suspicions = excesses[INERTIA].variance, ()
+    if spread:
+        apart = f"{math.sqrt(spread):.2g} {estimate[kind.inertia].unit}"
+        suspicions = (f"it differs from recording to recording by {apart}, and few are given",)
+    return sound(estimate, _joined(gathered), rig, suspicions)
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """One of several recordings: its information about the axis, and its estimate alone.
+
+    Attributes:
+        gathered: it summed up.
+        terms: that all recordings share: J, K_w, K_0 and, where it is fitted, offset (s,).
+        solution: its own fit, with these columns and its own shift and hum.
+        theta: coefficients of these in it (s,).
+        matrix: of the normal equations of these, its own shift and hum eliminated (s, s).
+        covariances: of these, in standard errors and in half widths of intervals of 95 % (s, s) each.
+        alone: its estimate alone.
+        own: the same without the rig's tolerances, which are common to all recordings.
+        along: if it moves in one direction only, its friction in that direction, offset included; else None.
+        warnings: of its own fit.
+    """
+
+    gathered: Gathered
+    terms: tuple[str, ...]
+    solution: Solution
+    theta: Array
+    matrix: Array
+    covariances: tuple[Array, Array]
+    alone: Alone
+    own: Mapping[str, Parameter]
+    along: Parameter | None
+    warnings: tuple[str, ...]
+
+
+def _member(gathered: Gathered, rig: Rig) -> Member:
+    """One recording fitted alone.
+
+    A parameter that it does not determine alone is as much wider than by its own fit as friction along one direction.
+    """
+    kind, terms = rig.axis_kind, (INERTIA, VISCOUS, COULOMB, *([OFFSET] if rig.offset else []))
+    solution, one_way = gathered.solved(rig.offset), gathered.solution.whole.one_way is not None
+    bare = gathered.solved(offset=False) if one_way else solution
+    found, reason = None, ""
+    try:
+        found = _estimated_alone(gathered, bare, rig)
+    except RefusedEstimateError as refusal:
+        found, reason = refusal.estimate, str(refusal)
+    except UndeterminedError as refusal:
+        reason = str(refusal)
+    known, warnings = ({}, ()) if found is None else (found.parameters, found.warnings)
+    kept = {name: one for name, one in known.items() if name != kind.inertia or one.ci95[0] * one.ci95[1] > 0.0}
+    own, along, wider = dict(kept), None, (1.0, solution.reach)
+    names = {kind.parameter(term): term for term in terms} | {"load_moment_of_inertia": INERTIA}
+    for name in own.keys() & names.keys():
+        own[name] = _without(own[name], _tolerance(gathered, names[name]))
+    if one_way:
+        along = _parameter_of(bare, COULOMB, kind, gathered.effort_unit)
+        along = along.widened(bare.of(COULOMB, bare.misfit), gathered.doubt[COULOMB])
+        error = max(bare.of(COULOMB, bare.errors), 1e-300)
+        wider = along.std_error / error, along.half_width / error
+    at = [solution.names.index(term) for term in terms]
+    covariance, scales = solution.covariance[np.ix_(at, at)], []
+    for term, variance in zip(terms, np.diag(covariance).tolist(), strict=True):
+        one, error = own.get(kind.parameter(term)), math.sqrt(max(variance, 1e-300))
+        scales.append(wider if one is None else (one.std_error / error, one.half_width / error))
+    standard, half = (covariance * np.outer(scale, scale) for scale in np.array(scales).T)
+    theta, matrix, alone = solution.theta[at], _eliminated(solution, at), Alone(solution.rows.origin, kept, reason)
+    return Member(gathered, terms, solution, theta, matrix, (standard, half), alone, own, along, warnings)
+
+
+def _eliminated(solution: Solution, kept: list[int]) -> Array:
+    """Matrix of normal equations of some columns, all other columns eliminated, positive semidefinite (s, s).
+
+    A column with less power than expected from its noise carries no information.
+    """
+    equations, held = solution.equations, solution.held
+    whole, gram, noise = equations.matrix, equations.total, equations.count * equations.noise
+    rest = {k: name for k, name in enumerate(equations.names) if k not in kept}
+    own = [k for k, name in rest.items() if not (held and name == MISALIGNMENT)]
+    beside = whole[np.ix_(own, kept)]
+    taken, _ = solved(gram[np.ix_(own, own)], beside, noise[np.ix_(own, own)])
+    scale = np.sqrt(np.diag(gram)[kept])
+    power, ways = np.linalg.eigh((whole[np.ix_(kept, kept)] - beside.T @ taken) / np.outer(scale, scale))
+    return (ways * np.maximum(power, 0.0)) @ ways.T * np.outer(scale, scale)
+
+
+def _tolerance(gathered: Gathered, term: str) -> float:
+    """Half width of a coefficient from the rig's tolerances; of an offset that was not fitted it is in the friction."""
+    return gathered.tolerance.get(term, gathered.tolerance[COULOMB])
+
+
+def _without(found: Parameter, reach: float) -> Parameter:
+    """A parameter less an independent error of such a half width at 95 %."""
+    half = math.sqrt(max(found.half_width**2 - reach**2, 0.0))
+    error = math.sqrt(max(found.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
+    return replace(found, std_error=error, ci95=(found.value - half, found.value + half))
+
+
+def _jointly(members: Sequence[Member], excesses: Sequence[Excess]) -> tuple[Array, Array, Array]:
+    """Coefficients of recordings that vary beyond their own errors, standard errors, half widths at 95 % (s,) each."""
+    between = np.array([found.variance for found in excesses])
+    # the information of each: its matrix over the mean variance that its covariance implies
+    implied = [float(np.trace(each.matrix @ each.covariances[0])) / between.size for each in members]
+    known = np.array([each.matrix / max(mean, 1e-300) for each, mean in zip(members, implied, strict=True)])
+    known = np.linalg.solve(np.eye(between.size) + known * between, known)
+    moment = np.einsum("kij,kj->i", known, np.array([each.theta for each in members]))
+    theta, inverse = solved(known.sum(axis=0), moment, np.zeros_like(known[0]))
+    wide = between * np.array([found.reach for found in excesses]) ** 2
+    variance, reached = np.zeros(theta.size), np.zeros(theta.size)
+    for share, each in zip(inverse @ known, members, strict=True):
+        error, half_width = (np.diag(share @ found @ share.T) for found in each.covariances)
+        variance += error + share**2 @ between
+        reached += half_width + share**2 @ wide
+    return theta, np.sqrt(variance), np.sqrt(reached)
+
+
+def _require_distinct(gathered: Sequence[Gathered]) -> None:
+    if not gathered:
+        raise InputError("recordings", "found none", "allowed: at least one")
+    for one, other in combinations(gathered, 2):
+        if one.effort_unit != other.effort_unit:
+            found = f"gives its effort in {other.effort_unit}, {one.solution.rows.origin} in {one.effort_unit}"
+            raise InputError(
+                other.solution.rows.origin, found, "allowed: recordings of one kind of effort; say kT in the rig"
+            )
+        if np.array_equal(one.solution.whole.gram, other.solution.whole.gram):
+            found = f"found the same recording as {one.solution.rows.origin}"
+            raise InputError(
+                other.solution.rows.origin, found, "allowed: each recording once; twice would count as two"
+            )
+
+
+def _joined(gathered: Sequence[Gathered]) -> NormalEquations:
+    """Equations of all recordings in their common columns: J, K_w, K_0, misalignment, constant."""
+    parts = [one.solution.whole.only(lambda name: name in (*BASE, OFFSET)) for one in gathered]
+    noise = sum((part.count * part.noise for part in parts), np.zeros_like(parts[0].noise))
+    return replace(join(parts), noise=noise / sum(part.count for part in parts))
+
+
+def _excess(members: Sequence[Member], kind: AxisKind, term: str) -> Excess:
+    """Variance between recordings in a quantity.
+
+    Runs of one direction determine the sum of friction and offset; it is compared among runs of the same direction.
+    """
+    name = kind.parameter(term)
+    groups: dict[str, list[Parameter]] = {}
+    for member in members:
+        if name in member.own:
+            groups.setdefault("both", []).append(member.own[name])
+        elif term == COULOMB and member.along is not None:
+            groups.setdefault(str(member.gathered.solution.whole.one_way), []).append(member.along)
+    return excess(list(groups.values()))
+
+
+def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind: AxisKind) -> Iterator[str]:
+    """Warnings of quantities in which the recordings differ, and of those that cannot be compared."""
+    differing = [term for term, found in excesses.items() if found.chance < ALARM / len(excesses)]
+    for term in differing:
+        name = kind.parameter(term)
+        values = [m.alone.parameters[name] for m in members if name in m.alone.parameters]
+        yield spread_warning(name, values or [member.along for member in members if member.along is not None])
+    silent = [kind.parameter(term) for term, found in excesses.items() if not found.degrees and term != OFFSET]
+    if differing and silent:
+        yield (
+            f"no two recordings tell {' or '.join(silent)} alike, so the interval does not count how recordings "
+            "differ in it: record each direction twice"
+        )
+
+
+def _offset(members: Sequence[Member], rig: Rig) -> Iterator[str]:
+    """A warning of an offset that is not fitted, which runs of one direction each attribute to friction."""
+    if rig.offset or all(member.along is None for member in members):
+        return
+    kind, asked = rig.axis_kind, rig.model_copy(update={"offset": True})
+    members = [_member(each.gathered, asked) for each in members]
+    theta, _, reaches = _jointly(members, [_excess(members, kind, term) for term in members[0].terms])
+    value, reach = float(theta[-1]), float(reaches[-1])
+    if abs(value) > reach:
+        unit = kind.parameter_unit(OFFSET, members[0].gathered.effort_unit)
+        yield (
+            f"the recordings hold a {kind.in_words(OFFSET)} of {value:.3g} ± {reach:.2g} {unit}, which was not fitted: "
+            "set `offset = true` in the rig, or give --offset"
+        )
+
+
+def _between(members: Sequence[Member], kind: AxisKind) -> dict[str, Between]:
+    """Spread of each quantity that at least two recordings determine alone; the shift is no property of the axis."""
+    own = [member.own for member in members]
+    found = {
+        name: [each[name] for each in own if name in each] for name in dict.fromkeys(n for each in own for n in each)
+    }
+    found.pop(kind.parameter(MISALIGNMENT), None)
+    return {name: between(values) for name, values in found.items() if len(values) > 1}

@@ -12,8 +12,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import NORMAL95
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.arrays import NORMAL95, Array
+from bench.axis_kind import INERTIA, VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.estimate import Estimate, Residual, load_inertia
@@ -27,7 +27,7 @@ LEAST_SPEED = 20.0
 ACCELERATION_SHARE = 0.25
 
 
-def backward_difference(values: NDArray[np.float64], sample_period: float) -> NDArray[np.float64]:
+def backward_difference(values: Array, sample_period: float) -> Array:
     """u'[k] = (u[k] - u[k-1])/T of samples (n,) - any unit - a period T - s - apart, first value 0 - unit per second.
 
     Raises:
@@ -38,9 +38,7 @@ def backward_difference(values: NDArray[np.float64], sample_period: float) -> ND
     return np.diff(values, prepend=values[:1]) / sample_period
 
 
-def mean_inertia(
-    acceleration: NDArray[np.float64], torque: NDArray[np.float64]
-) -> tuple[float, float, NDArray[np.bool_]]:
+def mean_inertia(acceleration: Array, torque: Array) -> tuple[float, float, NDArray[np.bool_]]:
     """J - kg*m**2 - as the mean of M/alpha - N*m, rad/s**2, (n,) - over |alpha| >= alpha_max/4, without friction.
 
     Beside it alpha_max, and which samples were taken (n,).
@@ -55,9 +53,7 @@ def mean_inertia(
     return float(np.mean(torque[taken] / acceleration[taken])), largest, taken
 
 
-def least_squares(
-    acceleration: NDArray[np.float64], velocity: NDArray[np.float64], torque: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+def least_squares(acceleration: Array, velocity: Array, torque: Array) -> tuple[Array, Array, float]:
     """J, K_w and K_0 of M = J*alpha + K_w*omega + K_0*sgn(omega) by least squares over the fast samples (n,).
 
     Returns:
@@ -91,16 +87,10 @@ def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
     acceleration = np.concatenate([backward_difference(velocity[part], trace.sample_period) for part in trace.segments])
     fast = np.abs(velocity) >= LEAST_SPEED
     theta, std_error, error = least_squares(acceleration[fast], velocity[fast], torque[fast])
+    numbers = zip(rig.axis_kind.base_parameters(unit).items(), theta.tolist(), std_error.tolist(), strict=True)
     parameters = {
-        rig.axis_kind.parameter(column): Parameter(
-            float(value),
-            rig.axis_kind.parameter_unit(column, unit),
-            float(deviation),
-            (float(value - reach), float(value + reach)),
-        )
-        for column, value, deviation, reach in zip(
-            (INERTIA, VISCOUS, COULOMB), theta, std_error, NORMAL95 * std_error, strict=True
-        )
+        name: Parameter(value, label, error, (value - NORMAL95 * error, value + NORMAL95 * error))
+        for (name, label), value, error in numbers
     }
     rms = math.sqrt(error / np.count_nonzero(fast))
     relative = math.sqrt(error / np.sum(torque[fast] ** 2))

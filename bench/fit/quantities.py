@@ -17,10 +17,9 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Contact, Effect, FiltersMotion, is_pitch
 from bench.effects.signals import Base, Signals
 from bench.fit.fit import Fit, least_squares
-from bench.fit.layout import lay_out
-from bench.fit.normal_equations import block_edges, solved
+from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
-from bench.fit.solution import estimated, misfit
+from bench.fit.solution import block_edges, estimated, misfit, solved
 from bench.parameter import Parameter
 
 #: Step of a numerical derivative, relative.
@@ -62,10 +61,9 @@ class Uncertain:
     def base(self, units: Mapping[str, str]) -> dict[str, Parameter]:
         """J, K_w and K_0 with their intervals; `units` by their names, in this order."""
         deviation = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))[: self.fitted.theta.size]
-        places = zip((INERTIA, VISCOUS, COULOMB), units.items(), strict=True)
         return {
             name: self.parameter(self.fitted.value(term), float(deviation[self.fitted.owners == term][0]), unit)
-            for term, (name, unit) in places
+            for term, (name, unit) in zip((INERTIA, VISCOUS, COULOMB), units.items(), strict=True)
         }
 
     def quantities(self, index: int, unit_of: Callable[[Effect, str], str]) -> dict[str, Parameter]:
@@ -85,33 +83,21 @@ class Uncertain:
             base = Base(*(float(point[:size][owners == name][0]) for name in (INERTIA, VISCOUS, COULOMB)))
             return term.effect.report(point[:size][owners == index].tolist(), tuple(shape), base)
 
-        deviations = self._deviations(values)
-        positive = term.effect.positive
-        return {
-            name: self.parameter(value, deviations[name], unit_of(term.effect, name), name in positive)
-            for name, value in values(self.values).items()
-        }
-
-    def _deviations(self, values: Callable[[Array], Mapping[str, float]]) -> dict[str, float]:
-        gradient: dict[str, list[float]] = {name: [] for name in values(self.values)}
-        for k, number in enumerate(self.values):
-            step = STEP * max(abs(float(number)), 1e-9)
-            up, down = self.values.copy(), self.values.copy()
-            up[k] += step
-            down[k] -= step
-            high, low = values(up), values(down)
-            for name, slopes in gradient.items():
-                slopes.append((high[name] - low[name]) / (2.0 * step))
-        found = {name: np.array(slopes) for name, slopes in gradient.items()}
-        return {name: float(np.sqrt(max(g @ self.covariance @ g, 0.0))) for name, g in found.items()}
+        steps, found = STEP * np.maximum(np.abs(self.values), 1e-9), {}
+        sides = [(values(self.values + step), values(self.values - step)) for step in np.diag(steps)]
+        for name, value in values(self.values).items():
+            slopes = np.array([high[name] - low[name] for high, low in sides]) / (2.0 * steps)
+            deviation = float(np.sqrt(max(slopes @ self.covariance @ slopes, 0.0)))
+            found[name] = self.parameter(value, deviation, unit_of(term.effect, name), name in term.effect.positive)
+        return found
 
 
 def uncertain(fitted: Fit) -> Uncertain:
     """Free numbers of a fit with their covariance; where not all rows are determined, as in a robust search."""
-    slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in _free(term.effect, fitted.rows))
-    covariance, reach = _by_residual(fitted, slots)
-    place = fitted.theta.size
-    covariance[place:, place:] += np.diag(_known(fitted, slots) ** 2)
+    slots, place = _free_shapes(fitted), fitted.theta.size
+    known = _known(fitted, slots)
+    covariance, reach = _by_residual(fitted, slots, known)
+    covariance[place:, place:] += np.diag(known**2)
     for index, term in enumerate(fitted.terms):
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
         if own and isinstance(term.effect, Contact):
@@ -123,17 +109,19 @@ def uncertain(fitted: Fit) -> Uncertain:
     return Uncertain(fitted, np.concatenate([fitted.theta, shapes]), covariance, reach, slots)
 
 
-def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> tuple[Array, float]:
+def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) -> tuple[Array, float]:
     """Covariance (p + s, p + s) from the residual, what stands above noise included, and the reach of intervals."""
-    conditioning = fitted.rows.conditioning
-    jacobian, weight = _jacobian(fitted.rows, fitted, slots), _weight(fitted)
+    conditioning, jacobian = fitted.rows.conditioning, _jacobian(fitted.rows, fitted, slots)
+    weight = np.ones(fitted.left.size)
+    if not fitted.determined.all():  # a row that leaves more than noise counts less and less
+        weight = 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
     noise = np.pad(fitted.layout.noise, (0, len(slots)))
     numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
     edges = block_edges(fitted.time, conditioning.filter.width)
     count = np.diff(edges)
     scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers)
-    shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots), (fitted.theta.size, 0))
+    shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots, known), (fitted.theta.size, 0))
     both = np.ix_(shown, shown)
     inverse = np.zeros(noise.shape)
     inverse[both] = solved(((jacobian.T * weight) @ jacobian)[both], numbers[shown], count.sum() * noise[both])[1]
@@ -144,19 +132,11 @@ def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> tuple[Array
     return covariance, reach
 
 
-def _weight(fitted: Fit) -> Array:
-    """Of the rows (m,): where not all are determined, one that leaves more than noise counts less and less."""
-    if fitted.determined.all():
-        return np.ones(fitted.rows.effort.size)
-    return 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
-
-
-def _least(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
+def _least(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) -> Array:
     """Norm of a shape's derivative (s,) below which noise hides it: of an instant that is known by itself; else 0.
 
     None shows one between rows that are not determined: it moves the impacts behind it, which are not there.
     """
-    known = _known(fitted, slots)
     instants = np.array([fitted.terms[index].effect.shapes[k].quantity.instant for index, k in slots], dtype=bool)
     least = np.divide(fitted.floor, known, out=np.zeros(known.size), where=instants & (known > 0.0))
     after = np.clip(np.searchsorted(fitted.time, [fitted.terms[i].shape[k] for i, k in slots]), 1, fitted.time.size - 1)
@@ -174,11 +154,14 @@ def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
     return np.array([errors[index][k] for index, k in slots])
 
 
-def _free(effect: Effect, rows: Rows) -> list[int]:
-    """Places of the shapes that are free numbers of the fit: not those that are whole, nor those that follow."""
-    return [
-        k for k, shape in enumerate(effect.shapes) if shape.step and (not shape.whole or is_pitch(shape, rows.scope))
-    ]
+def _free_shapes(fitted: Fit) -> tuple[tuple[int, int], ...]:
+    """(Term, place in its shape) of what is a free number of the fit: none that is whole, or that follows."""
+    return tuple(
+        (index, k)
+        for index, term in enumerate(fitted.terms)
+        for k, shape in enumerate(term.effect.shapes)
+        if shape.step and (not shape.whole or is_pitch(shape, fitted.scope))
+    )
 
 
 def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
@@ -206,7 +189,7 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
 
     def refitted(change: Callable[[Signals], Signals]) -> Array:
         layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis, fitted.missing)
-        columns = np.where(layout.of_effects, layout.columns, fitted.columns)
+        columns = np.where([isinstance(owner, int) for owner in layout.owners], layout.columns, fitted.columns)
         return least_squares(columns, fitted.effort, layout.noise) - plain
 
     def older(s: Signals) -> Signals:

@@ -72,13 +72,13 @@ def refine(
     trial = identify(seen.trace, rig)
     progress(0.1)
     held_out = unseen.gap(trial), unseen.gap(seen.polished(trial))
-    if held_out[1] > held_out[0]:
-        gap = _Tracking(trace, rig).gap(start)
-        return start, Refinement((gap, gap), held_out, accepted=False)
-    progress(0.5)
     whole = _Tracking(trace, rig)
+    before = whole.gap(start)
+    if held_out[1] > held_out[0]:
+        return start, Refinement((before, before), held_out, accepted=False)
+    progress(0.5)
     polished = whole.polished(start)
-    return polished, Refinement((whole.gap(start), whole.gap(polished)), held_out, accepted=True)
+    return polished, Refinement((before, whole.gap(polished)), held_out, accepted=True)
 
 
 class _Tracking:
@@ -111,8 +111,7 @@ class _Tracking:
         )
         parameters = dict(start.parameters)
         for name, value in zip(self.names, found.x.tolist(), strict=True):
-            low, high = (bound - start[name].value + value for bound in start[name].ci95)
-            parameters[name] = replace(start[name], value=value, ci95=(low, high))
+            parameters[name] = start[name].at(value, positive=False)
         parameters |= load_inertia(parameters, self.rig)
         return replace(start, parameters=parameters, estimator="regression, polished by simulation")
 

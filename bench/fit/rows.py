@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Any, TypedDict, TypeVar
+from functools import cache, cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,7 +102,6 @@ class Rows:
         conditioning: source, noises and filter.
         origin: of the recording.
         scope: what it is able to show.
-        effort: filtered motor torque at the used rows, less what is known to act - N*m (N) - (m,).
         made_by, motion: what tells its signals, and its motion alone, from those reported; () as reported.
         memory: columns made before.
         still: whether what follows the motion behind a coupling is kept while the motion is corrected a little.
@@ -112,7 +111,6 @@ class Rows:
     conditioning: Conditioning
     origin: str
     scope: Scope
-    effort: Array
     made_by: Hashable = ()
     motion: Hashable = ()
     memory: Memory = field(default_factory=Memory, compare=False)
@@ -157,13 +155,12 @@ class Rows:
         largest = float(np.abs(effort).max())
         peak_effort = float(constant.torque(np.asarray(peak))) if constant and peak else peak_effort or largest
         begins = float(trace.time[0]) if begins is None else begins
-        stretches = []
-        for part in _long(trace.segments, conditioning.filter):
-            signals = _signals(trace, effort, part, conditioning, peak_effort, begins)
-            stretches.append(Stretch.of(signals, part.start, conditioning.filter))
-        clear = _require_clear(stretches, conditioning, trace.origin, trace.axis_kind)
-        scope = _scope(trace, rig, clear, conditioning)
-        return cls(clear, conditioning, trace.origin, scope, _explained(clear, conditioning.filter))
+        parts = [
+            (_signals(trace, effort, part, conditioning, peak_effort, begins), part.start)
+            for part in trace.segments
+            if part.stop - part.start > 4 * conditioning.filter.margin
+        ]
+        return cls._through(conditioning, parts, trace.origin, _scope(trace, rig, conditioning, peak_effort))
 
     def through(self, smooth: GaussianFilter) -> Rows:
         """The same recording through a filter that is no narrower.
@@ -171,12 +168,35 @@ class Rows:
         Raises:
             UndeterminedError: it never moves clearly for as long as the filter reaches.
         """
-        conditioning = replace(self.conditioning, filter=smooth)
-        longer = [part for part in self.stretches if part.signals.time.size > 4 * smooth.margin]
-        parts = [Stretch.of(part.signals, part.start, smooth) for part in longer]
-        clear = _require_clear(parts, conditioning, self.origin, self.scope.kind)
-        scope = replace(self.scope, width=smooth.width, **_moved(clear, conditioning))
-        return Rows(clear, conditioning, self.origin, scope, _explained(clear, smooth))
+        parts = [(part.signals, part.start) for part in self.stretches if part.signals.time.size > 4 * smooth.margin]
+        return self._through(replace(self.conditioning, filter=smooth), parts, self.origin, self.scope)
+
+    @classmethod
+    def _through(
+        cls, conditioning: Conditioning, parts: Iterable[tuple[Signals, int]], origin: str, scope: Scope
+    ) -> Rows:
+        """Stretches of raw signals, each with the place of its first sample, through a filter."""
+        stretches = tuple(Stretch.of(signals, start, conditioning.filter) for signals, start in parts)
+        if not any(part.used.any() for part in stretches):
+            reason = f"no filtered sample of {origin} moves clearly in one direction"
+            raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, scope.kind))
+        rows = cls(stretches, conditioning, origin, scope)
+        return replace(rows, scope=rows._shown())
+
+    def _shown(self) -> Scope:
+        """What the stretches that the filter leaves are able to show."""
+        signals = [part.signals for part in self.stretches]
+        ends = {s.began: float(s.time[-1]) for s in signals}
+        starts = {s.began: float(s.time[0]) for s in reversed(signals)}
+        return replace(
+            self.scope,
+            width=self.conditioning.filter.width,
+            one_way=bool(0.5 * (1.0 - abs(float(np.mean(self.values(lambda s: s.sign))))) < ONE_WAY),
+            duration=max(ends[begun] - starts[begun] for begun in starts),
+            travel=max(float(s.position.max()) for s in signals) - min(float(s.position.min()) for s in signals),
+            top_speed=max(float(np.abs(s.velocity).max()) for s in signals),
+            rms_speed=rms(self.values(lambda s: s.velocity)),
+        )
 
     @property
     def correlation(self) -> float:
@@ -189,22 +209,17 @@ class Rows:
         stretches = tuple(replace(p, signals=change(p.signals)) for p in self.stretches)
         pairs = [(new.signals, old.signals) for new, old in zip(stretches, self.stretches, strict=True)]
         moved = any(new.position is not old.position or new.velocity is not old.velocity for new, old in pairs)
-        effort = self.effort
-        if any(new.effort is not old.effort for new, old in pairs):
-            effort = _explained(stretches, self.conditioning.filter)
-        memory = self.memory if made_by is not None else Memory()
-        made_by = object() if made_by is None else made_by
+        made_by, memory = (object(), Memory()) if made_by is None else (made_by, self.memory)
         motion = made_by if moved and not self.still else self.motion
-        return replace(self, stretches=stretches, effort=effort, made_by=made_by, motion=motion, memory=memory)
+        return replace(self, stretches=stretches, made_by=made_by, motion=motion, memory=memory)
 
     def selected(self, kept: Callable[[Array], NDArray[np.bool_]]) -> Rows:
         """Those of the rows that are kept, by their times (r,) - s."""
         stretches = tuple(
-            replace(part, used=part.used & kept(self._picked(part, _since_first(part.signals))))
+            replace(part, used=part.used & kept(self._picked(part, part.signals.time + part.signals.began)))
             for part in self.stretches
         )
-        chosen = np.concatenate([new.used[old.used] for new, old in zip(stretches, self.stretches, strict=True)])
-        return replace(self, stretches=stretches, effort=self.effort[chosen], memory=Memory())
+        return replace(self, stretches=stretches, memory=Memory())
 
     @property
     def held(self) -> Rows:
@@ -214,13 +229,13 @@ class Rows:
     @cached_property
     def time(self) -> Array:
         """Of the used rows, since the start of the recording, or of the first of several - s - (m,)."""
-        return self.values(_since_first)
+        return self.values(lambda s: s.time + s.began)
 
-    @property
-    def measured(self) -> Array:
-        """Filtered motor torque at the used rows, what is known to act beside the axis included - N*m (N) - (m,)."""
-        known = self.stretches[0].signals.known
-        return self.effort + self.table(known_of)[:, 0] if known else self.effort
+    @cached_property
+    def effort(self) -> Array:
+        """Filtered motor torque at the used rows, less what is known to act - N*m (N) - (m,)."""
+        effort = self.kept(effort_of)[:, 0]
+        return effort - self.kept(known_of)[:, 0] if self.stretches[0].signals.known else effort
 
     @property
     def starts(self) -> tuple[float, ...]:
@@ -230,8 +245,7 @@ class Rows:
     def samples(self) -> NDArray[np.int64]:
         """Index into the recording of every used row (m,)."""
         smooth = self.conditioning.filter
-        found = [part.start + smooth.margin + smooth.stride * np.flatnonzero(part.used) for part in self.stretches]
-        return np.concatenate(found)
+        return np.concatenate([part.start + smooth.margin + smooth.stride * part.places for part in self.stretches])
 
     def values(self, pick: Callable[[Signals], Array]) -> Array:
         """Raw values at the used rows (m,)."""
@@ -248,7 +262,10 @@ class Rows:
             columns: of the raw signals of a stretch, or of each stretch.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
         """
-        return _table(self.stretches, self.conditioning.filter, columns, lag)
+        smooth = self.conditioning.filter
+        tables = [columns(part.signals) for part in self.stretches] if callable(columns) else columns
+        parts = [smooth.columns(table, lag, part.places) for table, part in zip(tables, self.stretches, strict=True)]
+        return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
 
     def against(self, targets: Array, lag: float = 0.0) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
         """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself."""
@@ -257,24 +274,24 @@ class Rows:
         spread = [np.zeros((targets.shape[1], part.used.size)) for part in self.stretches]
         for part, whole, chosen in zip(self.stretches, spread, own, strict=True):
             whole[:, part.places] = chosen
-        back: dict[tuple[int, int], Array] = {}
 
-        def product(number: int, values: Array, order: int) -> Array:
-            if (number, order) not in back:
-                back[number, order] = smooth.backwards(spread[number], values.size, order, lag)
-            return back[number, order] @ values
+        @cache
+        def back(number: int, size: int, order: int) -> Array:
+            return smooth.backwards(spread[number], size, order, lag)
 
         def products(columns: Callable[[Signals], Sequence[Column]]) -> Array:
-            tables = enumerate(columns(part.signals) for part in self.stretches)
-            parts = [[np.sum([product(at, *t) for t in column], axis=0) for column in table] for at, table in tables]
-            return np.sum(np.array(parts), axis=0)
+            found = []
+            for number, part in enumerate(self.stretches):
+                terms = [[back(number, s.size, order) @ s for s, order in each] for each in columns(part.signals)]
+                found.append([np.sum(column, axis=0) for column in terms])
+            return np.sum(np.array(found), axis=0)
 
         return products
 
-    def kept(self, made_of: Hashable, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
-        """The same, made once of what tells these columns from others."""
-        key = made_of, lag, self.made_by
-        return self.memory.get(key, lambda: self.table(columns, lag))
+    def kept(self, columns: Callable[..., Sequence[Column]], *values: Hashable, lag: Lag = 0.0) -> Array:
+        """The same of columns that a function makes of a stretch's raw signals and some values, made once."""
+        key = columns, values, lag, self.made_by
+        return self.memory.get(key, lambda: self.table(lambda signals: columns(signals, *values), lag))
 
 
 def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
@@ -286,42 +303,14 @@ def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
     )
 
 
+def effort_of(signals: Signals) -> list[Column]:
+    """The motor torque as it is reported, as the one column of a table."""
+    return [[(signals.effort, 0)]]
+
+
 def known_of(signals: Signals) -> list[Column]:
     """The torque that is known to act, as the one column of a table."""
     return [signals.known]
-
-
-def _long(segments: Iterable[slice], smooth: GaussianFilter) -> list[slice]:
-    """Those of the segments from which a filter leaves something."""
-    return [part for part in segments if part.stop - part.start > 4 * smooth.margin]
-
-
-def _require_clear(
-    stretches: Sequence[Stretch], conditioning: Conditioning, origin: str, kind: AxisKind
-) -> tuple[Stretch, ...]:
-    if not any(part.used.any() for part in stretches):
-        reason = f"no filtered sample of {origin} moves clearly in one direction"
-        raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, kind))
-    return tuple(stretches)
-
-
-def _explained(stretches: Sequence[Stretch], smooth: GaussianFilter) -> Array:
-    """Filtered motor torque less what is known to act, at the used rows - N*m (N) - (m,)."""
-    effort = _table(stretches, smooth, lambda s: [[(s.effort, 0)]])[:, 0]
-    if not stretches[0].signals.known:
-        return effort
-    return effort - _table(stretches, smooth, known_of)[:, 0]
-
-
-def _table(stretches: Sequence[Stretch], smooth: GaussianFilter, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
-    tables = [columns(part.signals) for part in stretches] if callable(columns) else columns
-    parts = [smooth.columns(table, lag, part.places) for table, part in zip(tables, stretches, strict=True)]
-    return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
-
-
-def _since_first(signals: Signals) -> Array:
-    """Time since the start of the first of the recordings - s."""
-    return signals.time + signals.began if signals.began else signals.time
 
 
 def _signals(
@@ -348,7 +337,8 @@ def _signals(
     )
 
 
-def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: Conditioning) -> Scope:
+def _scope(trace: Trace, rig: Rig, conditioning: Conditioning, peak_effort: float) -> Scope:
+    """What a recording is able to show, before any of its motion is looked at."""
     drift = 0.0
     if "position" not in trace:  # of the mean of integrated white noise, sigma*sqrt(T_s*T/3)
         drift = conditioning.source_noise * float(np.sqrt(trace.sample_period * (trace.time[-1] - trace.time[0]) / 3.0))
@@ -356,39 +346,15 @@ def _scope(trace: Trace, rig: Rig, stretches: Sequence[Stretch], conditioning: C
         kind=trace.axis_kind,
         source=conditioning.source,
         signals=frozenset(trace.signals),
+        one_way=False,
+        duration=0.0,
         sample_period=trace.sample_period,
         latched=rig.drive.control_period if rig.drive is not None else trace.sample_period,
         drift=drift,
         width=conditioning.filter.width,
-        peak_effort=stretches[0].signals.peak_effort,
+        travel=0.0,
+        top_speed=0.0,
+        rms_speed=0.0,
+        peak_effort=peak_effort,
         rotor_inertia=rig.motor.rotor_inertia or 0.0,
-        **_moved(stretches, conditioning),
     )
-
-
-class _Moved(TypedDict):
-    """What `Scope` says of the motion."""
-
-    one_way: bool
-    duration: float
-    travel: float
-    top_speed: float
-    rms_speed: float
-
-
-def _moved(stretches: Sequence[Stretch], conditioning: Conditioning) -> _Moved:
-    """What the stretches that a filter leaves show of the motion."""
-    signals, smooth = [part.signals for part in stretches], conditioning.filter
-    reach = slice(smooth.margin, -smooth.margin, smooth.stride)
-    used = [part.used for part in stretches]
-    speed = np.concatenate([s.velocity[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
-    direction = np.concatenate([s.sign[reach][: u.size][u] for s, u in zip(signals, used, strict=True)])
-    ends = {s.began: float(s.time[-1]) for s in signals}
-    starts = {s.began: float(s.time[0]) for s in reversed(signals)}
-    return {
-        "one_way": bool(0.5 * (1.0 - abs(float(np.mean(direction)))) < ONE_WAY),
-        "duration": max(ends[begun] - starts[begun] for begun in starts),
-        "travel": max(float(s.position.max()) for s in signals) - min(float(s.position.min()) for s in signals),
-        "top_speed": max(float(np.abs(s.velocity).max()) for s in signals),
-        "rms_speed": rms(speed),
-    }

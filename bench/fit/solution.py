@@ -1,9 +1,32 @@
-"""Least squares of a recording's normal equations with honest errors: correlated residuals, a shift, misfit."""
+"""From named columns to numbers with intervals: normal equations, their solution, the noise floor, honest errors.
+
+Normal equations are gathered block by block in time, in one pass over a recording of any length. Scores of the blocks
+give a covariance that counts correlated residuals; what stands above the noise floor widens the intervals.
+
+The floor is what the sensors' noise leaves in the residual. White noise of effort and speed passes filter and model
+with a known spectrum. Real noise need not be white: below the frequencies at which its level was read it may stand
+higher. The residual tells by how much where it is quietest - noise is there at every moment and every frequency, what a
+model lacks comes and goes with the motion - so the lowest tenth over windows of time is taken at each frequency, and a
+first-order spectrum is laid through.
+
+    S(omega) = S_white(omega)*(1 + c/(1 + (omega/omega_c)**2))
+
+Beside it stands what the last digit of a current in coarse steps leaves: white where noise of the sensor moves the
+signal over the steps; where it does not, the error follows the signal's slow way through them and passes the filter: it
+is then read off the modelled torque, rounded in the same steps.
+
+    e = q*round(M/q) - M, of which noise of a deviation s leaves exp(-2*(pi*s/q)**2)
+
+q - step; M - modelled torque - N*m (N).
+Source: B. Widrow, I. Kollar, Quantization Noise, 2008 (characteristic function of a dithered quantiser).
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -12,13 +35,24 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
-from bench.fit.determined import INDEPENDENT_SHARE
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.layout import DIGIT, Layout, cut_beforehand, rounding
-from bench.fit.noise import Floor, noise_power
-from bench.fit.normal_equations import Name, NormalEquations, normal_equations
-from bench.fit.rows import Rows
+from bench.effects.effect import Coupling
+from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out
+from bench.fit.rows import ONE_WAY, Rows
 
+#: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
+BLOCK_WIDTHS = 8.0
+#: Blocks that a covariance needs at most, of a recording and of each of its parts.
+BLOCKS = 512
+#: Power of a combination of scaled columns below which it is none but rounding.
+ROUNDING = 1e-13
+#: Share of the largest eigenvalue below which columns that are held against another one count as dependent.
+DEPENDENT = 1e-9
+#: Rows a block up to which a product for each costs more than sums over all of them; at 50 both cost the same.
+SHORT = 24
+#: Least share of a column's power that the others do not explain; 1 % inflates its standard error tenfold.
+INDEPENDENT_SHARE = 0.01
+#: Standard errors by which a shift of torque against speed must exceed a tick to be one: below, it is held at a tick.
+SURE = 3.0
 #: Andrews' bandwidth minimises the error of the covariance, not of an interval's coverage: on 400 recordings of 6 s
 #: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half
 #: again as wide, .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/fit/test_coverage.py).
@@ -34,6 +68,311 @@ LEVELS, QUARTERS = 8, 4
 NOISE_ALONE = 1.12
 #: Share of a column's power that one part of the rows may hold at most.
 MOST = 0.9
+#: Rows of a window, longer ones first, and windows of a length that it takes; else white noise is assumed.
+LENGTHS, ENOUGH = (128, 64), 24
+#: Lowest bin clear of the window's own leakage, and share of the strongest density below which a bin is not read.
+LOWEST, HEARD = 3, 0.03
+#: Power of a line in Hann's window, at its bin and the next.
+HANN = np.array([1.0, 4.0, 1.0]) / 6.0
+#: Quantile over windows that counts as quiet. Of noise every quantile tells the same level; of a lag's residual at
+#: 4 ms a bin of the lower quartile still held 600 times the noise, of the lowest tenth 6 to 12 times.
+QUIET = 0.1
+#: Excess at low frequency that chance makes in a white recording, and that is therefore not called colour.
+CHANCE = 0.4
+#: Excesses tried, and corners, from the lowest frequency read to this many times the highest.
+EXCESSES = np.r_[0.0, np.geomspace(CHANCE, 1e4, 60)]
+CORNERS, BEYOND = 16, 3.0
+
+
+@dataclass(frozen=True)
+class NormalEquations:
+    """Sums over blocks of time, from which estimate, residual and a covariance for correlated residuals follow.
+
+    Attributes:
+        names: of the columns (p,).
+        gram: X'X of each block - (b, p, p).
+        moment: X'y of each block - (b, p).
+        power: y'y of each block - (b,).
+        rows: of each block - (b,).
+        noise: (p, p) covariance of the noise of the columns in a row.
+    """
+
+    names: tuple[Name, ...]
+    gram: Array
+    moment: Array
+    power: Array
+    rows: NDArray[np.int64]
+    noise: Array
+
+    def only(self, kept: Callable[[Name], bool]) -> NormalEquations:
+        """The same equations for columns of some names only."""
+        at = [place for place, name in enumerate(self.names) if kept(name)]
+        gram, names = self.gram[:, at][:, :, at], tuple(self.names[place] for place in at)
+        return replace(self, names=names, gram=gram, moment=self.moment[:, at], noise=self.noise[np.ix_(at, at)])
+
+    @cached_property
+    def count(self) -> int:
+        """Rows of all blocks."""
+        return int(self.rows.sum())
+
+    @cached_property
+    def total(self) -> Array:
+        """X'X of all rows - (p, p)."""
+        return self.gram.sum(axis=0)
+
+    @cached_property
+    def matrix(self) -> Array:
+        """X'X less what sensor noise put into it - (p, p)."""
+        return self.total - self.count * self.noise
+
+    @cached_property
+    def one_way(self) -> str | None:
+        """`forward` or `backward` if the axis moves one way only: Coulomb friction and offset are then inseparable."""
+        mean_direction = self.total[self.names.index(COULOMB), self.names.index(OFFSET)] / self.count
+        if 0.5 * (1.0 - abs(mean_direction)) >= ONE_WAY:
+            return None
+        return "forward" if mean_direction > 0.0 else "backward"
+
+    def independent_shares(self, names: Sequence[Name]) -> Array:
+        """Share of the power of each of some columns that is neither noise nor explained by the others (k,).
+
+        Negative where it is noise alone.
+        """
+        places, at = [self.names.index(name) for name in names], np.arange(len(names))
+        power = np.diag(self.total)[places]
+        scale = np.sqrt(np.where(power > 0.0, power, 1.0))
+        matrix = self.matrix[np.ix_(places, places)] / np.outer(scale, scale)
+        others = np.argsort(np.eye(len(names), dtype=bool), axis=1, kind="stable")[:, :-1]
+        beside, between = matrix[others, at[:, None]], matrix[others[:, :, None], others[:, None, :]]
+        return np.diag(matrix) - np.einsum("ki,kij,kj->k", beside, symmetric_inverse(between, DEPENDENT), beside)
+
+    @cached_property
+    def shares_of_axis(self) -> dict[str, float]:
+        """Independent shares of J, K_w and K_0 by their terms."""
+        terms = INERTIA, VISCOUS, COULOMB
+        return dict(zip(terms, self.independent_shares(terms).tolist(), strict=True))
+
+    def scores(self, theta: Array) -> Array:
+        """X'(y - X*theta) of each block, less the part of it that is due to noise in the columns - (b, p)."""
+        return self.moment - self.gram @ theta + np.outer(self.rows, self.noise @ theta)
+
+    def residual_power(self, theta: Array) -> float:
+        """Sum of squared residuals of all rows - the effort's unit squared."""
+        moment = self.moment.sum(axis=0)
+        return max(float(self.power.sum() - 2.0 * theta @ moment + theta @ self.total @ theta), 0.0)
+
+
+def equations_of(rows: Rows, laid: Layout) -> NormalEquations:
+    """Normal equations of columns that are laid out and, behind them, a constant."""
+    edges = block_edges(rows.time, rows.conditioning.filter.width)
+    products = _products(np.vstack([laid.columns.T, np.ones(laid.effort.size), laid.effort]), edges)
+    return NormalEquations(
+        names=(*laid.owners, OFFSET),
+        gram=products[:, :-1, :-1],
+        moment=products[:, :-1, -1],
+        power=products[:, -1, -1],
+        rows=np.diff(edges),
+        noise=np.pad(laid.noise, (0, 1)),
+    )
+
+
+def _products(table: Array, edges: NDArray[np.int64]) -> Array:
+    """Products of columns, which are the rows of a table (k, m), over each block between edges (b + 1,) - (b, k, k).
+
+    Of long blocks one by one; of short ones column by column over all blocks at once, which on 3 s at 1 kHz takes a
+    fifth of the time.
+    """
+    width, count = len(table), edges.size - 1
+    if table.shape[1] > SHORT * count:
+        return np.array([table[:, start:stop] @ table[:, start:stop].T for start, stop in pairwise(edges.tolist())])
+    sums = np.empty((width, width, count))
+    for k in range(width):
+        sums[k, : k + 1] = sums[: k + 1, k] = np.add.reduceat(table[: k + 1] * table[k], edges[:-1], axis=1)
+    return sums.transpose(2, 0, 1)
+
+
+def block_edges(time: Array, width: float) -> NDArray[np.int64]:
+    """First rows of blocks of BLOCK_WIDTHS filter widths - s -, of at most BLOCKS longer ones, and the end."""
+    count = int(np.clip((time[-1] - time[0]) / (BLOCK_WIDTHS * width), 1, BLOCKS))
+    borders = np.linspace(time[0], time[-1], count + 1)[1:-1]
+    return np.unique(np.concatenate([[0], np.searchsorted(time, borders), [time.size]]))
+
+
+def join(parts: Sequence[NormalEquations]) -> NormalEquations:
+    """Those of a recording from those of its parts, in order, of the same columns; at most BLOCKS longer blocks."""
+    if len(parts) == 1:
+        return parts[0]
+    names = ("gram", "moment", "power", "rows")
+    blocks = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    starts = np.arange(0, blocks["rows"].size, -(-blocks["rows"].size // BLOCKS))
+    return replace(parts[0], **{name: np.add.reduceat(values, starts) for name, values in blocks.items()})
+
+
+def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
+    """Coefficients (p,) of X'X (p, p) and X'y (p,), and the inverse of the matrix that they came from.
+
+    Noise in a column inflates its own square and draws its coefficient towards zero; taking the known power `noise`
+    (p, p) out makes least squares consistent (Soderstrom, Errors-in-variables methods in system identification,
+    Automatica 43(6), 2007, eq. 40).
+    """
+    scale = np.sqrt(np.diag(gram))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    scales = np.outer(scale, scale)
+    inverse = symmetric_inverse((gram - noise) / scales, ROUNDING) / scales
+    return inverse @ moment, inverse
+
+
+def bounded(
+    gram: Array, moment: Array, noise: Array, bounds: Mapping[int, tuple[float, float]]
+) -> tuple[Array, tuple[int, ...]]:
+    """Coefficients (p,) as of `solved`, each held at its bound where it would lie beyond, one after the other.
+
+    Bounds are by places; beside it the places of those held.
+    """
+    theta, _ = solved(gram, moment, noise)
+    held: list[int] = []
+    for place, (low, high) in bounds.items():
+        if low <= theta[place] <= high:
+            continue
+        held.append(place)
+        theta[place] = np.clip(theta[place], low, high)
+        free = [k for k in range(theta.size) if k not in held]
+        rest = moment[free] - gram[np.ix_(free, held)] @ theta[held]
+        theta[free] = solved(gram[np.ix_(free, free)], rest, noise[np.ix_(free, free)])[0]
+    return theta, tuple(held)
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Coefficients of a recording's torque balance with their covariance, and what they leave.
+
+    Attributes:
+        rows: of the recording, or of its first part, which determines filter and noise floor.
+        hypothesis, laid: of these rows, and its columns.
+        whole, equations: of every column and a constant over the whole recording, and of the fitted columns.
+        theta: (p,).
+        covariance: (p, p).
+        reach: of an interval of 95 % in standard errors.
+        shift: by which the least residual wants torque behind speed, and its standard error - s.
+        held: whether the shift is held at a tick.
+    """
+
+    rows: Rows
+    hypothesis: Hypothesis
+    laid: Layout
+    whole: NormalEquations
+    equations: NormalEquations
+    theta: Array
+    covariance: Array
+    reach: float
+    shift: tuple[float, float]
+    held: bool
+
+    def of(self, name: Name, numbers: Array) -> float:
+        """That of numbers (p,) which belongs to the column of a name."""
+        return float(numbers[self.names.index(name)])
+
+    @property
+    def names(self) -> tuple[Name, ...]:
+        """Of the fitted columns (p,)."""
+        return self.equations.names
+
+    @cached_property
+    def errors(self) -> Array:
+        """Standard errors (p,)."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+    @cached_property
+    def power(self) -> float:
+        """Sum of squared residuals over the whole recording - the effort's unit squared."""
+        return self.equations.residual_power(self.theta)
+
+    @cached_property
+    def residual(self) -> Array:
+        """Measured less modelled effort at the rows (m,) - the effort's unit."""
+        columns = self.laid.owners.size
+        offset = float(self.theta[-1]) if OFFSET in self.names else 0.0
+        return self.laid.effort - (self.laid.columns @ self.theta[:columns] + offset)
+
+    @cached_property
+    def floor(self) -> Floor:
+        """What the sensors' noise leaves in the residual."""
+        return Floor(self.rows, self.hypothesis, self.laid, self.theta[: self.laid.owners.size], self.residual)
+
+    @cached_property
+    def misfit(self) -> Array:
+        """Half widths at 95 % from the residual above noise (p,); 0 if there is none."""
+        reaches = np.zeros(self.theta.size)
+        if rms(self.residual) <= NOISE_ALONE * self.floor.white:  # a floor in colour is no lower
+            return reaches
+        columns = self.laid.columns
+        if OFFSET in self.names:
+            columns = np.column_stack([columns, np.ones(self.residual.size)])
+        free = [k for k, name in enumerate(self.names) if not (self.held and name == MISALIGNMENT)]
+        reaches[free] = misfit(columns[:, free], self.residual, self.floor.coloured)
+        return reaches
+
+    @cached_property
+    def shift_explains(self) -> float:
+        """Share that a shift explains of the squares that stand above the noise without one."""
+        columns, effort, place = self.laid.columns, self.laid.effort, self.names.index(MISALIGNMENT)
+        tables = np.delete(columns, place, axis=1), columns
+        without, beside = (
+            float(np.mean((effort - table @ np.linalg.lstsq(table, effort, rcond=None)[0]) ** 2)) for table in tables
+        )
+        above = without - self.floor.white**2
+        return (without - beside) / above if above > 0.0 else 0.0
+
+
+def solution_of(rows: Rows, hypothesis: Hypothesis, offset: bool) -> Solution:
+    """The solution of a hypothesis; with a constant, if it is asked for and the axis moves in both directions."""
+    laid = lay_out(rows, hypothesis)
+    equations = equations_of(rows, laid)
+    return solve(rows, hypothesis, laid, equations, offset and equations.one_way is None)
+
+
+def solve(rows: Rows, hypothesis: Hypothesis, laid: Layout, equations: NormalEquations, offset: bool) -> Solution:
+    """Least squares; the shift of torque against speed is limited to a tick unless a larger one is significant.
+
+    A drive latches its signals within one tick. Along a sine, shift and viscous friction are inseparable: noise that
+    the drive feeds back gave a false shift of 4 ms and 26 times the friction.
+
+    Rows are of the recording, or of its first part; equations of all of it, a constant last.
+    """
+    fitted = equations if offset else equations.only(lambda name: name != OFFSET)
+    weight, value, variance = _digit_beforehand(fitted, hypothesis.step)
+    gram, moment = fitted.total + np.diag(weight), fitted.moment.sum(axis=0) + weight * value
+    noise = fitted.count * fitted.noise
+    theta, inverse = solved(gram, moment, noise)
+    unknown = inverse @ np.diag(weight**2 * variance) @ inverse
+    least = rows.conditioning.effort_noise**2 / rows.conditioning.filter.stride
+    covariance, reach = estimated(fitted.scores(theta), inverse, least)
+    at, tick = fitted.names.index(MISALIGNMENT), rows.scope.latched
+    shift, error = float(theta[at]), float(np.sqrt(max((covariance + unknown)[at, at], 0.0)))
+    apart = abs(shift) > min(tick, rows.scope.sample_period) and bool(
+        equations.independent_shares((MISALIGNMENT, INERTIA, VISCOUS, COULOMB))[0] >= INDEPENDENT_SHARE
+    )
+    held = abs(shift) > tick and not (apart and abs(shift) > tick + SURE * error)
+    if held:
+        theta, _ = bounded(gram, moment, noise, {at: (-tick, tick)})
+        covariance, reach = estimated(fitted.scores(theta), inverse, least)
+    delay = (shift if apart else 0.0, error)
+    return Solution(rows, hypothesis, laid, equations, fitted, theta, covariance + unknown, reach, delay, held)
+
+
+def _digit_beforehand(equations: NormalEquations, step: float) -> tuple[Array, float, float]:
+    """What is known of the effort's last digit before it is measured, as if it had been: weights (p,), value, variance.
+
+    Where torque and speed change sign together, truncation of the current and dry friction are inseparable. Truncation
+    is at most half a step - N*m (N) -, and the interval of friction includes that range; fitted freely, it took half.
+    The weight is the variance of a row over that of the value; all are 0 where the digit does not matter.
+    """
+    if not step:
+        return np.zeros(len(equations.names)), 0.0, 0.0
+    value, variance = cut_beforehand(step)
+    theta, _ = solved(equations.total, equations.moment.sum(axis=0), equations.count * equations.noise)
+    weight = equations.residual_power(theta) / equations.count / variance
+    return weight * (np.array(equations.names, dtype=object) == DIGIT), value, variance
 
 
 def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float]:
@@ -72,38 +411,31 @@ def left_out(columns: Array, residual: Array) -> Array:
     accelerate, nor all that are slow.
     """
     scale = np.sqrt(np.sum(columns**2, axis=0))
-    scaled = columns / np.where(scale > 0.0, scale, 1.0)
-    power = scaled**2
-    accelerated, moved = np.argsort(power[:, 0]), np.argsort(power[:, 1])
-    cuts = [(accelerated, power[:, 0], LEVELS), (moved, power[:, 1], LEVELS)]
+    scale = np.where(scale > 0.0, scale, 1.0)
+    table = np.column_stack([columns / scale, residual])
+    power = table[:, :-1] ** 2
+    cuts = [(np.argsort(power[:, k]), power[:, k], LEVELS) for k in (0, 1)]
     cuts.append((np.arange(residual.size), np.sum(power, axis=1), QUARTERS))
-    reaches = _without_each(scaled, residual, [(order, _parts(mass[order], count)) for order, mass, count in cuts])
-    return reaches / np.where(scale > 0.0, scale, 1.0)
+    reaches = [_without_each(table[order], _edges(mass[order], count)) for order, mass, count in cuts]
+    return np.max(reaches, axis=0) / scale
 
 
-def _parts(power: Array, count: int) -> list[slice]:
-    """Rows (m,) in their order cut into parts equal in the weighted mean of their shares of rows and of power."""
+def _edges(power: Array, count: int) -> NDArray[np.intp]:
+    """First rows, and the end, of parts (m,) equal in the weighted mean of their shares of rows and of power."""
     rows = np.arange(1, power.size + 1) / power.size
     share = rows + (1.0 / (MOST * count)) * (np.cumsum(power) / max(float(np.sum(power)), 1e-300) - rows)
-    edges = [0, *np.searchsorted(share, np.arange(1, count) / count).tolist(), power.size]
-    return [slice(start, stop) for start, stop in pairwise(edges) if stop > start]
+    return np.unique(np.r_[0, np.searchsorted(share, np.arange(1, count) / count), power.size])
 
 
-def _without_each(columns: Array, residual: Array, cuts: list[tuple[NDArray[np.intp], list[slice]]]) -> Array:
-    """The furthest reach of intervals (p,) by coefficients without each part of the rows (m,) in their order."""
-    counts = [len(parts) for _, parts in cuts]
-    if min(counts) < 2:
-        return np.full(columns.shape[1], np.inf)
-    table = np.column_stack([columns, residual])
-    sums = np.array([table[order[part]].T @ table[order[part]] for order, parts in cuts for part in parts])
+def _without_each(table: Array, edges: NDArray[np.intp]) -> Array:
+    """Reach of intervals (p,) by coefficients without each part of the rows of columns and residual (m, p + 1)."""
+    count = edges.size - 1
+    if count < 2:
+        return np.full(table.shape[1] - 1, np.inf)
+    sums = np.array([table[start:stop].T @ table[start:stop] for start, stop in pairwise(edges.tolist())])
     grams, scores = sums[:, :-1, :-1], sums[:, :-1, -1]
-    whole = np.repeat([part.sum(axis=0) for part in np.split(grams, np.cumsum(counts)[:-1])], counts, axis=0)
-    moved = np.einsum("gij,gj->gi", symmetric_inverse(whole - grams, 1e-10), scores) ** 2
-    reaches = [
-        scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * squares.sum(axis=0))
-        for count, squares in zip(counts, np.split(moved, np.cumsum(counts)[:-1]), strict=True)
-    ]
-    return np.max(reaches, axis=0)
+    moved = np.einsum("gij,gj->gi", symmetric_inverse(grams.sum(axis=0) - grams, 1e-10), scores)
+    return scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * (moved**2).sum(axis=0))
 
 
 def long_run_covariance(scores: Array) -> tuple[Array, float]:
@@ -128,10 +460,9 @@ def _bandwidth(scores: Array) -> float:
         return 1.0
     now, before = scores[1:], scores[:-1]
     power = np.sum(before**2, axis=0)
-    rho = np.clip(np.sum(now * before, axis=0) / np.where(power > 0.0, power, 1.0), -0.97, 0.97)
-    variance = np.mean((now - rho * before) ** 2, axis=0)
-    scale = np.where(power > 0.0, power, 1.0)
-    relative = (variance / scale) ** 2
+    power = np.where(power > 0.0, power, 1.0)
+    rho = np.clip(np.sum(now * before, axis=0) / power, -0.97, 0.97)
+    relative = (np.mean((now - rho * before) ** 2, axis=0) / power) ** 2
     ratio = np.sum(4.0 * rho**2 * relative / (1.0 - rho) ** 8) / max(np.sum(relative / (1.0 - rho) ** 4), 1e-300)
     return float(np.clip(WIDENED * 1.3221 * (ratio * scores.shape[0]) ** 0.2, 1.0, max(1.0, scores.shape[0] / 4.0)))
 
@@ -142,146 +473,172 @@ def _quadratic_spectral(lag: Array) -> Array:
     return np.where(lag == 0.0, 1.0, 3.0 / angle**2 * (np.sin(angle) / angle - np.cos(angle)))
 
 
-#: Standard errors by which a shift of torque against speed must exceed a tick to be one: below, it is held at a tick.
-SURE = 3.0
-
-
-def equations_of(rows: Rows, laid: Layout) -> NormalEquations:
-    """Normal equations of columns that are laid out and, behind them, a constant."""
-    columns = np.vstack([laid.columns.T, np.ones(laid.effort.size)]).T
-    noise, width = np.pad(laid.noise, (0, 1)), rows.conditioning.filter.width
-    return normal_equations([*laid.owners, OFFSET], columns, laid.effort, rows.time, noise, width)
-
-
 @dataclass(frozen=True, eq=False)
-class Solution:
-    """Coefficients of a recording's torque balance with their covariance, and what they leave.
+class Floor:
+    """RMS of noise in the residual of a hypothesis.
 
     Attributes:
-        rows: of the recording, or of its first part, which determines filter and noise floor.
-        hypothesis, laid: of these rows, and its columns.
-        whole, equations: of every column and a constant over the whole recording, and of the fitted columns.
-        theta: (p,).
-        covariance: (p, p).
-        reach: of an interval of 95 % in standard errors.
-        shift: by which the least residual wants torque behind speed, and its standard error - s.
-        held: whether the shift is held at a tick.
+        rows: the recording.
+        hypothesis, layout: what was fitted, and its columns.
+        theta: their coefficients (p,).
+        residual: (m,) of the used rows - N*m (N).
     """
 
     rows: Rows
     hypothesis: Hypothesis
-    laid: Layout
-    whole: NormalEquations
-    equations: NormalEquations
+    layout: Layout
     theta: Array
-    covariance: Array
-    reach: float
-    shift: tuple[float, float]
-    held: bool
-
-    def of(self, name: Name, numbers: Array) -> float:
-        """That of numbers (p,) which belongs to the column of a name."""
-        return float(numbers[self.equations.place(name)])
-
-    @property
-    def names(self) -> tuple[Name, ...]:
-        """Of the fitted columns (p,)."""
-        return self.equations.names
+    residual: Array
 
     @cached_property
-    def errors(self) -> Array:
-        """Standard errors (p,)."""
-        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+    def white(self) -> float:
+        """Of its white part alone - N*m (N)."""
+        return self._rms(self._densities(self._omega)[1])
 
     @cached_property
-    def power(self) -> float:
-        """Sum of squared residuals over the whole recording - the effort's unit squared."""
-        return max(self.equations.residual_power(self.theta), 0.0)
+    def coloured(self) -> float:
+        """Of all of it - N*m (N)."""
+        excess, corner = self._colour()
+        if not excess:
+            return self.white
+        white, lines = self._densities(self._omega)
+        return self._rms(lines + white * excess / (1.0 + (self._omega / corner) ** 2))
 
     @cached_property
-    def residual(self) -> Array:
-        """Measured less modelled effort at the rows (m,) - the effort's unit."""
-        return self.laid.effort - self._modelled
+    def _omega(self) -> Array:
+        return np.linspace(0.0, np.pi / self.rows.conditioning.filter.sample_period, 2048)
+
+    def _rms(self, spectrum: Array) -> float:
+        """Of a spectrum (k,) over all frequencies, and of what rounding of the effort leaves beside."""
+        period = self.rows.conditioning.filter.sample_period
+        return math.hypot(float(np.sqrt(period / np.pi * np.trapezoid(spectrum, self._omega))), self._rounded)
 
     @cached_property
-    def floor(self) -> Floor:
-        """What the sensors' noise leaves in the residual."""
-        theta = self.theta[: self.laid.owners.size]
-        cut = float(theta[self.laid.owners == DIGIT].sum())
-        rounded = rounding(self.rows, self.hypothesis.step, self._modelled, cut)
-        return Floor(self.rows, noise_power(self.rows, self.hypothesis, self.laid, theta), self.residual, rounded)
+    def _rounded(self) -> float:
+        cut = float(self.theta[self.layout.owners == DIGIT].sum())
+        return rounding(self.rows, self.hypothesis.step, self.layout.effort - self.residual, cut)
 
-    @cached_property
-    def misfit(self) -> Array:
-        """Half widths at 95 % from the residual above noise (p,); 0 if there is none."""
-        reaches = np.zeros(self.theta.size)
-        if rms(self.residual) <= NOISE_ALONE * self.floor.white:  # a floor in colour is no lower
-            return reaches
-        columns = self.laid.columns
-        if OFFSET in self.names:
-            columns = np.column_stack([columns, np.ones(self.residual.size)])
-        free = [k for k, name in enumerate(self.names) if not (self.held and name == MISALIGNMENT)]
-        reaches[free] = misfit(columns[:, free], self.residual, self.floor.coloured)
-        return reaches
+    def _densities(self, omega: Array) -> Array:
+        """Density at angular frequencies (k,) of white noise, and of it with the lines that rounding leaves (2, k)."""
+        conditioning = self.rows.conditioning
+        white = np.full(omega.size, conditioning.source_noise**2)
+        power = self.power(omega, np.stack([white, conditioning.source_power(omega)]))
+        return np.exp(-((omega * conditioning.filter.width) ** 2)) * power
 
-    @cached_property
-    def shift_explains(self) -> float:
-        """Share that a shift explains of the squares that stand above the noise without one."""
-        columns, effort, place = self.laid.columns, self.laid.effort, self.names.index(MISALIGNMENT)
-        tables = np.delete(columns, place, axis=1), columns
-        without, beside = (
-            float(np.mean((effort - table @ np.linalg.lstsq(table, effort, rcond=None)[0]) ** 2)) for table in tables
-        )
-        above = without - self.floor.white**2
-        return (without - beside) / above if above > 0.0 else 0.0
+    def power(self, omega: Array, source: Array) -> Array:
+        """Power of noise of effort and speed in the torque balance before the filter - (N*m)**2 (N**2) - (..., k).
 
-    @cached_property
-    def _modelled(self) -> Array:
-        columns = self.laid.owners.size
-        offset = float(self.theta[-1]) if OFFSET in self.names else 0.0
-        return self.laid.columns @ self.theta[:columns] + offset
+        s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2 + s_p**2*|s*(1 + lag*s)|**2
+
+        and twice what the known momentum p has of the speed's own noise: the joint's inertia where the arm is, less
+        that where the MJCF stands.
+
+        Args:
+            omega: angular frequencies - rad/s (k,).
+            source: power there of the noise of the signal that speed is taken from - its unit squared (..., k).
+        """
+        conditioning, theta, owners = self.rows.conditioning, self.theta, self.layout.owners
+        moving, _ = delays(self.rows, self.hypothesis)
+        s = np.asarray(1j * omega, dtype=np.complex128)
+        kinetic = theta[BASE.index(INERTIA)] * s + theta[BASE.index(VISCOUS)]
+        for index, term in enumerate(self.hypothesis.terms):
+            if isinstance(term.effect, Coupling):
+                transfer = term.effect.noise_of_motion(term.shape, omega)
+                kinetic = kinetic + theta[owners == index][0] * s * transfer
+        kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
+        late = (1.0 + theta[BASE.index(MISALIGNMENT)] * s) * (1.0 + effort_lag(self.hypothesis) * s)
+        effort = conditioning.effort_noise**2 * _square(late)
+        rate = (1.0 + moving * s) * s
+        both = 2.0 * conditioning.known_shared * (kinetic * rate.conj()).real
+        known = conditioning.known_noise**2 * _square(rate)
+        return effort + np.maximum(known + both + source * _square(kinetic), 0.0)
+
+    def _colour(self) -> tuple[float, float]:
+        """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white.
+
+        Lines that rounding leaves come and go with the speed, and stay with a steady one: neither is colour.
+        """
+        windows, smooth = self._windows(), self.rows.conditioning.filter
+        count, length = windows.shape
+        period = smooth.stride * smooth.sample_period
+        omega = np.pi / period * np.arange(length // 2 + 1) / max(length // 2, 1)
+        white, lines = self._densities(omega) / smooth.stride
+        read = np.flatnonzero(white > HEARD * white.max())
+        read = read[read >= LOWEST]
+        if not count or read.size < LOWEST:
+            return 0.0, 1.0
+        taper = np.hanning(length)
+        spectra = np.abs(np.fft.rfft(windows * taper, axis=1)[:, read]) ** 2 / np.sum(taper**2)
+        known = np.maximum(white, np.convolve(lines, HANN, "same"))[read]
+        # of exponential variables, what the quiet quantile is to their mean, from expected order statistics
+        quiet = np.interp(QUIET * (count - 1), np.arange(count), np.cumsum(1.0 / np.arange(count, 0, -1)))
+        ratio = np.quantile(spectra, QUIET, axis=0) / quiet / known
+        corners, levels = _levels(tuple(read.tolist()))
+        misfit = np.sum(np.abs(levels - np.log(ratio)), axis=2)  # a sharp line sways a sum of magnitudes little
+        excess, corner = np.unravel_index(int(np.argmin(misfit)), misfit.shape)
+        return float(EXCESSES[excess]), float(corners[corner] * omega[1])
+
+    def _windows(self) -> Array:
+        """Half-overlapping windows of neighbouring rows, each less its straight line (k, length); none if too few."""
+        used = tuple(part.used.tobytes() for part in self.rows.stretches)
+        for length in LENGTHS:
+            starts = _starts(used, length)
+            if starts.size >= ENOUGH:
+                found = self.residual[starts[:, None] + np.arange(length)]
+                ramp = np.linspace(-1.0, 1.0, length)
+                return found - found.mean(axis=1, keepdims=True) - np.outer(found @ ramp / (ramp @ ramp), ramp)
+        return np.empty((0, LENGTHS[-1]))
 
 
-def solve(rows: Rows, hypothesis: Hypothesis, laid: Layout, equations: NormalEquations, offset: bool) -> Solution:
-    """Least squares; the shift of torque against speed is limited to a tick unless a larger one is significant.
+def _square(values: NDArray[np.complex128]) -> Array:
+    """Squared magnitudes, whose root NumPy would draw first."""
+    return values.real**2 + values.imag**2
 
-    A drive latches its signals within one tick. Along a sine, shift and viscous friction are inseparable: noise that
-    the drive feeds back gave a false shift of 4 ms and 26 times the friction.
 
-    Rows are of the recording, or of its first part; equations of all of it, a constant last.
+@lru_cache(maxsize=8)
+def _levels(read: tuple[int, ...]) -> tuple[Array, Array]:
+    """Corners tried (c,) in bins, and by each excess and corner the logarithm of the colour at bins (e, c, bins)."""
+    corners = np.geomspace(read[0], BEYOND * read[-1], CORNERS)
+    shapes = 1.0 / (1.0 + (np.array(read) / corners[:, None]) ** 2)
+    return corners, np.log1p(EXCESSES[:, None, None] * shapes)
+
+
+@lru_cache(maxsize=8)
+def _starts(used: tuple[bytes, ...], length: int) -> NDArray[np.int64]:
+    """First rows of the windows that span no gap."""
+    found, offset = [], 0
+    for raw in used:
+        rows = np.flatnonzero(np.frombuffer(raw, dtype=bool))
+        runs = np.split(np.arange(rows.size), np.flatnonzero(np.diff(rows) != 1) + 1)
+        found += [offset + np.arange(run[0], run[-1] - length + 2, length // 2) for run in runs if run.size >= length]
+        offset += rows.size
+    return np.concatenate(found) if found else np.empty(0, dtype=np.int64)
+
+
+def cut_beforehand(step: float) -> tuple[float, float]:
+    """Middle and variance of what may be cut off, nothing to half a step - N*m (N) -, before it is measured."""
+    return 0.25 * step, (0.5 * step) ** 2 / 12.0
+
+
+def rounding(rows: Rows, step: float, modelled: Array, cut: float) -> float:
+    """RMS of what the last digit of an effort leaves in a residual, through the filter - N*m (N).
+
+    Args:
+        rows: the recording.
+        step: of the digit - N*m (N); 0 where it does not matter.
+        modelled: reported effort at the used rows - N*m (N) - (m,).
+        cut: what was found to be cut off - N*m (N): from a quarter of a step on it was, below it was rounded.
     """
-    measured = equations if offset else equations.only(lambda name: name != OFFSET)
-    informed, beforehand = with_digit(measured, hypothesis.step)
-    least = rows.conditioning.effort_noise**2 / rows.conditioning.filter.stride
-    theta, inverse = informed.solve()
-    unknown = inverse @ beforehand @ inverse
-    covariance, reach = estimated(measured.scores(theta), inverse, least)
-    covariance = covariance + unknown
-    at, tick = measured.place(MISALIGNMENT), rows.scope.latched
-    shift, error = float(theta[at]), float(np.sqrt(max(covariance[at, at], 0.0)))
-    apart = abs(shift) > min(tick, rows.scope.sample_period) and bool(
-        equations.independent_shares((MISALIGNMENT, INERTIA, VISCOUS, COULOMB))[0] >= INDEPENDENT_SHARE
-    )
-    held = abs(shift) > tick and not (apart and abs(shift) > tick + SURE * error)
-    if held:
-        theta, _ = informed.solve({MISALIGNMENT: (-tick, tick)})
-        covariance, reach = estimated(measured.scores(theta), inverse, least)
-        covariance = covariance + unknown
-    delay = (shift, error) if apart else (0.0, error)
-    return Solution(rows, hypothesis, laid, equations, measured, theta, covariance, reach, delay, held)
-
-
-def with_digit(equations: NormalEquations, step: float) -> tuple[NormalEquations, Array]:
-    """The equations with a prior of the effort's last digit, if that is a column; and the variance it adds (p, p).
-
-    Where torque and speed change sign together, truncation of the current and dry friction are inseparable. Truncation
-    is at most half a step - N*m (N) -, and the interval of friction includes that range; fitted freely, it took half.
-    """
-    beforehand = np.zeros_like(equations.noise)
     if not step:
-        return equations, beforehand
-    value, variance = cut_beforehand(step)
-    power = max(equations.residual_power(equations.solve()[0]), 0.0) / equations.count
-    weight, place = power / variance, equations.place(DIGIT)
-    beforehand[place, place] = weight**2 * variance
-    return equations.knowing(DIGIT, value, weight), beforehand
+        return 0.0
+    conditioning = rows.conditioning
+    free = max(conditioning.effort_noise**2 - step**2 / 12.0, 0.0)
+    followed = np.exp(-2.0 * np.pi**2 * free / step**2)
+    whole = np.trunc if cut > 0.25 * step else np.round
+    errors = []
+    for part in rows.stretches:
+        torque = np.interp(part.signals.time, rows.time, modelled + cut * np.sign(modelled))
+        reported = step * whole(torque / step)
+        (error,) = conditioning.filter(reported + cut * np.sign(reported) - torque, 0)
+        errors.append(error[part.used])
+    return float(followed) * rms(np.concatenate(errors))

@@ -12,8 +12,7 @@ from bench.arrays import Array, rms
 from bench.effects.effect import Occasional
 from bench.effects.present import named
 from bench.fit.fit import ROUNDS, Fit
-from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import AROUND, HUM, lay_out, not_reaching
+from bench.fit.hypothesis import AROUND, HUM, Hypothesis, Term, lay_out, not_reaching
 from bench.fit.rows import Rows
 
 #: Stands for a recording where an event comes at the same time of every one.
@@ -55,9 +54,7 @@ class Balance:
         if self.recording != rows.origin:
             theta[np.isin(layout.owners, (AROUND, HUM))] = 0.0
         if self.recording not in (EVERY, rows.origin):
-            terms = enumerate(self.hypothesis.terms)
-            occasional = [index for index, term in terms if isinstance(term.effect, Occasional)]
-            theta[np.isin(layout.owners, occasional)] = 0.0
+            theta[np.isin(layout.owners, self.hypothesis.of_kind(Occasional))] = 0.0
         for _ in range(ROUNDS):
             if not (missing := not_reaching(self.hypothesis, layout, theta)):
                 break

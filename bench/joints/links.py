@@ -25,7 +25,7 @@ from scipy import linalg, special
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.effects.signals import Signals
 from bench.errors import BenchError, UndeterminedError
-from bench.fit.layout import BASE, lay_out, plain
+from bench.fit.hypothesis import BASE, lay_out, plain
 from bench.fit.rows import Rows
 from bench.joints.identified import JointLogs, of_each
 from bench.parameter import Parameter

@@ -1,6 +1,6 @@
 """A check: whether an axis has changed, what did, by how many margins, and how sure that is.
 
-In sentences, as the contract's JSON (`bench.check/1`), as a document, and as findings for a server that runs checks.
+In sentences, as the contract's JSON (`bench.check/1`), and as a document.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from bench.baseline.state import GAPS, NamedHere, RemainingGap
 from bench.comparison.difference import CHANGED, SAME, UNDECIDED, Comparison
 from bench.names import short, words
 from bench.report import document as doc
-from bench.report.continuous_integration import Finding
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
 from bench.report.serial import as_json, known, picked, serialised
 
@@ -26,6 +25,14 @@ DISPLAYED = {"rad": ("deg", 180.0 / math.pi)}
 FOLLOWING = frozenset({*GAPS, RESPONSE_TORQUE})
 COLOURS: dict[str, doc.Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "left"}
 TONES: dict[str, doc.Tone] = {SAME: "sure", UNDECIDED: "open", CHANGED: "refused"}
+#: What to do next, by the result; and by what keeps it undecided.
+NEXT = {
+    CHANGED: "Look at what changed; where the new state is right, accept it with --update.",
+    SAME: "Nothing.",
+    "rig": "Make the baseline anew: --update with recordings of the old state and the rig file of now.",
+    "conditions": "Record the motion of the baseline at its sampling, and check again.",
+    UNDECIDED: "Record again, several times: a difference near its margin needs more than one recording to decide.",
+}
 #: Margins to which the chart reaches at least, so that one is seen, and at most, so that small differences are.
 LEAST, MOST = 2.0, 8.0
 #: Characters of what a state rests on, and of a title made of file names.
@@ -35,8 +42,10 @@ LONG = 600
 def check_json(checked: Checked) -> str:
     """The check as the contract's JSON."""
     baseline, now = checked.baseline, checked.now
-    came = {name: [_effect(*pair) for pair in getattr(checked, name)] for name in ("appeared", "gone")}
-    gaps = {name: {"unit": unit, "baseline": was, "now": left} for name, unit, was, left in _gaps(checked)}
+    gaps = {}
+    for name, unit, *both in _gaps(checked):
+        was, left = (gap and picked(gap, "after", "noise_floor") for gap in both)
+        gaps[name] = {"unit": unit, "baseline": was, "now": left}
     return serialised(
         {
             "schema": SCHEMA,
@@ -45,7 +54,7 @@ def check_json(checked: Checked) -> str:
             "false_alarm_rate": checked.false_alarm_rate,
             "comparisons": checked.family,
             "quantities": [one for one in checked.comparisons if not one.effect],
-            "effects": came,
+            "effects": {name: [_effect(*pair) for pair in getattr(checked, name)] for name in ("appeared", "gone")},
             "verdict": {"baseline": baseline.verdict or None, "now": now.verdict or None},
             "gap": gaps,
             **picked(checked, "rig", "conditions"),
@@ -81,11 +90,6 @@ def _effect(effect: NamedHere, one: Comparison) -> dict[str, Any]:
     }
 
 
-@as_json.register
-def _(gap: RemainingGap) -> dict[str, Any]:
-    return picked(gap, "after", "noise_floor")
-
-
 def _gaps(checked: Checked) -> Iterator[tuple[str, str, RemainingGap | None, RemainingGap | None]]:
     """Name and unit of each gap, then and now."""
     before, now = checked.baseline.gaps, checked.now.gaps
@@ -119,37 +123,29 @@ def described(one: Comparison, checked: Checked, brief: bool = False) -> str:
     label = words(one.name).replace(".", " ")
     effect = next((effect for effect, found in (*checked.appeared, *checked.gone) if found is one), None)
     if effect is not None:
-        came, went = ("appeared", "is gone, which had")
-        if one.result != CHANGED:
-            came, went = ("is named now", "is named no more, which had")
-        if brief:
-            return f"{label} {came if one.effect == 'appeared' else went.removesuffix(', which had')}"
-        return f"{label} {came if one.effect == 'appeared' else went}: {_values(effect)}{_why(one)}"
+        came, went = ("appeared", "is gone") if one.result == CHANGED else ("is named now", "is named no more")
+        line, had = (f"{label} {came}", "") if one.effect == "appeared" else (f"{label} {went}", ", which had")
+        return line if brief else f"{line}{had}: {_values(effect)}{_why(one)}"
     if one.baseline is None or one.now is None:
         return f"{label} cannot be compared{_why(one)}"
-    before, after = formatted(one.baseline, one.unit), formatted(one.now, one.unit)
-    unit = displayed_unit(one.unit)
+    before, after = shown(one.baseline, one.unit, named=False), shown(one.now, one.unit)
     share = f" ({100.0 * (one.now / one.baseline - 1.0):+.3g} %)" if one.baseline else ""
     if one.result == CHANGED:
-        verb = "rose" if one.now > one.baseline else "fell"
-        return f"{label} {verb} from {before} to {after}{unit}{share}"
+        return f"{label} {'rose' if one.now > one.baseline else 'fell'} from {before} to {after}{share}"
     how = "is the same:" if one.result == SAME else "may have changed:"
-    return f"{label} {how} {before} and now {after}{unit}{share}{_why(one)}"
+    return f"{label} {how} {before} and now {after}{share}{_why(one)}"
 
 
 def _why(one: Comparison) -> str:
     """Why a comparison is undecided, or how certain it is that an effect appeared."""
-    unit = displayed_unit(one.unit)
     if one.held_back:
         return f", but {one.held_back}"
     if one.effect == "appeared" and one.differences:
-        makes, least = formatted(one.now or 0.0, one.unit), formatted(one.margin, one.unit)
         seen = "would have shown" if one.result == CHANGED else "may have hidden"
-        return f" ({makes}{unit} RMS, where the baseline {seen} {least}{unit})"
-    bounds = one.difference95
-    if one.result != CHANGED and one.result != SAME and bounds is not None:
-        reach, margin = (formatted(value, one.unit) for value in (0.5 * (bounds[1] - bounds[0]), one.margin))
-        return f", known to ± {reach}{unit} against a margin of {margin}{unit}"
+        return f" ({shown(one.now or 0.0, one.unit)} RMS, where the baseline {seen} {shown(one.margin, one.unit)})"
+    if one.result == UNDECIDED and one.difference95 is not None:
+        low, high = one.difference95
+        return f", known to ± {shown(0.5 * (high - low), one.unit)} against a margin of {shown(one.margin, one.unit)}"
     return ""
 
 
@@ -158,88 +154,65 @@ def _values(effect: NamedHere) -> str:
     counted = {slot.quantity.name for slot, _ in effect.whole}
     names = [q.name for q in effect.effect.quantities if not q.angle and q.name not in counted]
     values = ((name, effect.quantities[name]) for name in names)
-    return ", ".join(f"{words(name)} {formatted(of.value, of.unit)}{displayed_unit(of.unit)}" for name, of in values)
+    return ", ".join(f"{words(name)} {shown(of.value, of.unit)}" for name, of in values)
 
 
-def displayed_unit(unit: str) -> str:
-    """The unit behind a number, for display; empty for a dimensionless one."""
-    return "" if unit == "dimensionless" else f" {DISPLAYED[unit][0] if unit in DISPLAYED else unit}"
-
-
-def formatted(value: float, unit: str) -> str:
-    """A number in the unit for display."""
-    return f"{value * (DISPLAYED[unit][1] if unit in DISPLAYED else 1.0):.4g}"
-
-
-def findings(checked: Checked) -> list[Finding]:
-    """Every comparison with its sentence, worst first."""
-    return [
-        Finding(one.name, one.result, described(one, checked), (one.baseline, one.now, one.margin), one.unit)
-        for one in checked.comparisons
-    ]
+def shown(value: float, unit: str, named: bool = True) -> str:
+    """A number in the unit for display; `named`: with that behind it."""
+    called, factor = DISPLAYED.get(unit, (unit, 1.0))
+    return f"{value * factor:.4g}" + (f" {called}" if named and called != "dimensionless" else "")
 
 
 def check_document(checked: Checked, title: str) -> doc.Document:
     """The document of a check of what `title` names."""
     alike, line = not (checked.rig or checked.conditions), unit_text(headline(checked, brief=True))
-    sections = [
-        doc.section("comparisons", "What was compared", *_compared(checked)),
-        doc.section("conditions", "Like with like", _unlike(checked), detail=alike),
-    ]
-    if checked.baseline.gaps or checked.now.gaps:
-        gaps = (_gaps_table(checked),)
-        sections.append(doc.section("gaps", "What the models leave", *gaps, detail=True))
+    gaps = [_gaps_table(checked)] if checked.baseline.gaps or checked.now.gaps else []
     return doc.Document(
         title=f"{short(title)}: check",
         subject=short(title, LONG),
         verdict=f"Changed: {line}." if checked.result == CHANGED else f"{line}.",
         tone=TONES[checked.result],
         answers=_answers(checked),
-        sections=tuple(sections),
+        sections=doc.sections(
+            doc.section("comparisons", "What was compared", *_compared(checked)),
+            doc.section("conditions", "Like with like", _unlike(checked), detail=alike),
+            doc.section("gaps", "What the models leave", *gaps, detail=True),
+        ),
         origin=(_basis("now", checked.now.provenance), _basis("baseline", checked.baseline.provenance)),
     )
 
 
 def _answers(checked: Checked) -> dict[str, str]:
-    results = [one.result for one in checked.comparisons]
+    results, pairs = [one.result for one in checked.comparisons], [*checked.appeared, *checked.gone]
+    if pairs:
+        came = unit_text(sentence("; ".join(described(one, checked) for _, one in pairs))) + "."
+    elif not (checked.baseline.names and checked.now.names):
+        came = "Not asked: the baseline has parameters alone."
+    else:
+        kept = ", ".join(words(effect.label) for effect in checked.now.effects)
+        came = f"No effect; {kept} as in the baseline." if kept else "No effect: none is named in either state."
     sure = (
         f"Of axes that differ by no margin at most {share(checked.false_alarm_rate)} are called changed, all "
         f"{checked.family} comparisons together."
     )
     count = ", ".join(f"{results.count(result)} {result}" for result in TONES if result in results)
+    held_up = "rig" if checked.rig else "conditions" if checked.conditions else UNDECIDED
     return {
-        "What came or went?": _came_and_went(checked),
+        "What came or went?": came,
         "How many differ?": f"{count} of {len(results)} comparisons." if results else "Nothing could be compared.",
         "How sure?": sure if checked.false_alarm_rate else "Two models are compared by what they say, without noise.",
-        "What next?": _next(checked),
+        "What next?": NEXT[held_up if checked.result == UNDECIDED else checked.result],
     }
-
-
-def _came_and_went(checked: Checked) -> str:
-    pairs = [*checked.appeared, *checked.gone]
-    if pairs:
-        return unit_text(sentence("; ".join(described(one, checked) for _, one in pairs))) + "."
-    if not (checked.baseline.names and checked.now.names):
-        return "Not asked: the baseline has parameters alone."
-    kept = ", ".join(words(effect.label) for effect in checked.now.effects)
-    return f"No effect; {kept} as in the baseline." if kept else "No effect: none is named in either state."
-
-
-def _next(checked: Checked) -> str:
-    if checked.result == CHANGED:
-        return "Look at what changed; where the new state is right, accept it with --update."
-    if checked.result == SAME:
-        return "Nothing."
-    if checked.rig:
-        return "Make the baseline anew: --update with recordings of the old state and the rig file of now."
-    if checked.conditions:
-        return "Record the motion of the baseline at its sampling, and check again."
-    return "Record again, several times: a difference near its margin needs more than one recording to decide."
 
 
 def _compared(checked: Checked) -> Iterator[doc.AnyPart]:
     """The chart, and the table behind it, worst first."""
-    spans = tuple(_spans(checked))
+    spans = []
+    for one in checked.comparisons:
+        bounds, difference = one.difference95, one.difference
+        if bounds is not None and difference is not None and one.margin > 0.0:
+            low, value, high = (each / one.margin for each in (bounds[0], difference.value, bounds[1]))
+            spans.append(doc.Span(name=_label(one), colour=COLOURS[one.result], value=value, low=low, high=high))
     if spans:
         reach = max(abs(end) for span in spans for end in (span.low, span.high))
         reach = min(max(reach, LEAST), MOST)
@@ -250,21 +223,13 @@ def _compared(checked: Checked) -> Iterator[doc.AnyPart]:
             label="difference over margin",
             right=(-1.0, 1.0),
             limits=(-reach, reach),
-            spans=spans,
+            spans=tuple(spans),
         )
     because = any(one.held_back for one in checked.comparisons)
     headings = ("quantity", "baseline>", "now>", "difference (95 %)>", "margin>", "unit", "result")
     rows = ((*_cells(one), *([one.held_back] if because else [])) for one in checked.comparisons)
     marked = (k for k, one in enumerate(checked.comparisons) if one.result == CHANGED)
     yield doc.table("Worst first", (*headings, *(["because~"] if because else [])), rows, marked)
-
-
-def _spans(checked: Checked) -> Iterator[doc.Span]:
-    for one in checked.comparisons:
-        bounds, difference = one.difference95, one.difference
-        if bounds is not None and difference is not None and one.margin > 0.0:
-            low, value, high = (each / one.margin for each in (bounds[0], difference.value, bounds[1]))
-            yield doc.Span(name=_label(one), colour=COLOURS[one.result], value=value, low=low, high=high)
 
 
 def _label(one: Comparison) -> str:
@@ -275,12 +240,11 @@ def _cells(one: Comparison) -> tuple[str, ...]:
     """A comparison as a row: quantity, baseline, now, difference, margin, unit, result."""
 
     def text(value: float | None) -> str:
-        return "−" if value is None else formatted(value, one.unit).replace("-", "−")
+        return "−" if value is None else shown(value, one.unit, named=False).replace("-", "−")
 
-    bounds = one.difference95
+    unit, bounds = unit_text(DISPLAYED.get(one.unit, (one.unit,))[0]), one.difference95
     difference = "−" if bounds is None else f"{text(bounds[0])} to {text(bounds[1])}"
     margin = text(None if bounds is None else one.margin)
-    unit = unit_text(displayed_unit(one.unit).strip())
     return _label(one), text(one.baseline), text(one.now), difference, margin, unit, one.result
 
 
@@ -289,7 +253,7 @@ def _unlike(checked: Checked) -> doc.Points | doc.Paragraph:
     lines = [f"rig: {line}" for line in checked.rig]
     lines += [f"not as in the baseline: {line}" for line in checked.conditions]
     if lines:
-        return doc.Points(items=tuple(lines))
+        return doc.points(lines)
     if not checked.now.conditions:
         return doc.Paragraph(text="Nothing beside the models differs: neither rests on a recording here.")
     return doc.Paragraph(text="The rig, the motion and the sampling are those of the baseline.")
@@ -297,12 +261,13 @@ def _unlike(checked: Checked) -> doc.Points | doc.Paragraph:
 
 def _gaps_table(checked: Checked) -> doc.Table:
     """What is left in both states, and their verdicts."""
-    verdicts = [words(state.verdict) or "not asked" for state in (checked.baseline, checked.now)]
-    rows: list[tuple[str, ...]] = [("verdict", *verdicts, "")]
+    rows: list[tuple[str | None, ...]] = [
+        ("verdict", *(words(state.verdict) or "not asked" for state in (checked.baseline, checked.now)), "")
+    ]
     for name, unit, *gaps in _gaps(checked):
         what = effort_word(unit) if name == "torque" else words(name)
         for of, value in (("left", "after"), ("noise alone", "noise_floor")):
-            both = ("–" if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)
+            both = (None if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)
             rows.append((f"{what}, {of} (RMS)", *both, unit_text(unit)))
     caption = "Verdicts, and what inertia, friction and effects do not explain"
     return doc.table(caption, ("of", "baseline>", "now>", "unit"), rows)

@@ -13,7 +13,6 @@ from typing import Any
 from bench.axis_kind import ARMATURE, KINDS, AxisKind
 from bench.diagnosis.add import NULL
 from bench.diagnosis.diagnosis import Course, Diagnosis, Gap, Shrunk
-from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.where import Where
@@ -64,8 +63,7 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
     velocity = {  # models held to the recording by a cascade, fed with the recorded effort
         **as_json(found.velocity),
         "loop": {"kind": "held", "bandwidth": {"value": found.bandwidth, "unit": "rad/s"}},
-        "closed_loop": _before_after(found.closed_loop),
-        "refined": _before_after(found.refined),
+        **_before_after(found, "closed_loop", "refined"),
     }
     return {
         "schema": SCHEMA,
@@ -99,14 +97,14 @@ def _(account: Where) -> dict[str, Any]:
     return picked(account, "coordinate", "region", "unit", "share")
 
 
-def _before_after(pair: tuple[float, float] | None) -> dict[str, float] | None:
-    return None if pair is None else {"before": pair[0], "after": pair[1]}
+def _before_after(result: object, *names: str) -> dict[str, Any]:
+    pairs = {name: getattr(result, name) for name in names}
+    return {name: pair and {"before": pair[0], "after": pair[1]} for name, pair in pairs.items()}
 
 
 @as_json.register
 def _(gap: Gap) -> dict[str, Any]:
-    content = picked(gap, "unit", "noise_floor")
-    content |= {"identify": _before_after(gap.identify), "holdout": _before_after(gap.holdout)}
+    content = picked(gap, "unit", "noise_floor") | _before_after(gap, "identify", "holdout")
     return content if gap.judged is None else content | {"judged": {"share": gap.judged[0], "after": gap.judged[1]}}
 
 
@@ -161,29 +159,15 @@ def diagnosis(
 ) -> doc.Document:
     """The document of a diagnosis, with `diagnosis.json`, `model.toml` and, where MuJoCo has all of it, `model.xml`.
 
-    Args:
-        found, title: the diagnosis, and its rig and recordings.
-        provenance: of the files it came from.
-        moving: of a robot's joint, the robot in motion.
+    `title` names rig and recordings; `moving`: of a robot's joint, the robot in motion.
     """
     tables = [parameters_table("The axis", found.parameters)]
     tables += [
         parameters_table(f"{sentence(words(one.name))}: {one.effect.summary}", one.parameters) for one in found.effects
     ]
     tables += recordings_table(found.recordings, found.between, found.parameters)
-    sections = (
-        _motion(found),
-        *moving,
-        _where(found),
-        doc.section("parameters", "Parameters", *tables),
-        *_beside(found),
-        _suspects(found),
-        _next(found),
-        checks_section(found.checks, found.warnings),
-        doc.section("model", "The model", doc.Downloads(files=tuple(_files(found, provenance)))),
-    )
-    glance, verdict, following = at_a_glance(found), verdict_sentence(found), found.next_experiment
-    units = [(unit, 1.0) for unit in (_kind(found).length_unit, found.velocity.unit)]
+    beside, verdict, following = _beside(found), verdict_sentence(found), found.next_experiment
+    glance, units = at_a_glance(found), [(unit, 1.0) for unit in (_kind(found).length_unit, found.velocity.unit)]
     return doc.Document(
         title=title,
         subject=f"Diagnosis of {title}",
@@ -191,7 +175,17 @@ def diagnosis(
         tone="open" if found.verdict == "unexplained_remainder" else "sure",
         answers=_answers(found),
         glance=glance,
-        sections=sections,
+        sections=(
+            _motion(found),
+            *moving,
+            _where(found),
+            doc.section("parameters", "Parameters", *tables),
+            *([doc.section("beside", "Beside it", doc.points(beside))] if beside else []),
+            _suspects(found),
+            _next(found),
+            checks_section(found.checks, found.warnings),
+            doc.section("model", "The model", doc.downloads(*_files(found, provenance))),
+        ),
         origin=origin(provenance),
         pictures=(
             doc.Picture(name="diagnosis", title=verdict, rows=(glance,)),
@@ -208,7 +202,6 @@ def _kind(found: Diagnosis) -> AxisKind:
 
 
 def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[doc.File]:
-    """The model, and all numbers."""
     tables = {"torque_balance": found.balance.table()}
     toml = tables_toml(_kind(found), tables) if found.model is None else model_toml(found.model, tables)
     about = "the model with all that was found, for bench replay"
@@ -220,49 +213,42 @@ def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[doc.F
 
 def verdict_sentence(found: Diagnosis) -> str:
     """What was missing and whether that is all, in a sentence."""
-    gap, unit = found.torque, unit_text(found.torque.unit)
+    gap, unit, effort = found.torque, unit_text(found.torque.unit), effort_word(found.torque.unit)
     before, after = gap.identify or (math.nan, math.nan)
-    effort = effort_word(gap.unit)
     if not found.effects:
         left = f"{number(after, digits=3)} {unit} of the {effort}"
         noise = f"the noise floor is {number(gap.noise_floor, digits=3)} {unit}"
         if found.verdict == "nothing_missing":
             return f"Nothing is missing: inertia and friction leave {left}, {noise}."
         return f"Something is missing that no effect of the catalogue explains: {left} are left, {noise}."
-    several = len(found.effects) > 1
-    names = listed(dict.fromkeys(words(effect.name) for effect in found.effects))
-    sensors = len(_sensors(found)) == len(found.effects)
-    what = f"{'were' if several else 'was'} {'wrong in the measurement' if sensors else 'missing'}"
-    gone = (
-        f"with {'them' if several else 'it'} {share(1.0 - after / before)} of the {effort_word(gap.unit)} gap is gone"
-    )
+    were, them = ("were", "them") if len(found.effects) > 1 else ("was", "it")
+    names = sentence(listed(dict.fromkeys(words(effect.name) for effect in found.effects)))
+    where = "wrong in the measurement" if len(_sensors(found)) == len(found.effects) else "missing"
+    gone = f"{names} {were} {where}; with {them} {share(1.0 - after / before)} of the {effort} gap is gone"
     if found.verdict == "explained":
-        return f"{sentence(names)} {what}; {gone}, and what is left is noise."
-    return f"{sentence(names)} {what}; {gone}, but {words(found.because[0])}."
-
-
-def _named(effect: NamedEffect) -> str:
-    """An effect with its quantities; a phase says nothing to a reader."""
-    angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
-    values = [f"{words(name)} {brief(found)}" for name, found in effect.parameters.items() if name not in angles]
-    return f"{words(effect.name)} ({', '.join(values)})" if values else words(effect.name)
+        return f"{gone}, and what is left is noise."
+    return f"{gone}, but {words(found.because[0])}."
 
 
 def _sensors(found: Diagnosis) -> list[str]:
-    """Names of sensors' faults."""
     return [words(effect.name) for effect in found.effects if isinstance(effect.effect, Sensing)]
 
 
 def _answers(found: Diagnosis) -> dict[str, str]:
-    kind = _kind(found)
-    inertia = next((name for name in (ARMATURE, kind.inertia) if name in found.parameters), None)
+    of_axis, missing = _kind(found).inertia, []
+    for effect in found.effects:  # a phase says nothing to a reader
+        angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
+        values = [f"{words(name)} {brief(one)}" for name, one in effect.parameters.items() if name not in angles]
+        missing.append(words(effect.name) + (f" ({', '.join(values)})" if values else ""))
+    inertia = ARMATURE if ARMATURE in found.parameters else of_axis
+    value = found.parameters.get(inertia)
     return {
-        "What was missing?": sentence("; ".join(map(_named, found.effects))) or "No effect of the catalogue.",
+        "What was missing?": sentence("; ".join(missing)) or "No effect of the catalogue.",
         "How sure?": _sure(found),
         "Does it move like the axis now?": _moves(found),
-        f"{sentence(words(inertia or kind.inertia))}?": f"{brief(found.parameters[inertia])} (95 %)"
-        if inertia
-        else f"Not determined beside what is missing: {found.refused[kind.inertia]}",
+        f"{sentence(words(inertia))}?": f"{brief(value)} (95 %)"
+        if value
+        else f"Not determined beside what is missing: {found.refused[of_axis]}",
         "What next?": following(found) or "Nothing is left open that another motion would tell.",
     }
 
@@ -380,7 +366,6 @@ def _over_time(found: Diagnosis, course: Course) -> doc.TimeGraph:
 
 
 def _where(found: Diagnosis) -> doc.Section:
-    """The gap over the coordinates."""
     rows = []
     for one in found.where:
         between = " and ".join(map(number, one.region))
@@ -391,8 +376,8 @@ def _where(found: Diagnosis) -> doc.Section:
     return doc.section("where", "Where the gap sits", *blocks, detail=True)
 
 
-def _beside(found: Diagnosis) -> list[doc.Section]:
-    """What was found beside effects and parameters, if anything."""
+def _beside(found: Diagnosis) -> list[str]:
+    """What was found beside effects and parameters."""
     unit, sensors = found.velocity.unit, _sensors(found)
     lines = [f"at fault is the sensor, not the axis: {', '.join(sensors)}"] if sensors else []
     lines += [
@@ -407,9 +392,8 @@ def _beside(found: Diagnosis) -> list[doc.Section]:
     lines += [f"rejected: {words(one.name)}, {one.reason}" for one in found.rejected]
     lines += [f"refused: {words(name)}, {reason}" for name, reason in found.refused.items()]
     lines += [f"stopped: {found.stopped}"] if found.stopped else []
-    if found.unexplained_where:
-        lines.append(f"unexplained: {share(found.unexplained_share)} of the gap")
-    return [doc.section("beside", "Beside it", doc.Points(items=tuple(lines)))] if lines else []
+    lines += [f"unexplained: {share(found.unexplained_share)} of the gap"] if found.unexplained_where else []
+    return lines
 
 
 def _suspects(found: Diagnosis) -> doc.Section:
@@ -418,7 +402,7 @@ def _suspects(found: Diagnosis) -> doc.Section:
             words(one.effect.name),
             "yes" if one.taken else "no",
             chance(one.probability),
-            *("–" if value is None else share(value) for value in (one.alone, one.beside)),
+            *(None if value is None else share(value) for value in (one.alone, one.beside)),
             one.reason,
         )
         for one in found.considered
@@ -434,13 +418,12 @@ def _next(found: Diagnosis) -> doc.Section:
     text = following(found) or "Nothing is left open that another motion of this rig would tell."
     blocks: list[doc.Paragraph | doc.Points] = [doc.Paragraph(text=text)]
     if found.because:
-        blocks.append(doc.Paragraph(text="What speaks against this being all:"))
-        blocks.append(doc.Points(items=tuple(map(words, found.because))))
-    left = (
-        f"{share(one.share)} of what is left hangs on {coordinate_word(one.coordinate, one.unit)}, most of it between "
-        f"{number(one.region[0])} and {number(one.region[1], one.unit)}"
-        for one in found.unexplained_where
-    )
+        blocks += [doc.Paragraph(text="What speaks against this being all:"), doc.points(map(words, found.because))]
     if found.unexplained_where:
-        blocks.append(doc.Points(items=tuple(left)))
+        left = (
+            f"{share(one.share)} of what is left hangs on {coordinate_word(one.coordinate, one.unit)}, most of it "
+            f"between {number(one.region[0])} and {number(one.region[1], one.unit)}"
+            for one in found.unexplained_where
+        )
+        blocks.append(doc.points(left))
     return doc.section("next", "What to record next", *blocks, detail=True)

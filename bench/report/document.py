@@ -28,8 +28,6 @@ COLOURS: tuple[Colour, ...] = ("ink", "model", "left", "violet", "ochre", "blue"
 Style = Literal["dots", "large dots", "rings", "line", "dashes", "dotted", "wide", "band"]
 #: How many times slower than it was a motion plays.
 Slowed = Literal[1, 2, 5, 10, 20, 50, 100]
-#: How columns of a table are set, by the last character of their headings in `table`.
-SET = {">": {"number": True}, "~": {"prose": True}}
 
 
 class Part(BaseModel):
@@ -62,6 +60,11 @@ class Points(Part):
 
     kind: Literal["points"] = "points"
     items: tuple[str, ...]
+
+
+def points(items: Iterable[str]) -> Points:
+    """A list of these texts."""
+    return Points(items=tuple(items))
 
 
 class Code(Part):
@@ -138,12 +141,19 @@ class Table(Part):
         return self
 
 
-def table(caption: str, headings: Sequence[str], rows: Iterable[Iterable[str]], marked: Iterable[int] = ()) -> Table:
-    """A table; `>` behind a heading sets its cells to the right, as numbers are, `~` gives sentences room."""
+def table(
+    caption: str, headings: Sequence[str], rows: Iterable[Iterable[str | None]], marked: Iterable[int] = ()
+) -> Table:
+    """A table; `>` behind a heading sets its cells to the right, as numbers are, `~` gives sentences room.
+
+    A cell that is None is a dash.
+    """
     columns = tuple(
-        Heading(heading=one[:-1], **SET[one[-1]]) if one[-1:] in SET else Heading(heading=one) for one in headings
+        Heading(heading=one.removesuffix(">").removesuffix("~"), number=one.endswith(">"), prose=one.endswith("~"))
+        for one in headings
     )
-    return Table(caption=caption, columns=columns, rows=tuple(map(tuple, rows)), marked=tuple(marked))
+    cells = tuple(tuple("–" if cell is None else cell for cell in row) for row in rows)
+    return Table(caption=caption, columns=columns, rows=cells, marked=tuple(marked))
 
 
 class Panel(Part):
@@ -416,6 +426,11 @@ def file(name: str, about: str, content: str) -> File:
     return File(name=name, about=about, media=MEDIA[name.rpartition(".")[2]], content=content)
 
 
+def downloads(*files: File) -> Downloads:
+    """These files to take along."""
+    return Downloads(files=files)
+
+
 class Neighbour(Part):
     """A file near the page, by its path from there; `about`: what it is."""
 
@@ -455,6 +470,11 @@ class Section(Part):
 def section(key: str, heading: str, *blocks: AnyPart, detail: bool = False) -> Section:
     """A section of these parts."""
     return Section(key=key, heading=heading, blocks=blocks, detail=detail)
+
+
+def sections(*given: Section) -> tuple[Section, ...]:
+    """Those of these that hold anything."""
+    return tuple(one for one in given if one.blocks)
 
 
 class Picture(Part):

@@ -59,13 +59,7 @@ COLD_FINDING = (
 
 @dataclass(frozen=True)
 class InRange:
-    """A motion in its motor's range.
-
-    Attributes:
-        findings: a sentence or two each.
-        numbers: reserves and effective values with their units, by name.
-        chart: speed-torque diagram.
-    """
+    """A motion in its motor's range: in sentences, reserves and effective values with their units, and as a diagram."""
 
     findings: tuple[str, ...]
     numbers: dict[str, tuple[float, str]]
@@ -95,7 +89,7 @@ def limits(trace: Trace, rig: Rig) -> doc.Document:
         tone="sure" if least >= 0.0 else "refused",
         answers={},
         sections=(
-            doc.section("findings", "What it leaves", doc.Points(items=found.findings)),
+            doc.section("findings", "What it leaves", doc.points(found.findings)),
             doc.section("range", "Operating range", *blocks),
         ),
         origin=origin(None),
@@ -115,37 +109,35 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
     of_peak: dict[float, list[str]] = {}  # where voltage does not limit, one reserve is that of all
     for volts, of in warm.items():
         of_peak.setdefault(of.peak, []).append(volts)
-    panels = []
+    panels, in_legend = [], set()  # one legend serves all panels
     for volts, limit in ranges.items():
-        curves = [*_motion(speed, torque, warm[volts], limit), *_limit_curves(limit)]
+        curves = _curves(speed, torque, warm[volts], limit)
         with suppress(InputError):  # the motor does not tell its circuit
             cold = limit.cold(rig.motor, rig.source)
             of_peak.setdefault(reserve(cold, speed, torque).peak, []).append(f"{volts} cold")
             at = np.linspace(0.0, cold.curve.no_load_speed, 300)
             curves.append(doc.series("peak, winding at 20 °C", "dotted", "ink", at * RPM, cold.peak(at)))
-        in_legend = {one.name for panel in panels for one in panel.series}  # one legend serves all panels
         coloured = (
             one.model_copy(update={"colour": colour, "name": "" if one.name in in_legend else one.name})
             for one, colour in zip(curves, doc.COLOURS, strict=False)
         )
         label = f"torque M at {volts} / (N·m)"
         panels.append(doc.Panel(x_label="speed |n| / rpm", y_label=label, series=tuple(coloured)))
+        in_legend |= {one.name for one in curves}
     left = next(iter(warm.values()))
-    findings = (
-        *(
-            f"At {', '.join(names)}: {_peak_finding(warm[names[0]], speed, torque)}"
-            for names in of_peak.values()
-            if names[0] in warm
-        ),
-        *(f"At {volts}: {_thermal_finding(of)}" for volts, of in warm.items()),
-        _heat_finding(left, next(iter(ranges.values()))),
-        *((COLD_FINDING,) if any("cold" in name for names in of_peak.values() for name in names) else ()),
-    )
+    findings = [
+        f"At {', '.join(names)}: {_peak_finding(warm[names[0]], speed, torque)}"
+        for names in of_peak.values()
+        if names[0] in warm
+    ]
+    findings += [f"At {volts}: {_thermal_finding(of)}" for volts, of in warm.items()]
+    findings.append(_heat_finding(left, next(iter(ranges.values()))))
+    findings += [COLD_FINDING] if any("cold" in name for names in of_peak.values() for name in names) else []
     numbers = {f"peak reserve, {', '.join(names)}": (peak, "N·m") for peak, names in of_peak.items()}
     numbers |= {f"thermal reserve, {volts}": (of.thermal, "A") for volts, of in warm.items()}
     numbers |= {"RMS torque": (left.rms_torque, "N·m"), "RMS current": (left.rms_current, "A")}
     title, alternative = f"Operating range: {what}", "Torque over speed, and the limits, at each mains voltage."
-    return InRange(findings, numbers, doc.Chart(title=title, alternative=alternative, panels=tuple(panels)))
+    return InRange(tuple(findings), numbers, doc.Chart(title=title, alternative=alternative, panels=tuple(panels)))
 
 
 def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
@@ -175,26 +167,21 @@ def _heat_finding(left: Reserve, limit: OperatingRange) -> str:
     )
 
 
-def _motion(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -> list[doc.Series]:
-    """The samples, those that brake below the axis; the point that heats as all; the least reserve to the limit."""
+def _curves(speed: Array, torque: Array, left: Reserve, limit: OperatingRange) -> list[doc.Series]:
+    """The samples, those that brake below the axis; the point that heats as all; the least reserve; and the limits."""
     effective = np.atleast_1d(limit.torque_constant.torque(np.asarray(left.rms_current)))
-    least = np.abs([speed[left.at], torque[left.at]])
-    side = -1.0 if speed[left.at] * torque[left.at] < 0.0 else 1.0
-    label = f"least reserve to the peak, {left.peak:.3g} N·m"
-    ends = side * (least[1] + np.array([0.0, left.peak]))
-    heat, signed = np.array([left.mean_speed * RPM]), np.sign(speed * torque) * np.abs(torque)
+    power = speed * torque
+    side = -1.0 if power[left.at] < 0.0 else 1.0
+    ends = side * (np.abs(torque[left.at]) + np.array([[0.0], [left.peak]]))
+    at = np.abs(speed[[left.at]]) * RPM
+    heat, label = np.array([left.mean_speed * RPM]), f"least reserve to the peak, {left.peak:.3g} N·m"
+    along = np.linspace(0.0, limit.curve.no_load_speed, 300)
+    braking = limit.available(along, np.full_like(along, -1.0))
     return [
-        doc.series("motion, braking below 0", "dots", "ink", np.abs(speed) * RPM, signed),
+        doc.series("motion, braking below 0", "dots", "ink", np.abs(speed) * RPM, np.sign(power) * np.abs(torque)),
         doc.series("RMS current at mean speed", "large dots", "ink", heat, effective),
-        doc.series(label, "large dots", "ink", least[:1] * RPM, ends[:1], (ends[:1], ends[1:])),
-    ]
-
-
-def _limit_curves(limit: OperatingRange) -> list[doc.Series]:
-    speed = np.linspace(0.0, limit.curve.no_load_speed, 300)
-    braking = limit.available(speed, np.full_like(speed, -1.0))
-    return [
-        doc.series("peak", "line", "ink", speed * RPM, limit.peak(speed)),
-        doc.series("continuous", "dashes", "ink", speed * RPM, limit.continuous(speed)),
-        doc.series("peak braking", "dotted", "ink", speed * RPM, -braking),
+        doc.series(label, "large dots", "ink", at, ends[0], (ends[0], ends[1])),
+        doc.series("peak", "line", "ink", along * RPM, limit.peak(along)),
+        doc.series("continuous", "dashes", "ink", along * RPM, limit.continuous(along)),
+        doc.series("peak braking", "dotted", "ink", along * RPM, -braking),
     ]

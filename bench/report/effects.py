@@ -28,14 +28,22 @@ PLACES: tuple[tuple[type[Effect], str, str], ...] = (
     (ways.MisreadEffort, "acted", "between the current that is read and the one that flows"),
     (ways.FilteredSignal, "recorded", "between drive and recording"),
 )
+#: What is simulated where, in a word.
+SIMULATED = (
+    (ways.Native, "MuJoCo model"),
+    (ways.Mechanism, "every step"),
+    (ways.Electronics, "electronics"),
+    (ways.Sensing, "sensor"),
+)
 
 
 def effects_table() -> Table:
     """Every effect with its quantities, and where it acts."""
-    rows = (
-        (name, effect.summary, ", ".join(f"{q.name} [{unit_of(q)}]" for q in effect.quantities), _where(effect))
-        for name, effect in sorted(catalogue().items())
-    )
+    rows = []
+    for name, effect in sorted(catalogue().items()):
+        quantities = ", ".join(f"{quantity.name} [{unit_of(quantity)}]" for quantity in effect.quantities)
+        where = next((place for kind, place in SIMULATED if isinstance(effect, kind)), "")
+        rows.append((name, effect.summary, quantities, where))
     return table("", ("effect", "what it is~", "quantities~", "simulated"), rows)
 
 
@@ -59,14 +67,6 @@ def effect_page(name: str) -> str:
 def acting(effect: Effect) -> dict[str, str]:
     """Methods through which an effect is simulated, and where each acts, in words."""
     return {method: place for kind, method, place in PLACES if isinstance(effect, kind)}
-
-
-def _where(effect: Effect) -> str:
-    if isinstance(effect, ways.Mechanism):
-        return "MuJoCo model" if isinstance(effect, ways.Native) else "every step"
-    return (
-        "electronics" if isinstance(effect, ways.Electronics) else "sensor" if isinstance(effect, ways.Sensing) else ""
-    )
 
 
 def unit_of(quantity: Quantity) -> str:

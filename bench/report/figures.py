@@ -68,7 +68,7 @@ ROLES: dict[str, dict[str, Any]] = {
 @in_style
 def drawn(picture: doc.Picture) -> Figure:
     """The figure of a picture: its rows from top to bottom, the parts of a row beside each other."""
-    heights = [max(map(height, row)) for row in picture.rows]
+    heights = [max(drawing(part)[0] for part in row) for row in picture.rows]
     figure = Figure(figsize=(WIDTH, TITLE + sum(heights)), layout="constrained")
     title_figure(figure, picture.title)
     rows = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
@@ -76,7 +76,7 @@ def drawn(picture: doc.Picture) -> Figure:
         row = [row[0], *(_unnamed(part, row[0]) for part in row[1:])]
         widths = [0.4 if isinstance(part, doc.Table) else 1.0 for part in row]
         for beside, part in zip(place.subfigures(1, len(row), width_ratios=widths, squeeze=False)[0], row, strict=True):
-            draw(beside, part)
+            drawing(part)[1](beside, part)
     return figure
 
 
@@ -89,18 +89,8 @@ def _unnamed(part: doc.Drawable, first: doc.Drawable) -> doc.Drawable:
     return part.model_copy(update={"spans": tuple(span.model_copy(update={"name": ""}) for span in part.spans)})
 
 
-def height(part: doc.Drawable) -> float:
-    """Height that a part takes - inch."""
-    return _drawing(part)[0]
-
-
-def draw(figure: Figure | SubFigure, part: doc.Drawable) -> None:
-    """Draw a part into a figure, in the style that is set."""
-    _drawing(part)[1](figure, part)
-
-
-def _drawing(part: doc.Drawable) -> tuple[float, Callable[..., None]]:
-    """Height of a part - inch -, and what draws it into a figure."""
+def drawing(part: doc.Drawable) -> tuple[float, Callable[..., None]]:
+    """Height that a part takes - inch -, and what draws it into a figure, in the style that is set."""
     match part:
         case doc.Table():
             return 0.4 + 2.0 * LINE * len(part.rows), _write
@@ -182,13 +172,11 @@ def _stacked(figure: Figure | SubFigure, chart: doc.Chart) -> None:
         shared = every[0] if every and panel.x_label == chart.panels[0].x_label else None
         every.append(figure.add_subplot(len(chart.panels), 1, place + 1, sharex=shared))
         _panel(every[-1], panel)
-        every[-1].set_ylabel(plain(panel.y_label), size=size, parse_math=False)
+        _own_scale(every[-1], panel, size)
         below = chart.panels[place + 1].x_label if place + 1 < len(chart.panels) else None
         if below == panel.x_label:
             every[-1].tick_params(labelbottom=False)
             every[-1].set_xlabel("")
-        if any(one.name for one in panel.series):
-            legend_above(every[-1])
     figure.align_ylabels(every)
 
 
@@ -196,32 +184,33 @@ def onto(axes: Axes, panel: doc.Panel) -> Axes:
     """Draw a panel into axes of somebody's own figure."""
     with rc_context(STYLE):
         _panel(axes, panel)
-        axes.set_ylabel(plain(panel.y_label), parse_math=False)
-        if any(one.name for one in panel.series):
-            legend_above(axes, 2)
+        _own_scale(axes, panel, most=2)
     return axes
+
+
+def _own_scale(axes: Axes, panel: doc.Panel, size: str = "medium", most: int = LEGEND) -> None:
+    """Label and legend of a panel that shares neither."""
+    axes.set_ylabel(plain(panel.y_label), size=size, parse_math=False)
+    if any(one.name for one in panel.series):
+        legend_above(axes, most)
 
 
 def _panel(axes: Axes, panel: doc.Panel) -> None:
     for one in panel.series:
-        _series(axes, one)
+        colour, label = COLOURS[one.colour], plain(one.name) or None
+        if one.style == "band":
+            axes.fill_between(one.x, one.low, one.high, color=colour, lw=0.0, zorder=0.5, label=label)
+            continue
+        if one.low:
+            axes.vlines(one.x, one.low, one.high, color=colour, lw=1.2)
+        style = dict(DRAWN[one.style])
+        if one.style == "dots" and len(one.x) < FEW:
+            style["ms"] = 3.8
+        axes.plot(one.x, one.y, color=colour, label=label, **style)
     if panel.log:
         axes.set(xscale="log", yscale="log")
     axes.set_title(plain(panel.note), loc="right", parse_math=False)
     axes.set_xlabel(plain(_labelled(panel.x_label, panel.x_unit)), parse_math=False)
-
-
-def _series(axes: Axes, one: doc.Series) -> None:
-    colour, label = COLOURS[one.colour], plain(one.name) or None
-    if one.style == "band":
-        axes.fill_between(one.x, one.low, one.high, color=colour, lw=0.0, zorder=0.5, label=label)
-        return
-    if one.low:
-        axes.vlines(one.x, one.low, one.high, color=colour, lw=1.2)
-    style = dict(DRAWN[one.style])
-    if one.style == "dots" and len(one.x) < FEW:
-        style["ms"] = 3.8
-    axes.plot(one.x, one.y, color=colour, label=label, **style)
 
 
 def _intervals(figure: Figure | SubFigure, block: doc.Intervals) -> None:

@@ -1,34 +1,50 @@
 """A fleet: every axis by how much it needs a person and why, what changed since when, and how the recordings went.
 
-As the contract's JSON (`bench.fleet/1`), which has all, and as a document, which stays small however large a fleet is.
+As the contract's JSON (`bench.fleet/1`), which has all, and as a document, which stays small however large a fleet is;
+below it a page of each axis, with its quantities over time, and one of each recording.
 """
 
 from __future__ import annotations
 
+import hashlib
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, KINDS, VISCOUS
+from bench.comparison.spread import FEWEST, expected
 from bench.files import write_text
 from bench.fleet.fleet import RESULTS, TABLE, Fleet
-from bench.fleet.store import Store
+from bench.fleet.store import Plain, Store
 from bench.fleet.summary import ALARM, STATUSES, AxisSummary, Changed, History, Summary
 from bench.names import short, words
+from bench.parameter import Parameter
 from bench.report import document as doc
-from bench.report.fleet_axis import FLEET, NAME, SHOWN, FleetPages, by_how_much, drawn_values
-from bench.report.numbers import brief, chance, number, sentence
+from bench.report.numbers import SPACE, brief, chance, listed, number, sentence, share
+from bench.report.parts import one_panel, parameters_table
 from bench.report.publish import write_html
 from bench.report.serial import as_json, picked, serialised
 
 SCHEMA = "bench.fleet/1"
+FLEET, SUMMARY = "fleet.html", "summary.json"
 #: Rows of a table, axes and charts: a page of a large fleet stays small, the table has all.
 ROWS, AXES, CHARTS = 100, 1000, 12
-#: Recordings in a sketch, the latest.
-SKETCHED = 40
-#: Characters of a reason.
-REASON = 200
-SUMMARY = "summary.json"
+#: Recordings of an axis in a chart and in a table, those around a change, and the latest; and those in a sketch.
+DOTS, SKETCHED = 200, 40
+#: Characters of a reason and of a name.
+REASON, NAME = 200, 80
+#: Seconds of the units that times are given in, the largest first.
+CLOCK = {"d": 86400.0, "h": 3600.0, "min": 60.0, "s": 1.0}
+#: Of these units there are at least so many from the first recording to the last.
+SEVERAL = 3.0
+#: What the table of a fleet and of an axis has of the latest values.
+SHOWN = (INERTIA, VISCOUS, COULOMB)
 #: Quantities in a row of many.
 BRIEFLY = {
     kind.parameter(term): name
@@ -51,32 +67,32 @@ MEANT = {
 def fleet_json(fleet: Fleet, provenance: Mapping[str, Any]) -> str:
     """The summary as the contract's JSON."""
     summary = fleet.summary
-    content = {
-        "schema": SCHEMA,
-        "recordings": {"total": len(fleet.manifest), **summary.counts},
-        "axes": summary.axes,
-        "false_alarm_rate": ALARM,
-        "compared": summary.compared,
-        "changed": summary.changed,
-        "named": summary.shown,
-        "attention": summary.concerns,
-        "table": TABLE,
-        "provenance": provenance,
-    }
-    return serialised(content)
+    return serialised(
+        {
+            "schema": SCHEMA,
+            "recordings": {"total": len(fleet.manifest), **summary.counts},
+            "axes": summary.axes,
+            "false_alarm_rate": ALARM,
+            "compared": summary.compared,
+            "changed": summary.changed,
+            "named": summary.shown,
+            "attention": summary.concerns,
+            "table": TABLE,
+            "provenance": provenance,
+        }
+    )
 
 
 @as_json.register
 def _(one: Changed) -> dict[str, Any]:
     step = one.step
     difference = step.after - step.before
-    before, after = one.counts
     return {
         **picked(one.history, "axis", "quantity", "unit"),
         **picked(step, "before", "after"),
         "difference95": [difference - step.reach, difference + step.reach],
         **picked(one, "since", "file"),
-        "recordings": {"before": before, "after": after},
+        "recordings": dict(zip(("before", "after"), one.counts, strict=True)),
         "chance": one.chance,
     }
 
@@ -107,45 +123,40 @@ def _older(page: Path, *files: Path) -> bool:
 
 
 def fleet_document(fleet: Fleet, provenance: Mapping[str, Any]) -> doc.Document:
-    """The document of a fleet; the same for the same results, however many were evaluated now.
-
-    Args:
-        fleet: what was found.
-        provenance: of it: version, manifest_sha256 and options.
-    """
+    """The document of a fleet; the same for the same results, however many were evaluated now."""
     pages = FleetPages(fleet, provenance)
     summary, name = fleet.summary, short(fleet.manifest.path.name, NAME)
     rows = [
         (short(one.axis, NAME), words(one.name), f"{one.recordings} of {one.of}", one.since) for one in summary.shown
     ]
     caption = "Those that most recordings of their axis show come first"
-    effects = _first(caption, ("axis", "effect", "recordings>", "first"), rows)
-    shown = (doc.section("effects", "Effects that axes show", effects),)
+    shown = [_first(caption, ("axis", "effect", "recordings>", "first"), rows)] if rows else []
+    statuses = ((words(status), str(summary.counts[status]), MEANT[status]) for status in STATUSES)
+    marked = (k for k, status in enumerate(STATUSES) if status != "done" and summary.counts[status])
+    recordings = doc.table("By status", ("status", "recordings>", "which~"), statuses, marked)
     rows_of = "a row for each recording: parameters, errors, verdict, reason, provenance"
     files = {TABLE: rows_of, SUMMARY: "all that this page says, without a bound on its length"}
+    reasons = _reasons(summary)
     options = ", ".join(key for key, value in provenance["options"].items() if value) or "none"
     return doc.Document(
         title=f"{name}: fleet",
         subject=f"Fleet {name}: {len(fleet.manifest)} recordings of {summary.axes} axes",
         verdict=_verdict(summary),
         tone="refused" if summary.changed else "open" if summary.concerns or not summary.compared else "sure",
-        answers=_answers(fleet),
-        sections=(
+        answers=_answers(summary, reasons),
+        sections=doc.sections(
             doc.section("axes", "All axes", _dashboard(pages), detail=True),
-            doc.section("people", "Who needs a person first", _people(summary)),
+            doc.section("people", "Who needs a person first", _people(summary, reasons)),
             doc.section("changes", "What changed", *_changes(pages)),
-            *(shown if summary.shown else ()),
-            doc.section("recordings", "Recordings", _statuses(summary), doc.neighbours(files)),
+            doc.section("effects", "Effects that axes show", *shown),
+            doc.section("recordings", "Recordings", recordings, doc.neighbours(files)),
         ),
-        origin=(
-            f"servobench {provenance['version']}; manifest sha256 {provenance['manifest_sha256']}",
-            f"options: {options}",
-        ),
+        origin=(pages.origin, f"options: {options}"),
     )
 
 
 def _verdict(summary: Summary) -> str:
-    changed, called = {one.history.axis for one in summary.changed}, {one.axis for one in summary.concerns}
+    changed, called = {one.axis for one in summary.changed}, {one.axis for one in summary.concerns}
     first = f"{len(changed) or 'None'} of {summary.axes} axes changed"
     if not summary.compared:
         first = "No axis could be compared over time"
@@ -158,30 +169,23 @@ def _verdict(summary: Summary) -> str:
     )
 
 
-def _answers(fleet: Fleet) -> dict[str, str]:
-    summary = fleet.summary
+def _answers(summary: Summary, reasons: Mapping[str, Sequence[str]]) -> dict[str, str]:
     counts = ", ".join(f"{summary.counts[status]} {words(status)}" for status in STATUSES if summary.counts[status])
+    sure = "Not known: that needs three recordings of an axis with a time, by one rig."
     if summary.compared:
         sure = (
             f"{summary.compared} series of a quantity were compared; of a hundred fleets in which nothing changes at "
             f"most {100.0 * ALARM:g} names an axis."
         )
-    else:
-        sure = "Not known: that needs three recordings of an axis with a time, by one rig."
-    first = next(iter(_reasons(summary).items()), None)
-    return {
-        "Who first?": "Nobody." if first is None else f"{short(first[0], NAME)}: {first[1][0]}.",
-        "How sure?": sure,
-        "Recordings?": f"{counts}.",
-    }
+    first = next((f"{short(axis, NAME)}: {why[0]}" for axis, why in reasons.items()), "Nobody")
+    return {"Who first?": f"{first}.", "How sure?": sure, "Recordings?": f"{counts}."}
 
 
 def _reasons(summary: Summary) -> dict[str, list[str]]:
     """By axis, why a person should look: what changed surely comes before what could not be decided, gravest first."""
     reasons: dict[str, list[str]] = {}
     for one in summary.changed:
-        why = f"{words(one.history.quantity)} {by_how_much(one)} since {one.since}"
-        reasons.setdefault(one.history.axis, []).append(why)
+        reasons.setdefault(one.axis, []).append(news(one))
     for one in summary.concerns:
         which = f"{one.recordings} of {one.of} recordings, the latest {short(one.file, NAME)}"
         why = f"{words(one.kind)} ({which}): {short(one.reason, REASON)}"
@@ -203,42 +207,39 @@ def _dashboard(pages: FleetPages) -> doc.Table:
     return made.model_copy(update={"links": links, "sketches": sketches, "sought": True})
 
 
-def _row(pages: FleetPages, axis: AxisSummary) -> tuple[tuple[str, ...], tuple[doc.Series, ...]]:
-    """Of an axis, and what is drawn of it."""
+def _row(pages: FleetPages, axis: AxisSummary) -> tuple[tuple[str | None, ...], tuple[doc.Series, ...]]:
+    """Of an axis, and what is drawn of it: the latest values over where the next one was to be expected."""
     done = next((row for row in reversed(axis.rows) if pages.fleet.results[row]["status"] == "done"), None)
-    values = () if done is None else pages.parameters(done)
+    values = [None] * len(SHOWN) if done is None else pages.parameters(done)
     changed = max(axis.changed, key=lambda one: pages.times[one.history.rows[one.step.place]], default=None)
     history = max(axis.histories, key=lambda one: pages.times[one.rows[-1]], default=None)
-    last = "none" if axis.histories else "–"
+    last = "none" if axis.histories else None
     if changed is not None:
         history = changed.history
         last = f"{by_how_much(changed)} since {changed.since}, by chance {chance(changed.chance)}"
+    sketch: list[doc.Series] = []
+    if history is not None:
+        x = pages.times[list(history.rows)]
+        sketch, x, drawn = drawn_values(x, history, slice(max(0, x.size - SKETCHED), x.size), changed)
+        sketch.append(doc.series("", "line", "ink", x, drawn))
+        sketch.append(doc.series("", "dots", "model", x[-1:], drawn[-1:]))
     noted = ("changed",) * bool(changed) + tuple(words(one.kind) for one in axis.concerns)
     cells = (
         short(axis.name, NAME),
         "" if history is None else BRIEFLY.get(history.quantity, words(history.quantity)),
         last,
-        ", ".join(noted) or "–",
-        *("–" if one is None else brief(one) for one in values or (None,) * len(SHOWN)),
-        ", ".join(f"{words(one.name)} ({one.recordings} of {one.of})" for one in axis.shown) or "–",
+        ", ".join(noted) or None,
+        *(None if one is None else brief(one) for one in values),
+        ", ".join(f"{words(one.name)} ({one.recordings} of {one.of})" for one in axis.shown) or None,
     )
-    return cells, () if history is None else _sketch(pages, history, changed)
+    return cells, tuple(sketch)
 
 
-def _sketch(pages: FleetPages, history: History, changed: Changed | None) -> tuple[doc.Series, ...]:
-    """The latest values over time, the last of them a dot, over where the next one was to be expected."""
-    x = pages.times[list(history.rows)]
-    bands, x, values = drawn_values(x, history, slice(max(0, x.size - SKETCHED), x.size), changed)
-    line, dot = doc.series("", "line", "ink", x, values), doc.series("", "dots", "model", x[-1:], values[-1:])
-    return (*bands, line, dot)
-
-
-def _people(summary: Summary) -> doc.AnyPart:
-    reasons = _reasons(summary)
+def _people(summary: Summary, reasons: Mapping[str, Sequence[str]]) -> doc.AnyPart:
     if not reasons:
         return doc.Paragraph(text="Nobody: no axis changed, and every recording gave a result that explains it.")
     rows = [(short(axis, NAME), "; ".join(why)) for axis, why in reasons.items()]
-    marked = range(min(ROWS, len({one.history.axis for one in summary.changed})))
+    marked = range(min(ROWS, len({one.axis for one in summary.changed})))
     return _first("Changed first, then by how grave it is", ("axis", "why~"), rows, marked)
 
 
@@ -251,7 +252,7 @@ def _changes(pages: FleetPages) -> Iterator[doc.AnyPart]:
     headings = ("axis", "quantity", "before>", "after>", "change (95 %)>", "since", "recordings before, after>")
     rows = [
         (
-            short(one.history.axis, NAME),
+            short(one.axis, NAME),
             words(one.history.quantity),
             number(one.step.before),
             number(one.step.after, one.history.unit),
@@ -268,15 +269,229 @@ def _changes(pages: FleetPages) -> Iterator[doc.AnyPart]:
         yield pages.over_time(one.history, one)
 
 
-def _statuses(summary: Summary) -> doc.Table:
-    rows = ((words(status), str(summary.counts[status]), MEANT[status]) for status in STATUSES)
-    marked = (k for k, status in enumerate(STATUSES) if status != "done" and summary.counts[status])
-    return doc.table("By status", ("status", "recordings>", "which~"), rows, marked)
-
-
 def _first(
     caption: str, headings: Sequence[str], rows: Sequence[tuple[str, ...]], marked: Sequence[int] = ()
 ) -> doc.Table:
     """A table of the first rows, which says how many there are."""
     more = f"; the first {ROWS} of {len(rows)}" if len(rows) > ROWS else ""
     return doc.table(f"{sentence(caption)}{more}", headings, rows[:ROWS], marked)
+
+
+@dataclass(frozen=True)
+class FleetPages:
+    """The pages below a fleet's, and where they lie; `provenance`: of the fleet's page."""
+
+    fleet: Fleet
+    provenance: Mapping[str, Any]
+
+    @cached_property
+    def times(self) -> Array:
+        """When each was recorded (n,), as the manifest has it."""
+        return self.fleet.manifest.times
+
+    @cached_property
+    def text_of(self) -> dict[str, list[str]]:
+        """Columns of the manifest as text (n,)."""
+        return {column: self.fleet.manifest.text(column) for column in ("file", "time")}
+
+    @cached_property
+    def commands(self) -> list[str]:
+        """What shows a recording with all that was measured (n,)."""
+        places = zip(*(self.fleet.manifest.located(column) for column in ("file", "rig")), strict=True)
+        return [f"bench diagnose {shlex.quote(file)} --rig {shlex.quote(rig)} --out found" for file, rig in places]
+
+    def axis_place(self, axis: str) -> str:
+        """Where the page of an axis lies, in the folder of the fleet: names are any text."""
+        return f"axes/{hashlib.sha256(axis.encode('utf-8', 'surrogatepass')).hexdigest()[:16]}.html"
+
+    def recording_place(self, row: int) -> str:
+        """Where that of a recording lies, beside its result; empty of one that could not be begun."""
+        key = self.fleet.planned[row].key
+        return f"results/{key[:2]}/{key}.html" if key else ""
+
+    def parameters(self, row: int) -> list[Parameter | None]:
+        """Inertia, viscous and Coulomb friction by one recording."""
+        job, found = self.fleet.planned[row].job, parameters(self.fleet.results[row])
+        return [None if job is None else found.get(job.rig.axis_kind.parameter(term)) for term in SHOWN]
+
+    def axis(self, axis: AxisSummary) -> doc.Document:
+        """The page of an axis."""
+        changed = {(one.history.quantity, one.history.rows): one for one in axis.changed}
+        drawn = [self.over_time(one, changed.get((one.quantity, one.rows))) for one in axis.histories]
+        answers = {}
+        if axis.changed:
+            answers["How sure?"] = f"{sentence(chance(max(one.chance for one in axis.changed)))} that nothing changed."
+        if axis.shown:
+            shown = (f"{words(one.name)} ({one.recordings} of {one.of}, since {one.since})" for one in axis.shown)
+            answers["Effects?"] = sentence(listed(shown))
+        for one in axis.concerns:
+            answers[f"{sentence(words(one.kind))}?"] = f"{one.recordings} of {one.of} recordings: {one.reason}"
+        unchanged = "No change" if axis.histories else "Nothing to compare"
+        return doc.Document(
+            title=f"{short(axis.name, NAME)}: axis",
+            subject=f"Axis {short(axis.name, NAME)}: {len(axis.rows)} recordings",
+            verdict=sentence(f"{listed(map(news, axis.changed)) or unchanged}."),
+            tone="refused" if axis.changed else "open" if axis.concerns or not axis.histories else "sure",
+            answers=answers,
+            sections=doc.sections(
+                doc.section("time", "Over time", *drawn),
+                doc.section("recordings", "Recordings", self._recordings(axis)),
+                doc.section("fleet", "The fleet", doc.neighbours({f"../{FLEET}": "all axes"})),
+            ),
+            origin=(self.origin,),
+        )
+
+    def _recordings(self, axis: AxisSummary) -> doc.Table:
+        latest = list(reversed(axis.rows))[:DOTS]
+        rows = []
+        for row in latest:
+            found = self.fleet.results[row]
+            values = ["" if one is None else brief(one) for one in self.parameters(row)]
+            names = listed(words(one["name"]) for one in found.get("effects") or ())
+            noted = found["reason"] or "; ".join(words(check["name"]) for check in found["checks"])
+            when, file = self.text_of["time"][row], self.text_of["file"][row]
+            rows.append((when or file, words(found["status"]), *values, names, short(noted), short(file, NAME)))
+        more = f", the latest {DOTS} of {len(axis.rows)}" if len(axis.rows) > DOTS else ""
+        headings = ("recording", "status", "inertia>", "viscous>", "Coulomb>", "effects", "noted~", "file")
+        marked = (k for k, row in enumerate(latest) if self.fleet.results[row]["status"] != "done")
+        made = doc.table(f"The latest first{more}", headings, rows, marked)
+        places = (self.recording_place(row) for row in latest)
+        return made.model_copy(update={"links": tuple(place and f"../{place}" for place in places)})
+
+    def recording(self, row: int) -> doc.Document:
+        """The page of a recording."""
+        found, file, when = self.fleet.results[row], self.text_of["file"][row], self.text_of["time"][row]
+        axis = self.fleet.manifest.table["axis"][row].as_py() or ""
+        values, checks = parameters(found), found.get("checks")
+        lacking = [
+            parameters_table(sentence(words(one["name"])), parameters(one)) for one in found.get("effects") or ()
+        ]
+        warned: list[doc.AnyPart] = [doc.points(found["warnings"])] if found.get("warnings") else []
+        if checks:
+            rows = ((words(one["name"]), one["status"], one["found"], one["advice"]) for one in checks)
+            warned.append(doc.table("Those that did not pass", ("check", "status", "found~", "advice~"), rows))
+        name = self.recording_place(row).rpartition("/")[2].replace(".html", ".json")
+        above = {name: "all of it", f"../../{self.axis_place(axis)}": "the axis", f"../../{FLEET}": "the fleet"}
+        graphs = (doc.Paragraph(text="With all that was measured, as graphs:"), doc.Code(text=self.commands[row]))
+        good, digest = found["status"] == "done" and not found["checks"], found.get("trace_sha256")
+        return doc.Document(
+            title=f"{short(file, NAME)}: recording of {short(axis, NAME)}",
+            subject=f"Recording {short(file, NAME)} of axis {short(axis, NAME)}{when and f', {when}'}",
+            verdict=_recording_verdict(found),
+            tone="sure" if good else "open",
+            answers={} if good else {"Noted?": found["reason"] or f"{len(found['checks'])} checks did not pass."},
+            sections=doc.sections(
+                doc.section("parameters", "Parameters", *([parameters_table("", values)] if values else [])),
+                doc.section("effects", "What was missing", *lacking),
+                doc.section("gap", "What is left", *([_gaps(found["gap"])] if found.get("gap") else [])),
+                doc.section("checks", "Checks and warnings", *warned),
+                doc.section("more", "More", *graphs, doc.neighbours(above)),
+            ),
+            origin=(self.origin, *([f"trace sha256 {digest}"] if digest else [])),
+        )
+
+    def over_time(self, history: History, changed: Changed | None) -> doc.Chart:
+        """A quantity over time, and where the next recording was to be expected before and after its change."""
+        count = len(history.rows)
+        middle = count - DOTS // 2 if changed is None else changed.step.place
+        near = slice(max(0, middle - DOTS // 2), middle + DOTS // 2)
+        times, label, unit = self.times[list(history.rows)], "time", ""
+        if self.fleet.manifest.dated:  # by moments, since the first of them
+            times, label = times - times[0], f"time since {self.text_of['time'][history.rows[0]]}"
+            unit = next((unit for unit, size in CLOCK.items() if times[-1] >= SEVERAL * size), "s")
+            times = times / CLOCK[unit]
+        drawn, x, values = drawn_values(times, history, near, changed)
+        reach = NORMAL95 * history.errors[near]
+        if changed is None:
+            trend = f"The latest {number(float(history.values[-1]), history.unit)}; no change stands out."
+        else:
+            step = changed.step
+            until, later = np.array([x[0], times[step.place]]), np.array([times[step.place], x[-1]])
+            drawn.append(doc.series("mean", "line", "model", until, np.full(2, step.before)))
+            drawn.append(doc.series("", "line", "model", later, np.full(2, step.after)))
+            trend = (
+                f"From {number(step.before)} to {number(step.after, history.unit)}, {by_how_much(changed)}, since "
+                f"{changed.since} ({short(changed.file, NAME)})."
+            )
+        each = "recordings, each with its own interval"
+        drawn.append(doc.series(each, "dots", "ink", x, values, (values - reach, values + reach)))
+        which = "latest" if changed is None else "nearest to it"
+        alternative = trend + ("" if count <= x.size else f" Of {count} recordings the {x.size} {which} are drawn.")
+        title = f"{short(history.axis, NAME)}: {words(history.quantity)}."
+        return one_panel(title, alternative, (label, unit), (words(history.quantity), history.unit), drawn)
+
+    @property
+    def origin(self) -> str:
+        """What all pages rest on."""
+        return f"servobench {self.provenance['version']}; manifest sha256 {self.provenance['manifest_sha256']}"
+
+
+def parameters(result: Plain) -> dict[str, Parameter]:
+    """Parameters of a result; without an interval where it knows none."""
+    found = {}
+    for name, one in result.get("parameters", {}).items():
+        error, low, high = np.array([one["std_error"], *one["ci95"]], dtype=np.float64).tolist()  # nan for null
+        found[name] = Parameter(one["value"], one["unit"], error, (low, high))
+    return found
+
+
+def _recording_verdict(found: Plain) -> str:
+    names = listed(words(one["name"]) for one in found.get("effects") or ())
+    if found["status"] != "done":
+        return f"{sentence(words(found['status']))}: no result."
+    match found.get("verdict"):
+        case "unexplained_remainder":
+            beside = f" beside {names}" if names else ""
+            return f"Something is left{beside} that no effect of the catalogue explains."
+        case "explained":
+            return f"{sentence(names)} {'was' if len(found['effects']) == 1 else 'were'} missing."
+        case "nothing_missing":
+            return "Inertia and friction explain it: nothing is missing."
+        case _:
+            explained = found["explained"]
+            known = "" if explained is None else f" and explain {share(explained)} of the effort"
+            return f"Inertia and friction are known{known}."
+
+
+def _gaps(gaps: Mapping[str, Plain]) -> doc.Table:
+    """What is left of torque (force) and velocity."""
+    rows = []
+    for name, gap in gaps.items():
+        values = (gap[key] for key in ("before", "after", "noise_floor"))
+        rows.append((name, *(None if value is None else number(value, gap["unit"]) for value in values)))
+    return doc.table("RMS of what the model leaves", ("signal", "before any effect>", "left>", "noise alone>"), rows)
+
+
+def news(one: Changed) -> str:
+    """What changed, by how much, and since when."""
+    return f"{words(one.history.quantity)} {by_how_much(one)} since {one.since}"
+
+
+def by_how_much(one: Changed) -> str:
+    """By how much a quantity changed, with the interval of 95 %."""
+    step = one.step
+    difference, size = step.after - step.before, abs(step.before)
+    if size:
+        text = f"{100.0 * difference / size:+.3g}{SPACE}±{SPACE}{share(step.reach / size)}"
+    else:
+        text = f"{difference:+.3g}{SPACE}±{SPACE}{number(step.reach, one.history.unit, 2)}"
+    return text.replace("-", "−")
+
+
+def drawn_values(
+    x: Array, history: History, near: slice, changed: Changed | None
+) -> tuple[list[doc.Series], Array, Array]:
+    """Where the next recording was to be expected, before and after a change, and x and values in sight (b,)."""
+    places = [] if changed is None else [changed.step.place]
+    end = x[near][-1]
+    drawn = []
+    if history.values.size >= FEWEST:
+        bands = expected(history.values, history.errors, *places)
+        if places and places[0] <= near.start:
+            places, bands = [], bands[1:]
+        named = "the next recording (95 %)" + (", as forecast before and after" if places else "")
+        # the first is drawn to the end: what came after a change lies outside of it
+        for place, (low, high) in zip((near.start, *places), bands, strict=True):
+            ends, bounds = np.array([x[place], end]), (np.full(2, low), np.full(2, high))
+            drawn.append(doc.series("" if drawn else named, "band", "floor", ends, bounds=bounds))
+    return drawn, x[near], history.values[near]

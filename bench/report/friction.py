@@ -6,13 +6,12 @@ As JSON (`bench.friction/1`) and as a document; its picture has the recordings, 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS
 from bench.effects.catalogue import catalogue
-from bench.friction_map import CHANCE, FrictionCurve, FrictionMap
+from bench.friction_map import CHANCE, FrictionMap
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.report import document as doc
@@ -30,11 +29,15 @@ Values = Mapping[str, tuple[float, str]]
 def friction_json(found: FrictionMap) -> str:
     """The map, what holds of it and how sure that is."""
     before, after = found.unexplained
+    axis, effect = (
+        {name: {"value": value, "unit": unit} for name, (value, unit) in values.items()}
+        for values in (_base(found), _effect(found))
+    )
     return serialised(
         {
             "schema": SCHEMA,
-            "parameters": _values_json(_base(found)),
-            "effect": None if found.name is None else {"name": found.name, "parameters": _values_json(_effect(found))},
+            "parameters": axis,
+            "effect": None if found.name is None else {"name": found.name, "parameters": effect},
             "best": found.best.name or None,
             "chance": found.probability,
             "unexplained": {"before": before, "after": after},
@@ -45,15 +48,11 @@ def friction_json(found: FrictionMap) -> str:
     )
 
 
-def _values_json(values: Values) -> dict[str, Any]:
-    return {name: {"value": value, "unit": unit} for name, (value, unit) in values.items()}
-
-
 def friction(found: FrictionMap, title: str) -> doc.Document:
     """The document of a friction map of the axis that `title` names."""
     axes = {"The axis": _base(found), **({} if found.name is None else {sentence(words(found.name)): _effect(found)})}
     tables = [values_table(of, ((name, *value) for name, value in values.items())) for of, values in axes.items()]
-    curves, left = _over_speed(found), _left(found)
+    curves, left = _charts(found)
     return doc.Document(
         title=f"{title}: friction",
         subject=f"Friction of {title} over {found.velocity.size} steady speeds",
@@ -100,7 +99,7 @@ def _verdict(found: FrictionMap) -> str:
 
 
 def _answers(found: FrictionMap) -> dict[str, str]:
-    base, least, most = _base(found), np.abs(found.velocity).min(), np.abs(found.velocity).max()
+    base, speeds = _base(found), np.abs(found.velocity)
     friction = "; ".join(
         f"{words(name)} {number(*base[name])}" for name in map(found.kind.parameter, (COULOMB, VISCOUS)) if name in base
     )
@@ -112,41 +111,36 @@ def _answers(found: FrictionMap) -> dict[str, str]:
     left = "Nothing that steady speeds would tell."
     if found.offset is None:
         left = "A constant offset is counted in the effect: such recordings do not tell them apart."
-    speeds = f"{number(least, digits=3)} to {number(most, found.kind.speed_unit, 3)}"
+    between = f"{number(speeds.min(), digits=3)} to {number(speeds.max(), found.kind.speed_unit, 3)}"
     return {
         "Friction?": friction,
         "How sure?": f"{sentence(chance)}; named below {CHANCE:g}.",
-        "From what?": f"{found.velocity.size} recordings, {speeds}.",
+        "From what?": f"{found.velocity.size} recordings, {between}.",
         "What is open?": left,
     }
 
 
-def _curves(found: FrictionMap) -> list[tuple[FrictionCurve, str, bool]]:
-    """Curves that are drawn, what they are called, and whether an effect bends them."""
-    plain = [(found.plain, "no effect", False)]
-    return plain if found.name is None else [*plain, (found.best, words(found.name), True)]
-
-
-def _over_speed(found: FrictionMap) -> doc.Chart:
-    effort, drawn = effort_word(found.effort_unit), []
-    for curve, label, bent in _curves(found):
+def _charts(found: FrictionMap) -> tuple[doc.Chart, doc.Chart]:
+    """The recordings and the curves fitted to them, and what each curve leaves of the recordings."""
+    effort, curves = effort_word(found.effort_unit), [("no effect", found.plain)]
+    if found.name is not None:
+        curves.append((words(found.name), found.best))
+    drawn, left = [], []
+    for label, curve in curves:
+        style, colour = ("rings", "left") if curve is found.plain else ("dots", "model")
+        left.append(doc.series(label, style, colour, found.velocity, found.effort - curve.effort(found.velocity)))
         for direction in (-1.0, 1.0):
             speeds = found.velocity[direction * found.velocity > 0.0]
             if speeds.size:
                 x = np.sort(direction * np.geomspace(np.abs(speeds).min(), np.abs(speeds).max(), DRAWN))
-                name = "" if any(one.name == label for one in drawn) else label
-                drawn.append(doc.series(name, "line", "model" if bent else "left", x, curve.effort(x)))
+                drawn.append(doc.series(label, "line", colour, x, curve.effort(x)))
+                label = ""
     drawn.append(doc.series("recordings", "dots", "ink", found.velocity, found.effort))
+    over = ("speed", found.kind.speed_unit)
     alternative = f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them."
-    axes = ("speed", found.kind.speed_unit), (effort, found.effort_unit)
-    return one_panel("Friction.", alternative, *axes, drawn)
-
-
-def _left(found: FrictionMap) -> doc.Chart:
-    """What each curve leaves of the recordings."""
-    drawn = []
-    for curve, label, bent in _curves(found):
-        style, colour = ("dots", "model") if bent else ("rings", "left")
-        drawn.append(doc.series(label, style, colour, found.velocity, found.effort - curve.effort(found.velocity)))
-    axes = ("speed", found.kind.speed_unit), ("left", found.effort_unit)
-    return one_panel("What is left.", "What each curve leaves of the recordings.", *axes, drawn)
+    return (
+        one_panel("Friction.", alternative, over, (effort, found.effort_unit), drawn),
+        one_panel(
+            "What is left.", "What each curve leaves of the recordings.", over, ("left", found.effort_unit), left
+        ),
+    )

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.diagnosis.diagnosis import Course, Diagnosis, Gap
-from bench.diagnosis.where import Profile, Where
+from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.where import Where
 from bench.names import words
 from bench.report import document as doc
 from bench.report.numbers import coordinate_word, effort_word, listed, number, sentence, share, unit_text
@@ -41,20 +41,26 @@ def at_a_glance(found: Diagnosis) -> tuple[doc.Chart, ...]:
 
 def _stretch_chart(found: Diagnosis) -> doc.Chart | None:
     """Measured, before and after over the stretch that shows the gap best; None of a recording too short for one."""
-    course = found.courses[0]
-    signals = [
+    course, best, chart = found.courses[0], 0.0, None
+    for what, unit, rows, measured, left in (
         (effort_word(found.torque.unit), found.torque.unit, course.rows, course.torque, course.torque_left),
         ("speed", found.velocity.unit, np.arange(course.time.size), course.velocity, course.velocity_left),
-    ]
-    best: tuple[float, doc.Chart] | None = None
-    for what, unit, rows, measured, left in signals:
+    ):
         if left[0] is None or left[-1] is None:
             continue
         curves = np.stack([measured, measured - left[0], measured - left[-1]])
         score, part = _telling(curves, _whole(rows, curves))
-        if part is not None and (best is None or score > best[0]):
-            best = score, _curves_chart(what, unit, course, rows[part], curves[:, part])
-    return best[1] if best else None
+        if part is None or (chart is not None and score <= best):
+            continue
+        few = slice(part.start, part.stop, -(-(part.stop - part.start) // POINTS))
+        time, (measured, before, after) = course.time[rows[few]], curves[:, few]
+        drawn = [doc.series("measured", "wide", "ink", time, measured)]
+        drawn.append(doc.series("inertia and friction alone", "dashes", "blue", time, before))
+        if (before != after).any():
+            drawn.append(doc.series("with what was found", "line", "model", time, after))
+        title = f"{sentence(what)} over a stretch that shows it."
+        best, chart = score, one_panel(title, "", ("time", "s"), (what, unit), drawn)
+    return chart
 
 
 def _whole(rows: NDArray[np.int64], curves: Array) -> list[slice]:
@@ -82,44 +88,34 @@ def _telling(curves: Array, whole: Sequence[slice]) -> tuple[float, slice | None
     return next(((score, part) for score, part in ranked if score >= NEARLY * best), (0.0, None))
 
 
-def _curves_chart(what: str, unit: str, course: Course, samples: NDArray[np.int64], curves: Array) -> doc.Chart:
-    few = slice(None, None, -(-samples.size // POINTS))
-    time, (measured, before, after) = course.time[samples][few], curves[:, few]
-    drawn = [doc.series("measured", "wide", "ink", time, measured)]
-    drawn.append(doc.series("inertia and friction alone", "dashes", "blue", time, before))
-    if (before != after).any():
-        drawn.append(doc.series("with what was found", "line", "model", time, after))
-    return one_panel(f"{sentence(what)} over a stretch that shows it.", "", ("time", "s"), (what, unit), drawn)
-
-
 def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
-    """The gap in bins of these coordinates, with what was found drawn in."""
+    """The gap in bins of these coordinates before and after, what was found in it, and the noise of a row."""
     profiles, most = {profile.coordinate: profile for profile in found.profiles}, found.profiles[0]
+    names = dict.fromkeys(words(effect.name) for effect in found.effects)
+    made = f"what {listed(names)} {'make' if len(names) > 1 else 'makes'} of it"
+    panels = []
+    for profile in (profiles[name] for name in coordinates if name in profiles):
+        order = np.argsort(profile.centres)
+        x, before, after = profile.centres[order], profile.before[order], profile.after[order]
+        drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap before", "dots", "ink", x, before)]
+        if found.effects:
+            drawn.append(doc.series(made, "line", "model", x, before - after))
+            drawn.append(doc.series("left after", "rings", "left", x, after))
+        panels.append(
+            doc.Panel(
+                x_label=coordinate_word(profile.coordinate, profile.unit),
+                x_unit=unit_text(profile.unit),
+                note=f"{share(profile.share)} of the gap",
+                series=tuple(drawn),
+            )
+        )
     return doc.Chart(
         title="The gap, and what was found in it.",
         alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate. "
         f"Most of it hangs on {most.coordinate}, {share(most.share)} of its variance.",
         y_label="gap",
         y_unit=unit_text(found.torque.unit),
-        panels=tuple(_over(profiles[name], found) for name in coordinates if name in profiles),
-    )
-
-
-def _over(profile: Profile, found: Diagnosis) -> doc.Panel:
-    """Before and after, what the found effects make of it, and the noise of a row."""
-    order = np.argsort(profile.centres)
-    x, before, after = profile.centres[order], profile.before[order], profile.after[order]
-    drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap before", "dots", "ink", x, before)]
-    if found.effects:
-        names = dict.fromkeys(words(effect.name) for effect in found.effects)
-        made = f"what {listed(names)} {'make' if len(names) > 1 else 'makes'} of it"
-        drawn.append(doc.series(made, "line", "model", x, before - after))
-        drawn.append(doc.series("left after", "rings", "left", x, after))
-    return doc.Panel(
-        x_label=coordinate_word(profile.coordinate, profile.unit),
-        x_unit=unit_text(profile.unit),
-        note=f"{share(profile.share)} of the gap",
-        series=tuple(drawn),
+        panels=tuple(panels),
     )
 
 
@@ -139,34 +135,35 @@ def where_picture(found: Diagnosis, title: str) -> doc.Picture:
 
 
 def rms_gaps(found: Diagnosis) -> tuple[doc.Intervals, ...]:
-    """RMS gaps of the bare axis and after each addition, on both recordings, against the noise floor."""
-    torque = _shrinking(found, effort_word(found.torque.unit), [step.torque for step in found.steps], found.torque)
-    speed = _shrinking(found, "speed", [step.velocity for step in found.steps], found.velocity)
-    return tuple(filter(None, (torque, speed)))
-
-
-def _shrinking(found: Diagnosis, what: str, steps: Sequence[tuple[float, ...]], gap: Gap) -> doc.Intervals | None:
-    """Gaps of all steps; None where none is known."""
-    spans = [
-        doc.Span(name=f"{label}, {course.name}", colour=colour, value=value, low=value, high=value)
-        for label, values in zip(states(found), steps, strict=True)
-        for course, colour, value in zip(found.courses, ("ink", "model"), values, strict=False)
-        if math.isfinite(value) and value > 0.0
-    ]
-    if not spans or not gap.noise_floor > 0.0:
-        return None
-    ends = [gap.noise_floor, *(span.value for span in spans)]
-    limits = min(ends) / BESIDE, max(ends) * BESIDE
-    return doc.Intervals(
-        title=f"{sentence(what)} gap.",
-        alternative="RMS gaps before and after each addition; the band is noise.",
-        label=f"RMS {what} gap",
-        unit=unit_text(gap.unit),
-        right=(limits[0], gap.noise_floor),
-        limits=limits,
-        spans=tuple(spans),
-        log=True,
-    )
+    """RMS gaps that are known of the bare axis and after each addition, on both recordings, against the noise floor."""
+    charts = []
+    for what, gap, steps in (
+        (effort_word(found.torque.unit), found.torque, [step.torque for step in found.steps]),
+        ("speed", found.velocity, [step.velocity for step in found.steps]),
+    ):
+        spans = [
+            doc.Span(name=f"{label}, {course.name}", colour=colour, value=value, low=value, high=value)
+            for label, values in zip(states(found), steps, strict=True)
+            for course, colour, value in zip(found.courses, ("ink", "model"), values, strict=False)
+            if math.isfinite(value) and value > 0.0
+        ]
+        if not spans or not gap.noise_floor > 0.0:
+            continue
+        ends = [gap.noise_floor, *(span.value for span in spans)]
+        limits = min(ends) / BESIDE, max(ends) * BESIDE
+        charts.append(
+            doc.Intervals(
+                title=f"{sentence(what)} gap.",
+                alternative="RMS gaps before and after each addition; the band is noise.",
+                label=f"RMS {what} gap",
+                unit=unit_text(gap.unit),
+                right=(limits[0], gap.noise_floor),
+                limits=limits,
+                spans=tuple(spans),
+                log=True,
+            )
+        )
+    return tuple(charts)
 
 
 def states(found: Diagnosis) -> list[str]:

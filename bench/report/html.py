@@ -19,7 +19,7 @@ import numpy as np
 from markupsafe import Markup
 
 from bench.names import plain
-from bench.report.document import LARGEST, Chart, Document, File, Intervals, Moving, Panel, Series, Table, TimeGraph
+from bench.report.document import LARGEST, Chart, Document, Intervals, Moving, Panel, Series, Table, TimeGraph
 
 if TYPE_CHECKING:  # 0.05 s, which only a page has to pay
     from jinja2 import Environment
@@ -37,7 +37,6 @@ def html(document: Document, script: str | None = None, own: Program | None = No
     """The page of a document.
 
     Args:
-        document: what it says.
         script: address, as seen from the page, of the script file that it shares with others; inside of it without.
         own: program of this page.
     """
@@ -46,17 +45,14 @@ def html(document: Document, script: str | None = None, own: Program | None = No
     lively = moving or any(isinstance(block, Table) and block.sought for block in blocks)
     inside = (program() if moving else _asset("assets", "seek.js")) if lively and script is None else None
     inside = inside if own is None else "\n".join(filter(None, (inside, own.script)))
-    return (
-        _environment()
-        .get_template("page.html.j2")
-        .render(
-            page=document,
-            style=Markup(f"{_asset('uplot', 'uPlot.min.css')}\n{_asset('assets', 'page.css')}"),
-            script=None if inside is None else Markup(inside),
-            shared=script if lively else None,
-            live=None if own is None else _json(own.data),
-            policy=_policy(inside),
-        )
+    page = _environment().get_template("page.html.j2")
+    return page.render(
+        page=document,
+        style=Markup(f"{_asset('uplot', 'uPlot.min.css')}\n{_asset('assets', 'page.css')}"),
+        script=None if inside is None else Markup(inside),
+        shared=script if lively else None,
+        live=None if own is None else _json(own.data),
+        policy=_policy(inside),
     )
 
 
@@ -79,8 +75,9 @@ def _environment() -> Environment:
         loader=PackageLoader("bench.report", "page/templates"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, finalize=_shown,
     )  # fmt: skip
-    found.filters.update(drawn=drawn, sketched=sketched, laid=laid, rail=rail, link=_link)
+    found.filters.update(drawn=drawn, sketched=sketched, laid=laid, rail=rail)
     found.filters["data"] = lambda graph: _json(graph.model_dump())
+    found.filters["link"] = lambda file: f"data:{file.media};base64,{base64.b64encode(file.content.encode()).decode()}"
     return found
 
 
@@ -95,11 +92,6 @@ def _json(content: Mapping[str, Any]) -> Markup:
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
-
-
-def _link(file: File) -> str:
-    """A file as an address."""
-    return f"data:{file.media};base64,{base64.b64encode(file.content.encode()).decode('ascii')}"
 
 
 def _policy(inside: str | None) -> str:
@@ -201,26 +193,24 @@ def drawn(chart: Chart, small: bool = False) -> list[PlacedPanel]:
         every = (series for panel in panels for series in panel.series)
         heights = (value for series in every for value in (*series.y, *series.low, *series.high))
         down = Ruler.around(heights, HEIGHT - BOTTOM, TOP, panels[0].log)
-        placed += [_placed(panel, down, width) for panel in panels]
+        zero = down(0.0) if down.low < 0.0 < down.high else None
+        for panel in panels:
+            along = (value for one in panel.series for value in one.x)
+            across = Ruler.around(along, LEFT, width - RIGHT, panel.log)
+            marks = [_drawn(one, across, down) for one in panel.series]
+            placed.append(PlacedPanel(panel, width, across.ticks(), down.ticks(), zero, marks))
     return placed
 
 
-def _placed(panel: Panel, down: Ruler, width: float) -> PlacedPanel:
-    across = Ruler.around((value for one in panel.series for value in one.x), LEFT, width - RIGHT, panel.log)
-    zero = down(0.0) if down.low < 0.0 < down.high else None
-    marks = [_drawn(one, across, down) for one in panel.series]
-    return PlacedPanel(panel, width, across.ticks(), down.ticks(), zero, marks)
-
-
 def _drawn(series: Series, across: Ruler, down: Ruler) -> Drawn:
-    x = [across(value) if shown(value, across.log) else math.nan for value in series.x]
-    y, low, high = (
-        [down(value) if shown(value, down.log) else math.nan for value in values]
-        for values in (series.y, series.low, series.high)
+    on_page = ((across, series.x), (down, series.y), (down, series.low), (down, series.high))
+    x, y, low, high = (
+        [ruler(value) if shown(value, ruler.log) else math.nan for value in values] for ruler, values in on_page
     )
     dots = [(a, b) for a, b in zip(x, y, strict=False) if math.isfinite(a) and math.isfinite(b)]
-    area = [*zip(x, low, strict=False), *zip(x[::-1], high[::-1], strict=False)]
-    around = {"band": area}.get(series.style, dots if series.style in LINED else [])
+    around = dots if series.style in LINED else []
+    if series.style == "band":
+        around = [*zip(x, low, strict=False), *zip(x[::-1], high[::-1], strict=False)]
     return Drawn(
         series,
         dots if series.style in DOTTED else [],
@@ -251,22 +241,20 @@ def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
 
 
 def laid(block: Intervals) -> dict[str, Sequence[Any]]:
-    """Rows of intervals in the drawing, cut at the limits of the scale.
+    """Rows of intervals in the drawing, cut at the limits of the scale, the band behind them, and the scale's ticks.
 
-    Each row has its span, the places of value and bounds, and whether the value lies beyond the scale; beside them the
-    ends of the band behind them, and the ticks of the scale.
+    Each row has its span, the places of value and bounds, and whether the value lies beyond the scale.
     """
     low, high = block.limits
-    ruler = Ruler(low, high, 0.0, ROW, block.log)
-
-    def place(value: float) -> float:
-        return ruler(min(max(value, low), high))
-
-    rows = [
-        (span, place(span.value), place(span.low), place(span.high), not low <= span.value <= high)
-        for span in block.spans
-    ]
-    return {"rows": rows, "right": tuple(map(place, block.right)), "ticks": ruler.ticks()}
+    ruler, rows = Ruler(low, high, 0.0, ROW, block.log), []
+    for span in block.spans:
+        places = (ruler(min(max(value, low), high)) for value in (span.value, span.low, span.high))
+        rows.append((span, *places, not low <= span.value <= high))
+    return {
+        "rows": rows,
+        "right": [ruler(min(max(value, low), high)) for value in block.right],
+        "ticks": ruler.ticks(),
+    }
 
 
 def rail(motion: Moving) -> list[tuple[float, str]]:

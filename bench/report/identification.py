@@ -48,15 +48,14 @@ def identification_json(
     """The estimate as the contract's JSON.
 
     Args:
-        estimate, refinement: what was identified, and what polishing did, where it was asked for.
+        refinement: what polishing did, where it was asked for.
         refused: why the recording cannot answer, where it cannot.
         provenance: of the files it came from; null where it came from none.
     """
     residual = estimate.residual
     content = {
         "schema": SCHEMA,
-        "estimator": estimate.estimator,
-        "parameters": estimate.parameters,
+        **picked(estimate, "estimator", "parameters"),
         "explained": known(estimate.explained),
         "refused": refused,
         **recordings_json(estimate.recordings, estimate.between, provenance),
@@ -68,8 +67,7 @@ def identification_json(
         },
         "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
         "filter": {"cutoff": known(estimate.cutoff), "unit": "Hz", "source": estimate.source},
-        "checks": estimate.checks,
-        "warnings": estimate.warnings,
+        **picked(estimate, "checks", "warnings"),
     }
     return serialised(content if refinement is None else {**content, "refinement": refinement})
 
@@ -79,15 +77,10 @@ def recordings_json(
 ) -> dict[str, Any]:
     """Each of several recordings alone, and how they differ; `reason`: why one leaves some of the parameters open."""
     digests = {each["file"]: each["sha256"] for each in provenance["traces"]} if provenance else {}
-    alone = [
-        {
-            "file": one.origin,
-            "sha256": digests.get(one.origin),
-            **picked(one, "parameters"),
-            "reason": one.reason or None,
-        }
-        for one in recordings
-    ]
+    alone = []
+    for one in recordings:
+        file = {"file": one.origin, "sha256": digests.get(one.origin)}
+        alone.append({**file, **picked(one, "parameters"), "reason": one.reason or None})
     return {"recordings": alone, "between": between if alone else None}
 
 
@@ -96,8 +89,6 @@ class Moved:
     """The first part of a recording, as a page shows it.
 
     Attributes:
-        name: of the recording.
-        kind: of the axis.
         motion: through the filter that the estimate was made with.
         along: the estimate, with the shift of torque against speed that this recording has of its own.
     """
@@ -140,25 +131,22 @@ def identification(
     """The document of an identification.
 
     Args:
-        title, kind: rig and recordings, and kind of the axis.
-        estimate, refinement: what was identified, and what polishing did, where it was asked for.
+        title: rig and recordings.
+        refinement: what polishing did, where it was asked for.
         motions: of its recordings, for a page and pictures; () without.
-        provenance: of the files it came from.
     """
     alone = recordings_table(estimate.recordings, estimate.between, estimate.parameters)
     tables = (parameters_table("The axis", estimate.parameters), *alone)
-    sections = [doc.section("parameters", "Parameters", *tables)]
+    sections = [doc.section("parameters", "Parameters", *tables), checks_section(estimate.checks, estimate.warnings)]
     if motions:
-        graphs = tuple(_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
-        sections += [
+        graphs = (_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
+        text = identification_json(estimate, refinement, None, provenance) + "\n"
+        file = doc.file("identify.json", "all of it as numbers", text)
+        sections[1:1] = [
             doc.section("motion", "Measured and modelled", *graphs),
             doc.section("where", "Where the rest sits", _rest(estimate, motions)),
         ]
-    sections.append(checks_section(estimate.checks, estimate.warnings))
-    if motions:
-        text = identification_json(estimate, refinement, None, provenance) + "\n"
-        file = doc.file("identify.json", "all of it as numbers", text)
-        sections.append(doc.section("files", "The numbers", doc.Downloads(files=(file,))))
+        sections.append(doc.section("files", "The numbers", doc.downloads(file)))
     return doc.Document(
         title=title,
         subject=f"Identification of {title}",
@@ -167,7 +155,17 @@ def identification(
         answers=_answers(estimate, refinement, kind),
         sections=tuple(sections),
         origin=origin(provenance),
-        pictures=tuple(_picture(title, number, one) for number, one in enumerate(motions, 1)),
+        pictures=tuple(
+            doc.Picture(  # motion and torque of a recording, the estimates, and what is left
+                name="identification" if place == 1 else f"identification-{place}",
+                title=f"{title.partition(': ')[0]}: {one.name}",
+                rows=(
+                    (_over_time(one, 1, acceleration=True), parameters_table("", one.along.parameters)),
+                    (_rest(one.along, [one]),),
+                ),
+            )
+            for place, one in enumerate(motions, 1)
+        ),
         warnings=(*estimate.warnings, *warnings_of(estimate.checks)),
     )
 
@@ -207,24 +205,23 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
     basis = f"{estimate.samples_used} of {estimate.samples_read} samples"
     if math.isfinite(estimate.cutoff):  # of the filter that they went through
         basis += f"; cut-off {number(estimate.cutoff, 'Hz', 3)}, speed from {estimate.source}"
-    answers = {
+    polished = {}
+    if refinement is not None:
+        before, after = refinement.held_out
+        error = f"simulation error on held-out motion {number(before)} to {number(after, kind.speed_unit)}"
+        kept = "polish kept" if refinement.accepted else "polish not kept"
+        polished["Polished?"] = f"{error} (held at {number(refinement.bandwidth, 'rad/s')}): {kept}."
+    return {
         f"{words(inertia).capitalize()}?": f"{interval(estimate[inertia])} (95 %)",
         "Friction?": "; ".join(friction) or "not determined",
         "How sure?": sure,
         "What is left?": f"{left}.",
         "From what?": f"{basis}.",
-    }
-    if refinement is not None:
-        before, after = refinement.held_out
-        error = f"simulation error on held-out motion {number(before)} to {number(after, kind.speed_unit)}"
-        kept = "polish kept" if refinement.accepted else "polish not kept"
-        answers["Polished?"] = f"{error} (held at {number(refinement.bandwidth, 'rad/s')}): {kept}."
-    answers["What next?"] = (
-        "bench diagnose: something is in this axis beside inertia and friction, and it says what."
+        **polished,
+        "What next?": "bench diagnose: something is in this axis beside inertia and friction, and it says what."
         if _times_noise(estimate) > NOISE_ALONE
-        else "Nothing stands out of the noise; a recording of other motion would confirm it."
-    )
-    return answers
+        else "Nothing stands out of the noise; a recording of other motion would confirm it.",
+    }
 
 
 def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeGraph:
@@ -243,18 +240,25 @@ def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeG
 
 def _rest(estimate: Estimate, motions: Sequence[Moved]) -> doc.Chart:
     """What is left of the torque over speed, acceleration, torque and time."""
-    unit, kind = estimate.residual.unit, motions[0].kind
+    from bench.diagnosis.where import LEAST, bins_of, means_in
+
+    unit, floor, kind = estimate.residual.unit, estimate.residual.noise_floor, motions[0].kind
     left = np.concatenate([one.left for one in motions])
+    known = np.isfinite(left)
     over = {
         ("speed", kind.speed_unit): [one.motion.velocity for one in motions],
         ("acceleration", kind.acceleration_unit): [one.motion.acceleration for one in motions],
         (effort_word(unit), unit): [one.motion.effort for one in motions],
         ("time", "s"): [one.motion.time - one.motion.time[0] for one in motions],
     }
-    panels = (
-        _over(name, of, np.concatenate(values), left, estimate.residual.noise_floor)
-        for (name, of), values in over.items()
-    )
+    panels = []
+    for (name, of), parts in over.items():
+        values = np.concatenate(parts)[known]
+        index = bins_of(values)
+        kept = np.bincount(index) >= LEAST
+        dots = doc.series("left", "dots", "left", means_in(index, values)[kept], means_in(index, left[known])[kept])
+        band = [noise_band(dots.x, floor)] if math.isfinite(floor) else []
+        panels.append(doc.Panel(x_label=name, x_unit=unit_text(of), series=(*band, dots)))
     return doc.Chart(
         title="What is left.",
         alternative=f"Mean of measured less modelled {effort_word(unit)} in bins; what stands out of the noise floor "
@@ -262,26 +266,4 @@ def _rest(estimate: Estimate, motions: Sequence[Moved]) -> doc.Chart:
         y_label="left",
         y_unit=unit_text(unit),
         panels=tuple(panels),
-    )
-
-
-def _over(name: str, unit: str, values: Array, left: Array, floor: float) -> doc.Panel:
-    from bench.diagnosis.where import LEAST, bins_of, means_in
-
-    known = np.isfinite(left)
-    index = bins_of(values[known])
-    kept = np.bincount(index) >= LEAST
-    dots = doc.series("left", "dots", "left", means_in(index, values[known])[kept], means_in(index, left[known])[kept])
-    band = [noise_band(dots.x, floor)] if math.isfinite(floor) else []
-    return doc.Panel(x_label=name, x_unit=unit_text(unit), series=(*band, dots))
-
-
-def _picture(title: str, number: int, one: Moved) -> doc.Picture:
-    """Motion and torque of a recording, the estimates, and what is left."""
-    name = "identification" if number == 1 else f"identification-{number}"
-    estimates = parameters_table("", one.along.parameters)
-    return doc.Picture(
-        name=name,
-        title=f"{title.partition(': ')[0]}: {one.name}",
-        rows=((_over_time(one, 1, acceleration=True), estimates), (_rest(one.along, [one]),)),
     )

@@ -59,16 +59,14 @@ def _case(case: Injection, unit: str) -> dict[str, Any]:
 def _counts(found: Injections) -> dict[float, dict[str, int]]:
     """How often each fate befell the cases of a strength, the strengths that were asked for alone."""
     strengths = () if found.sought else sorted({case.strength for case in found.cases})
-    counted = {
-        strength: Counter(case.fate for case in found.cases if case.strength == strength) for strength in strengths
-    }
-    return {strength: {fate: counts[fate] for fate in FATES} for strength, counts in counted.items()}
+    counts = Counter((case.strength, case.fate) for case in found.cases)
+    return {strength: {fate: counts[strength, fate] for fate in FATES} for strength in strengths}
 
 
 def injections(found: Injections, provenance: Mapping[str, Any], recording: str) -> doc.Document:
     """The document of what became of effects in a recording."""
-    every = doc.section("cases", "All that was tried", _cases(found), doc.Paragraph(text=NOTE), detail=found.sought)
-    first = doc.section("least", "The least that is named", *_least(found)) if found.sought else None
+    least = [_least(found)] if found.sought else []
+    tried = (_cases(found), doc.Paragraph(text=NOTE))
     wrong = any(case.fate in (WRONG, PART) for case in found.cases)
     return doc.Document(
         title=f"Effects in {recording}",
@@ -76,7 +74,10 @@ def injections(found: Injections, provenance: Mapping[str, Any], recording: str)
         verdict=_verdict(found),
         tone="open" if wrong or found.failed else "sure",
         answers=dict(_answers(found)),
-        sections=(*filter(None, (first,)), every),
+        sections=doc.sections(
+            doc.section("least", "The least that is named", *least),
+            doc.section("cases", "All that was tried", *tried, detail=found.sought),
+        ),
         origin=origin(provenance),
         beside={"injections.json": injections_json(found, provenance) + "\n"},
         warnings=tuple(f"{name} gave no result: {reason}" for name, reason in found.failed.items()),
@@ -95,27 +96,25 @@ def _answers(found: Injections) -> Iterator[tuple[str, str]]:
     own = found.own
     names = ", ".join(map(words, own.names)) or "no effect"
     yield "What it leaves itself?", f"{number(own.left, own.unit)} RMS, after {names} ({words(own.verdict)})."
-    wrong = [case for case in found.cases if case.fate in (WRONG, PART)]
-    listed_wrong = "; ".join(f"{', '.join(map(words, case.names))} of {words(case.effect)}" for case in wrong) or "none"
-    yield "False names?", f"{sentence(listed_wrong)}."
+    wrong = (case for case in found.cases if case.fate in (WRONG, PART))
+    false = "; ".join(f"{', '.join(map(words, case.names))} of {words(case.effect)}" for case in wrong)
+    yield "False names?", f"{sentence(false or 'none')}."
     inside = [one.inside(0.95) for case in found.cases for one in case.scored]
     if inside:
         yield "Are sizes right?", f"{sum(inside)} of {len(inside)} quantities within their interval of {share(0.95)}."
     if found.unable:
-        yield (
-            "Not tried?",
-            f"{sentence(', '.join(map(words, found.unable)))}: it has them, or cannot have them so large.",
-        )
+        unable = sentence(", ".join(map(words, found.unable)))
+        yield "Not tried?", f"{unable}: it has them, or cannot have them so large."
 
 
-def _least(found: Injections) -> Iterator[doc.AnyPart]:
+def _least(found: Injections) -> doc.Table:
     """By effect how large it has to be."""
     rows = [
         (words(name), *((words(case.quantity), *_size(case)) if case else ("", f"not up to {SPAN[1]:g} times", "", "")))
         for name, case in found.least.items()
     ]
     headings = ("effect", "quantity", "named from>", "unit", "strength>")
-    yield doc.table("Tried, not estimated: the smallest of each effect that was named", headings, rows)
+    return doc.table("Tried, not estimated: the smallest of each effect that was named", headings, rows)
 
 
 def _size(case: Injection) -> tuple[str, str, str]:

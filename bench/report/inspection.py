@@ -33,30 +33,25 @@ def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | N
     """The document of an inspection.
 
     Args:
-        found: in the recording.
         checks: what the gate found; () of a recording that is not read.
         trace: the recording as it is read; None where `found.asks` something first.
     """
     name, (verdict, tone) = readable(Path(found.origin).name), _verdict(found, checks)
-    sections = []
-    if found.signals:
-        graph = () if trace is None else (signals_graph(trace),)
-        sections.append(doc.section("signals", "Signals", *graph, _signals(found)))
-    if found.asks is not None:
-        sections.append(doc.section("asked", "What to write", *_what_to_write(found)))
     rest = [column for column in found.columns if not column.read]
-    if rest:
-        sections.append(doc.section("columns", "Columns that are not read", _columns(rest)))
-    if checks or found.notes:
-        section = checks_section(checks, found.notes)
-        sections.append(section.model_copy(update={"detail": False}))
+    graph = [] if trace is None else [signals_graph(trace)]
+    signals = [*graph, _signals(found)] if found.signals else []
     return doc.Document(
         title=name,
         subject=f"Inspection of {name} ({found.format})",
         verdict=verdict,
         tone=tone,
         answers=dict(_answers(found)),
-        sections=tuple(sections),
+        sections=doc.sections(
+            doc.section("signals", "Signals", *signals),
+            doc.section("asked", "What to write", *_what_to_write(found)),
+            doc.section("columns", "Columns that are not read", *([_columns(rest)] if rest else [])),
+            checks_section(checks, found.notes, detail=False),
+        ),
         origin=origin(None),
     )
 
@@ -87,21 +82,19 @@ def signals_picture(recording: Recording, how: ReadingOptions) -> doc.Picture:
     """The signals over time, holes as gaps; of a recording that needs a rig, the columns that change over samples."""
     title = readable(Path(recording.origin).name)
     try:
-        trace = assemble(recording, how)
+        drawn = signals_graph(assemble(recording, how))
     except InputError:
         channels = [channel for channel in of_axis(recording, how.axis) if _changes(channel)]
         panels = []
         for channel in channels[:MOST]:
-            sample = np.arange(channel.values.size, dtype=np.float64)
-            line = doc.series("", "line", "ink", sample, channel.values)
+            line = doc.series("", "line", "ink", np.arange(channel.values.size, dtype=np.float64), channel.values)
             panels.append(doc.Panel(x_label="sample", y_label=channel.label, series=(line,)))
         if not panels:
             panels.append(doc.Panel(x_label="sample", y_label="no column changes", series=()))
         more = len(channels) - MOST
         title += f" and {more} columns more" if more > 0 else ""
-        chart = doc.Chart(title="", alternative="Columns over samples.", panels=tuple(panels))
-        return doc.Picture(name="signals", title=title, rows=((chart,),))
-    return doc.Picture(name="signals", title=title, rows=((signals_graph(trace),),))
+        drawn = doc.Chart(title="", alternative="Columns over samples.", panels=tuple(panels))
+    return doc.Picture(name="signals", title=title, rows=((drawn,),))
 
 
 def _changes(channel: Channel) -> bool:
@@ -113,14 +106,15 @@ def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, doc.Tone]
     """What the recording is good for, in a sentence, and how that is meant."""
     if found.asks is not None or found.duration is None or found.rate is None:
         return "It is not read as a recording yet: its signals have to be named first.", "refused"
-    names = [words(signal.name) for signal in found.signals]
-    held = f"It holds {number(found.duration, 's', 4)} of {', '.join(names)} at {number(found.rate, 'Hz', 6)}"
-    failed = [words(check.name) for check in checks if check.status == "fail"]
-    warned = [words(check.name) for check in checks if check.status == "warn"]
+    names = ", ".join(words(signal.name) for signal in found.signals)
+    held = f"It holds {number(found.duration, 's', 4)} of {names} at {number(found.rate, 'Hz', 6)}"
+    failed, warned = (
+        ", ".join(words(check.name) for check in checks if check.status == status) for status in ("fail", "warn")
+    )
     if failed:
-        return f"{held}, but cannot be identified from: {', '.join(failed)}.", "refused"
+        return f"{held}, but cannot be identified from: {failed}.", "refused"
     if warned:
-        return f"{held}; with care: {', '.join(warned)}.", "open"
+        return f"{held}; with care: {warned}.", "open"
     return f"{held}, and every check passed.", "sure"
 
 
@@ -179,8 +173,9 @@ def _columns(columns: Sequence[ColumnSummary]) -> doc.Table:
 
 
 def _what_to_write(found: Inspection) -> Iterator[doc.AnyPart]:
-    """What keeps the file from being read, and the lines of a rig that would help."""
-    yield doc.Paragraph(text=f"{found.asks}.")
-    if found.suggestions:
-        yield doc.Paragraph(text="Likely, for the rig file:")
-        yield doc.Code(text="\n".join(("[trace.columns]", *found.suggestions)))
+    """What keeps the file from being read, if anything, and the lines of a rig that would help."""
+    if found.asks is not None:
+        yield doc.Paragraph(text=f"{found.asks}.")
+        if found.suggestions:
+            yield doc.Paragraph(text="Likely, for the rig file:")
+            yield doc.Code(text="\n".join(("[trace.columns]", *found.suggestions)))

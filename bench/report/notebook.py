@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator
-from functools import singledispatch
+from collections.abc import Iterable
 from html import escape
 from importlib import import_module
 from importlib.util import find_spec
@@ -19,7 +18,6 @@ from bench.files import write_text
 from bench.fit.estimate import Estimate
 from bench.names import words
 from bench.packed import pack
-from bench.parameter import Parameter
 from bench.report.check import check_document, check_json
 from bench.report.diagnosis import diagnosis_json, verdict_sentence, write_diagnosis
 from bench.report.document import Panel, Paragraph, Picture, Table, series
@@ -44,34 +42,24 @@ class Overview(NamedTuple):
     json: str
 
 
-@singledispatch
 def overview(result: object) -> Overview:
     """Of any result that is shown."""
+    match result:
+        case Estimate():
+            kind = next((kind for kind in KINDS if kind.inertia in result), KINDS[0])
+            headline = f"{sentence(kind.in_words('inertia'))} is not determined."
+            if kind.inertia in result:
+                headline = identification("", kind, result).verdict
+            return Overview(headline, [parameters_table("", result.parameters)], identification_json(result))
+        case Diagnosis():
+            tables = [parameters_table("The axis", result.parameters)]
+            tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in result.effects]
+            return Overview(verdict_sentence(result), tables, diagnosis_json(result))
+        case Checked():
+            document = check_document(result, "")
+            tables = [part for section in document.sections for part in section.blocks if isinstance(part, Table)]
+            return Overview(document.verdict, tables, check_json(result))
     raise TypeError(f"nothing is known of {type(result).__name__}")
-
-
-@overview.register
-def _(result: Estimate) -> Overview:
-    kind = next((kind for kind in KINDS if kind.inertia in result), KINDS[0])
-    if kind.inertia not in result:
-        headline = f"{sentence(kind.in_words('inertia'))} is not determined."
-    else:
-        headline = identification("", kind, result).verdict
-    return Overview(headline, [parameters_table("", result.parameters)], identification_json(result))
-
-
-@overview.register
-def _(result: Diagnosis) -> Overview:
-    tables = [parameters_table("The axis", result.parameters)]
-    tables += [parameters_table(sentence(words(one.name)), one.parameters) for one in result.effects]
-    return Overview(verdict_sentence(result), tables, diagnosis_json(result))
-
-
-@overview.register
-def _(result: Checked) -> Overview:
-    document = check_document(result, "")
-    blocks = [block for section in document.sections for block in section.blocks]
-    return Overview(document.verdict, [block for block in blocks if isinstance(block, Table)], check_json(result))
 
 
 def text(result: object) -> str:
@@ -87,25 +75,23 @@ def text(result: object) -> str:
 def small_page(result: object) -> str:
     """The headline, the picture of a diagnosis and the tables as HTML."""
     headline, tables, _ = overview(result)
-    picture = _picture(result) if isinstance(result, Diagnosis) else ""
+    picture = ""
+    if isinstance(result, Diagnosis):
+        from bench.report.figures import drawn, save_into  # matplotlib: 0.35 s
+
+        image = save_into(drawn(Picture(name="diagnosis", title="", rows=(at_a_glance(result),))))
+        source = f"data:image/png;base64,{base64.b64encode(image).decode()}"
+        picture = f'<img alt="Measured, before and after" style="max-width:100%" src="{source}">'
     return f"<div><p><strong>{escape(headline)}</strong></p>{picture}{''.join(map(_html, tables))}</div>"
 
 
 def _html(table: Table) -> str:
-    def row(tag: str, cells: tuple[str, ...]) -> str:
+    def row(tag: str, cells: Iterable[str]) -> str:
         return f"<tr>{''.join(f'<{tag}>{escape(cell)}</{tag}>' for cell in cells)}</tr>"
 
-    heading = row("th", tuple(column.heading for column in table.columns))
     caption = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
+    heading = row("th", (column.heading for column in table.columns))
     return f"<table>{caption}{heading}{''.join(row('td', cells) for cells in table.rows)}</table>"
-
-
-def _picture(result: Diagnosis) -> str:
-    from bench.report.figures import drawn, save_into  # matplotlib: 0.35 s
-
-    picture = Picture(name="diagnosis", title="", rows=(at_a_glance(result),))
-    data = base64.b64encode(save_into(drawn(picture))).decode()
-    return f'<img alt="Measured, before and after" style="max-width:100%" src="data:image/png;base64,{data}">'
 
 
 def plot(result: object, axes: Axes | None = None) -> Axes:
@@ -145,17 +131,15 @@ def frame(result: object) -> Any:  # noqa: ANN401 - of pandas or polars
     library = next((name for name in ("pandas", "polars") if find_spec(name) is not None), None)
     if library is None:
         raise InputError("to_frame()", "found neither pandas nor polars", "install one of them")
+    of: list[tuple[str, Any]] = [("axis", result)] if isinstance(result, Estimate | Diagnosis) else []
+    of += [(effect.name, effect) for effect in result.effects] if isinstance(result, Diagnosis) else []
     columns = ("of", "quantity", "value", "unit", "std_error", "low", "high")
-    rows = [(of, name, one.value, one.unit, one.std_error, *one.ci95) for of, name, one in _quantities(result)]
+    rows = [
+        (name, quantity, one.value, one.unit, one.std_error, *one.ci95)
+        for name, found in of
+        for quantity, one in found.parameters.items()
+    ]
     return import_module(library).DataFrame({name: [row[k] for row in rows] for k, name in enumerate(columns)})
-
-
-def _quantities(result: object) -> Iterator[tuple[str, str, Parameter]]:
-    """Of the axis, and of each effect that was found."""
-    if isinstance(result, Estimate | Diagnosis):
-        yield from (("axis", name, one) for name, one in result.parameters.items())
-    for effect in result.effects if isinstance(result, Diagnosis) else ():
-        yield from ((effect.name, name, one) for name, one in effect.parameters.items())
 
 
 def save(result: object, path: Path) -> None:

@@ -35,7 +35,8 @@ def number(value: float, unit: str = "", digits: int = 4, zeros: bool = False) -
     if "e" in text:
         mantissa, power = text.split("e")
         text = f"{mantissa}·10{str(int(power)).translate(_RAISED)}"
-    return f"{_minus(text)}{SPACE}{unit_text(unit)}".strip()
+    text = text.replace("-", "−")
+    return f"{text}{SPACE}{unit_text(unit)}".strip()
 
 
 def interval(found: Parameter, unit: bool = True) -> str:
@@ -51,7 +52,8 @@ def interval(found: Parameter, unit: bool = True) -> str:
     power = 3 * math.floor(math.log10(size) / 3) if size > 0.0 and not SMALL <= size < LARGE else 0
     scale = 10.0**power
     decimals = min(max(0, 1 - math.floor(math.log10(half / scale))), MOST_DECIMALS)
-    text = f"{_minus(f'{found.value / scale:.{decimals}f}')}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
+    value = f"{found.value / scale:.{decimals}f}".replace("-", "−")
+    text = f"{value}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
     if power:
         text = f"({text})·10{str(power).translate(_RAISED)}"
     return f"{text}{SPACE}{shown}".strip()
@@ -64,11 +66,6 @@ def brief(found: Parameter) -> str:
         return interval(found)
     relative = number(100.0 * half / size, digits=2)
     return f"{number(found.value, found.unit, 3, zeros=True)}{SPACE}±{SPACE}{relative}{SPACE}%"
-
-
-def _minus(text: str) -> str:
-    """A number with a minus sign rather than a hyphen."""
-    return text.replace("-", "−")
 
 
 def share(value: float) -> str:
@@ -91,9 +88,9 @@ def sentence(text: str) -> str:
 
 
 def listed(texts: Iterable[str]) -> str:
-    """Texts in a row: `a, b and c`."""
-    *first, last = texts
-    return f"{', '.join(first)} and {last}" if first else last
+    """Texts in a row: `a, b and c`; empty of none."""
+    found = list(texts)
+    return " and ".join(filter(None, (", ".join(found[:-1]), *found[-1:])))
 
 
 def effort_word(unit: str) -> str:

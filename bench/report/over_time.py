@@ -113,11 +113,6 @@ class Plotted:
         """Models that say something."""
         return [(k, left) for k, left in enumerate(self.left) if left is not None and np.isfinite(left).any()]
 
-    @property
-    def curves(self) -> int:
-        """How many curves it takes."""
-        return 1 + 2 * len(self.shown)
-
 
 def time_graph(
     title: str,
@@ -133,23 +128,20 @@ def time_graph(
         choices: names of the models.
         part: of what a page may hold that this graph may take.
     """
-    grid = Grid.of(time, sum(signal.curves for signal in signals), part)
-    panels = tuple(panel for signal in signals for panel in _panels(signal, grid, choices))
+    grid = Grid.of(time, sum(1 + 2 * len(signal.shown) for signal in signals), part)
+    panels = []
+    for signal in signals:
+        places, unit, left = grid.places(signal.time), unit_text(signal.unit), []
+        measured = grid.samples(places, signal.values)
+        curves = [TimeCurve(name=signal.name, role="measured", choice=None, samples=measured)]
+        for k, rest in signal.shown:
+            samples = grid.samples(places, signal.values - rest)
+            curves.append(TimeCurve(name=signal.modelled, role="model", choice=k, samples=samples))
+            name = choices[k] if k < len(choices) else "left"
+            left.append(TimeCurve(name=name, role="left", choice=k, samples=grid.samples(places, rest)))
+        panels.append(TimePanel(label=signal.label, unit=unit, curves=tuple(curves)))
+        if left:
+            label = f"{signal.label}, {signal.name} less {signal.modelled}"
+            panels.append(TimePanel(label=label, unit=unit, curves=tuple(left), first=True))
     found = {"start": grid.start, "step": grid.step, "count": grid.count}
-    return TimeGraph(title=title, alternative=alternative, choices=tuple(choices), panels=panels, **found)
-
-
-def _panels(signal: Plotted, grid: Grid, choices: Sequence[str]) -> list[TimePanel]:
-    places, unit = grid.places(signal.time), unit_text(signal.unit)
-    curves = [TimeCurve(name=signal.name, role="measured", choice=None, samples=grid.samples(places, signal.values))]
-    rest = []
-    for k, left in signal.shown:
-        samples = grid.samples(places, signal.values - left)
-        curves.append(TimeCurve(name=signal.modelled, role="model", choice=k, samples=samples))
-        name = choices[k] if k < len(choices) else "left"
-        rest.append(TimeCurve(name=name, role="left", choice=k, samples=grid.samples(places, left)))
-    found = [TimePanel(label=signal.label, unit=unit, curves=tuple(curves))]
-    if rest:
-        label = f"{signal.label}, {signal.name} less {signal.modelled}"
-        found.append(TimePanel(label=label, unit=unit, curves=tuple(rest), first=True))
-    return found
+    return TimeGraph(title=title, alternative=alternative, choices=tuple(choices), panels=tuple(panels), **found)

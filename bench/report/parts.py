@@ -13,7 +13,7 @@ from bench.fit.estimate import Alone
 from bench.gate.check import Check
 from bench.names import readable, words
 from bench.parameter import Parameter
-from bench.report.document import MEDIA, Chart, Downloads, File, Panel, Points, Section, Series, Table, section, table
+from bench.report.document import MEDIA, Chart, File, Panel, Section, Series, Table, downloads, points, section, table
 from bench.report.numbers import interval, number, unit_text
 
 
@@ -44,7 +44,6 @@ def recordings_table(
     """What each of several recordings tells alone, and where the next is to be expected; none where there is only one.
 
     Args:
-        recordings: with what each determines alone; () of one.
         between: how they differ, by name of a quantity.
         parameters: of all together, whose units these have.
     """
@@ -75,7 +74,7 @@ def noise_band(x: Sequence[float], floor: float) -> Series:
     return Series(name="noise floor", style="band", colour="floor", x=ends, low=(-floor, -floor), high=(floor, floor))
 
 
-def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
+def checks_section(checks: Sequence[Check], warnings: Sequence[str], detail: bool = True) -> Section:
     """What was checked before anything was fitted, and what a user should know."""
     applicable = [check for check in checks if check.status != "not_applicable"]
     advised = any(check.advice and check.status in ("warn", "fail") for check in applicable)
@@ -87,24 +86,20 @@ def checks_section(checks: Sequence[Check], warnings: Sequence[str]) -> Section:
     passed = sum(check.status == "pass" for check in applicable)
     caption = f"{passed} of {len(applicable)} checks of the recording passed before anything was fitted"
     headings = ("check", "status", "found~", *(["advice~"] if advised else []))
-    notes = (Points(items=tuple(warnings)),) if warnings else ()
+    notes = (points(warnings),) if warnings else ()
     tables = (table(caption, headings, rows, marked),) if applicable else ()
-    return section("checks", "Checks and warnings", *notes, *tables, detail=True)
+    return section("checks", "Checks and warnings", *notes, *tables, detail=detail)
 
 
-def model_section(model: Path) -> Section:
-    """The file of a model to take along.
+def model_sections(model: Path, warnings: Sequence[str]) -> list[Section]:
+    """What the user should know before believing a result, and the file of a model to take along.
 
     Raises:
         InputError: it cannot be read.
     """
     held = File(name=readable(model.name), about="the model", media=MEDIA["toml"], content=read_text(model, "a model"))
-    return section("model", "The model", Downloads(files=(held,)))
-
-
-def warnings_sections(warnings: Sequence[str]) -> list[Section]:
-    """What the user should know before believing a result, if anything."""
-    return [section("warnings", "Warnings", Points(items=tuple(warnings)))] if warnings else []
+    warned = [points(warnings)] if warnings else []
+    return [section("warnings", "Warnings", *warned), section("model", "The model", downloads(held))]
 
 
 def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:

@@ -21,8 +21,6 @@ def write_document(folder: Path, document: Document, ending: str = ".png") -> li
     """Write page, data, pictures and files to take along of a document into a folder; the paths written.
 
     Args:
-        folder: made if it is not there.
-        document: of a result.
         ending: of the pictures, one of `bench.report.figures.FORMATS`.
 
     Raises:
@@ -78,9 +76,9 @@ def rebuild(folders: list[Path], script: Path | None = None) -> list[Path]:
         write_text(script, program())
         written.append(script)
     for folder, document in documents.items():
-        shared = None if script is None else os.path.relpath(script.resolve(), folder.resolve())
+        shared = script and quote(Path(os.path.relpath(script.resolve(), folder.resolve())).as_posix())
         with held(folder):
-            write_text(folder / HTML, html(document, None if shared is None else quote(Path(shared).as_posix())))
+            write_text(folder / HTML, html(document, shared))
         written.append(folder / HTML)
     return written
 

@@ -6,7 +6,7 @@ As the contract's JSON (`bench.robot/1`) and as a document, which has the MJCF w
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from bench.report import document as doc
 from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names
 from bench.report.numbers import interval, sentence, unit_text
 from bench.report.parts import origin, parameters_table
-from bench.report.serial import as_json, serialised
+from bench.report.serial import as_json, picked, serialised
 from bench.report.simulation import moving_section
 
 SCHEMA = "bench.robot/1"
@@ -31,10 +31,18 @@ SHOWN = ("motion", "where", "parameters", "beside", "checks")
 
 def robot_json(found: IdentifiedRobot, provenance: Mapping[str, Any] | None = None) -> str:
     """The robot as the contract's JSON."""
+    payload = found.payload and {
+        **picked(found.payload, "body", "mass"),
+        "center_of_mass": {
+            "value": [x.value for x in found.payload.centre],
+            "unit": "m",
+            "ci95": [as_json(x)["ci95"] for x in found.payload.centre],
+        },
+    }
     content = {
         "schema": SCHEMA,
         "joints": {name: _joint_json(joint) for name, joint in found.joints.items()},
-        "payload": _payload_json(found),
+        "payload": payload,
         "links": [
             {"joint": one.joint, "inertia_factor": one.factor.value, "ci95": one.factor.ci95} for one in found.links
         ],
@@ -45,32 +53,17 @@ def robot_json(found: IdentifiedRobot, provenance: Mapping[str, Any] | None = No
     return serialised(content)
 
 
-def _payload_json(found: IdentifiedRobot) -> dict[str, Any] | None:
-    payload = found.payload
-    if payload is None:
-        return None
-    centre = {
-        "value": [x.value for x in payload.centre],
-        "unit": "m",
-        "ci95": [as_json(x)["ci95"] for x in payload.centre],
-    }
-    return {"body": payload.body, "mass": payload.mass, "center_of_mass": centre}
-
-
 def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
-    """As `diagnose` has it; without a diagnosis what is known all the same."""
-    of_diagnosis: dict[str, Any] = {"verdict": None, "effects": []}
+    """As `diagnose` has it, but for what belongs to the whole robot; without a diagnosis what is known all the same."""
+    content: dict[str, Any] = {"verdict": None, "effects": []}
     if joint.diagnosis is not None:
-        of_diagnosis = {key: value for key, value in diagnosis_content(joint.diagnosis).items() if key not in DROPPED}
+        content = diagnosis_content(joint.diagnosis)
+        for name in ("schema", "provenance", "model"):
+            del content[name]
     elif joint.estimate is not None:
-        of_diagnosis |= {"explained": joint.estimate.explained}
-    beside = {"record": joint.record or None, "failed": joint.failed or None, "left_out": joint.left_out}
-    own = {"parameters": joint.parameters, "refused": joint.refused, "checks": joint.checks, "warnings": joint.warnings}
-    return {**of_diagnosis, **own, **beside}
-
-
-#: What of a diagnosis' JSON belongs to the whole robot.
-DROPPED = ("schema", "provenance", "model")
+        content["explained"] = joint.estimate.explained
+    content |= picked(joint, "parameters", "refused", "checks", "warnings")
+    return {**content, "record": joint.record or None, "failed": joint.failed or None, "left_out": joint.left_out}
 
 
 def robot(
@@ -78,33 +71,28 @@ def robot(
 ) -> doc.Document:
     """The document of a robot that `title` names; of one that goes into a folder, with its MJCF, models and JSON."""
     motions = {name: joint.motion for name, joint in found.joints.items() if joint.motion is not None}
-    warnings = tuple(f"{name}: {warning}" for name, joint in found.joints.items() for warning in joint.warnings)
+    sections = [doc.section("joints", "Joints", *_tables(found))]
+    sections += [moving_section(found.mjcf, motions)] if motions else []
+    sections += [_of_joint(k, joint, found) for k, joint in enumerate(found.joints.values(), 1)]
+    if out is not None:
+        text, took = found.with_joints(out / MJCF)
+        files = doc.downloads(
+            doc.file(MJCF, "the MJCF with the joints as found", text),
+            doc.file(EFFECTS_FILE, "models of all joints, for bench.Effects", joints_toml(found.models)),
+            doc.file(JSON, "all of it as numbers", robot_json(found, provenance) + "\n"),
+        )
+        sections.append(doc.section("model", "The model", doc.points(took), files, detail=True))
+    warnings = (f"{name}: {warning}" for name, joint in found.joints.items() for warning in joint.warnings)
     return doc.Document(
         title=title,
         subject=f"Joints of {title}",
         verdict=_verdict(found),
         tone="refused" if not found.answered else "sure" if _settled(found) == len(found.joints) else "open",
         answers={},
-        sections=(
-            doc.section("joints", "Joints", *_tables(found)),
-            *([moving_section(found.mjcf, motions)] if motions else []),
-            *(_of_joint(k, joint, found) for k, joint in enumerate(found.joints.values())),
-            *((_model(found, out, provenance),) if out is not None else ()),
-        ),
+        sections=tuple(sections),
         origin=origin(provenance),
         warnings=(*found.warnings, *warnings),
     )
-
-
-def _model(found: IdentifiedRobot, out: Path, provenance: Mapping[str, Any] | None) -> doc.Section:
-    """What went onto each joint, and the files to take along from a folder."""
-    text, took = found.with_joints(out / MJCF)
-    files = (
-        doc.file(MJCF, "the MJCF with the joints as found", text),
-        doc.file(EFFECTS_FILE, "models of all joints, for bench.Effects", joints_toml(found.models)),
-        doc.file(JSON, "all of it as numbers", robot_json(found, provenance) + "\n"),
-    )
-    return doc.section("model", "The model", doc.Points(items=tuple(took)), doc.Downloads(files=files), detail=True)
 
 
 def _settled(found: IdentifiedRobot) -> int:
@@ -123,25 +111,25 @@ def _verdict(found: IdentifiedRobot) -> str:
 
 def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     """A row for each joint; and what is open, where anything is."""
-    columns = zip(*(_values(joint) for joint in found.joints.values()), strict=True)
-    table = [_column(name, column) for name, column in zip(("armature", "viscous", "Coulomb"), columns, strict=True)]
-    values = zip(*(cells for _, cells in table), strict=True)
-    rows = [(name, *cells, _missing(joint)) for (name, joint), cells in zip(found.joints.items(), values, strict=True)]
-    headings = ("joint", *(heading for heading, _ in table), "what was missing, and how sure~")
+    headings, cells = [], []
+    values = [_values(joint) for joint in found.joints.values()]
+    for name, column in zip(("armature", "viscous", "Coulomb"), zip(*values, strict=True), strict=True):
+        units = {value.unit for value in column if value is not None}
+        alike = len(units) == 1  # then it stands in the heading
+        headings.append(f"{name} / {unit_text(units.pop())}>" if alike else f"{name}>")
+        cells.append([None if value is None else interval(value, unit=not alike) for value in column])
+    missing = map(_missing, found.joints.values())
+    headings = ("joint", *headings, "what was missing, and how sure~")
     caption = "Values ± half of their intervals of 95 %, in SI, on the motor's side but the armature"
-    tables = [doc.table(caption, headings, rows)]
+    tables = [doc.table(caption, headings, zip(found.joints, *cells, missing, strict=True))]
     if found.payload is not None:
-        finite = (math.isfinite(one.half_width) for one in found.payload.centre)
-        x, y, z = (
-            interval(one) if known else "unknown" for one, known in zip(found.payload.centre, finite, strict=True)
-        )
-        rows = [(found.payload.body, interval(found.payload.mass), f"{x}, {y}, {z}")]
-        tables.append(doc.table("Payload", ("body", "mass>", "centre in the body's frame>"), rows))
+        centre = ", ".join(interval(x) if math.isfinite(x.half_width) else "unknown" for x in found.payload.centre)
+        row = (found.payload.body, interval(found.payload.mass), centre)
+        tables.append(doc.table("Payload", ("body", "mass>", "centre in the body's frame>"), [row]))
     if found.links:
-        rows = [(one.joint, f"{interval(one.factor)} times the MJCF's") for one in found.links]
-        tables.append(
-            doc.table("Links whose inertia about their joint's axis is not the MJCF's", ("joint", "inertia~"), rows)
-        )
+        rows = ((one.joint, f"{interval(one.factor)} times the MJCF's") for one in found.links)
+        caption = "Links whose inertia about their joint's axis is not the MJCF's"
+        tables.append(doc.table(caption, ("joint", "inertia~"), rows))
     lacking = [(name, why, motion) for name, joint in found.joints.items() for why, motion in _open(joint)]
     if lacking:
         tables.append(doc.table("What the logs cannot tell", ("joint", "what~", "the motion that would~"), lacking))
@@ -153,13 +141,6 @@ def _values(joint: IdentifiedJoint) -> tuple[Parameter | None, ...]:
     kind = None if joint.rig is None else joint.rig.axis_kind
     names = (ARMATURE, "", "") if kind is None else (ARMATURE, kind.parameter(VISCOUS), kind.parameter(COULOMB))
     return tuple(joint.parameters.get(name) for name in names)
-
-
-def _column(name: str, values: Sequence[Parameter | None]) -> tuple[str, list[str]]:
-    """Heading and cells of a quantity of all joints: its unit stands in the heading where all have the same."""
-    units = {value.unit for value in values if value is not None}
-    heading = f"{name} / {unit_text(units.pop())}>" if (alike := len(units) == 1) else f"{name}>"
-    return heading, ["–" if value is None else interval(value, unit=not alike) for value in values]
 
 
 def _missing(joint: IdentifiedJoint) -> str:
@@ -179,18 +160,17 @@ def _open(joint: IdentifiedJoint) -> list[tuple[str, str]]:
     for name, reason in joint.refused.items():
         reasons.setdefault(reason, []).append(called.get(name, words(name)))
     found = [(f"{', '.join(names)}: {reason}", joint.record) for reason, names in reasons.items()]
-    following_motion = "" if joint.diagnosis is None else following(joint.diagnosis)
-    return [*found, *([("more", following_motion)] if following_motion else [])]
+    more = "" if joint.diagnosis is None else following(joint.diagnosis)
+    return found + ([("more", more)] if more else [])
 
 
 def _of_joint(k: int, joint: IdentifiedJoint, found: IdentifiedRobot) -> doc.Section:
-    """What is determined of a joint."""
-    key, heading = f"joint-{k + 1}", joint.name
+    key, heading = f"joint-{k}", joint.name
     if joint.diagnosis is None:
         tables = [parameters_table("Inertia and friction", joint.parameters)] if joint.parameters else []
-        why = doc.Points(items=tuple(what for what, _ in _open(joint)))
+        why = doc.points(what for what, _ in _open(joint))
         return doc.section(key, heading, why, *tables, detail=True)
     own = diagnosis(joint.diagnosis, f"{joint.name} of {readable(found.mjcf.name)}")
     blocks = [block for section in own.sections if section.key in SHOWN for block in section.blocks]
-    answers = doc.Points(items=tuple(f"{question} {answer}" for question, answer in own.answers.items()))
+    answers = doc.points(f"{question} {answer}" for question, answer in own.answers.items())
     return doc.section(key, heading, doc.Paragraph(text=own.verdict), answers, *blocks, detail=True)

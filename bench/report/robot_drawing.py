@@ -7,6 +7,7 @@ approximations for rendering complex scenes", 1993), as coarse as the triangles 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import product
 
 import mujoco
 import numpy as np
@@ -63,10 +64,8 @@ def _bodies(model: mujoco.MjModel, names: Sequence[str]) -> tuple[doc.Body, ...]
         mujoco.mju_quat2Mat(turn, model.geom_quat[g])
         vertices, faces = simplified(vertices, faces, budget[g])
         placed = doc.packed(vertices @ turn.reshape(3, 3).T + model.geom_pos[g])
-        colour = _rounded(_colour(model, g)[:3])
-        shapes[model.geom_bodyid[g]].append(
-            doc.Triangles(colour=colour, vertices=placed, faces=doc.packed(faces, "<u2"))
-        )
+        shape = doc.Triangles(colour=_rounded(_colour(model, g)[:3]), vertices=placed, faces=doc.packed(faces, "<u2"))
+        shapes[model.geom_bodyid[g]].append(shape)
     return tuple(
         doc.Body(
             parent=int(model.body_parentid[b]),
@@ -114,27 +113,26 @@ def _shared(triangles: Mapping[int, int]) -> dict[int, int]:
 
 def _solid(model: mujoco.MjModel, geom: int) -> tuple[Array, Faces] | None:
     """Vertices and triangles of a geom in its own frame; None of what has no end, and of fields of heights."""
-    kind, size = int(model.geom_type[geom]), model.geom_size[geom]
-    kinds = mujoco.mjtGeom
-    if kind == int(kinds.mjGEOM_MESH):
-        mesh = int(model.geom_dataid[geom])
-        first, face = int(model.mesh_vertadr[mesh]), int(model.mesh_faceadr[mesh])
-        vertices = model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])]
-        return vertices.astype(float), model.mesh_face[face : face + int(model.mesh_facenum[mesh])].astype(np.int64)
-    if kind == int(kinds.mjGEOM_BOX):
-        corners = np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1], indexing="ij"), axis=-1).reshape(-1, 3)
-        return corners * size, BOX
+    kinds, size = mujoco.mjtGeom, model.geom_size[geom]
     arc = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * ALONG)
     ball = np.column_stack([np.cos(arc), np.sin(arc)])
-    match kind:
-        case int(kinds.mjGEOM_SPHERE):
+    match kinds(int(model.geom_type[geom])):
+        case kinds.mjGEOM_MESH:
+            mesh = int(model.geom_dataid[geom])
+            first, face = int(model.mesh_vertadr[mesh]), int(model.mesh_faceadr[mesh])
+            vertices = model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])]
+            faces = model.mesh_face[face : face + int(model.mesh_facenum[mesh])]
+            return vertices.astype(float), faces.astype(np.int64)
+        case kinds.mjGEOM_BOX:
+            return np.array([*product((-1.0, 1.0), repeat=3)]) * size, BOX
+        case kinds.mjGEOM_SPHERE:
             return _revolved(size[0] * ball)
-        case int(kinds.mjGEOM_ELLIPSOID):
+        case kinds.mjGEOM_ELLIPSOID:
             vertices, faces = _revolved(ball)
             return vertices * size, faces
-        case int(kinds.mjGEOM_CAPSULE):
+        case kinds.mjGEOM_CAPSULE:
             return _revolved(size[0] * ball + np.outer(np.sign(ball[:, 1]), [0.0, size[1]]))
-        case int(kinds.mjGEOM_CYLINDER):
+        case kinds.mjGEOM_CYLINDER:
             return _revolved(np.array([[0.0, -size[1]], [size[0], -size[1]], [size[0], size[1]], [0.0, size[1]]]))
     return None
 

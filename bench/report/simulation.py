@@ -14,15 +14,14 @@ from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA, AxisKind
 from bench.diagnosis.add import NULL
 from bench.diagnosis.replay import BARE, HELD, HORIZONS, LEFT, FreeRun, Replay
-from bench.effects.present import Present
 from bench.joints.motion import JointMotion
 from bench.names import readable, words
 from bench.plant.axis_model import parameter_quantities
-from bench.plant.simulate import Simulated, Truth
+from bench.plant.simulate import Simulated
 from bench.report import document as doc
-from bench.report.numbers import effort_word, number, share, unit_text
+from bench.report.numbers import effort_word, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import model_section, one_panel, origin, values_table, warnings_sections
+from bench.report.parts import model_sections, one_panel, origin, values_table
 from bench.report.robot_drawing import robot_drawing
 from bench.trace.noise import white_noise
 from bench.view.side_by_side import RobotAlong, SideBySide
@@ -31,6 +30,8 @@ from bench.view.side_by_side import RobotAlong, SideBySide
 MOST = 40_000
 #: Part of what a page may hold of graphs over time that is left beside them.
 PART = 0.8
+#: The axis of a model that nothing holds.
+LET_FREE = ("time since it was let free", "s")
 #: Points that are drawn of the curve of how far off it is.
 DRAWN = 300
 #: How much slower a page plays; what turns plays at first so that it goes round at most once a second.
@@ -40,63 +41,59 @@ SLOWED: tuple[doc.Slowed, ...] = get_args(doc.Slowed)
 def simulation(simulated: Simulated, name: str) -> doc.Document:
     """The document of a simulated recording of a name."""
     truth, trace = simulated.truth, simulated.trace
-    kind, values = truth.parameters.kind, {present.name: _values(present, truth) for present in truth.effects}
+    kind, values = truth.parameters.kind, dict[str, list[tuple[str, float, str]]]()
+    for present in truth.effects:
+        units = {quantity.name: kind.unit(quantity) for quantity in present.effect.quantities}
+        values[words(present.name)] = [(words(quantity), value, units[quantity]) for quantity, value in present.values]
     effects = (
-        f"{words(effect)} ({', '.join(f'{name} {number(value, unit)}' for name, value, unit in found)})"
+        f"{effect} ({', '.join(f'{quantity} {number(value, unit)}' for quantity, value, unit in found)})"
         for effect, found in values.items()
     )
     seconds = number(float(trace.time[-1] - trace.time[0]), "s", 3)
-    hidden = f", with {', '.join(map(words, values))} in it" if values else ""
-    answers = {
-        f"{kind.in_words(INERTIA).capitalize()}?": number(truth.parameters.inertia, kind.inertia_unit, 5),
-        "What is hidden?": "; ".join(effects) or "Nothing beyond inertia and friction.",
-        "Where is the friction?": f"In the {truth.friction}.",
-    }
+    hidden = f", with {', '.join(values)} in it" if values else ""
     axis = (
         (quantity.name, getattr(truth.parameters, field), quantity.unit)
         for field, quantity in parameter_quantities(kind).items()
     )
-    added: doc.Table | doc.Paragraph = doc.Paragraph(text="No effect was added.")
-    if values:
-        rows = (
-            (words(effect), name, number(value, digits=5), unit_text(unit))
-            for effect, found in values.items()
-            for name, value, unit in found
-        )
-        added = doc.table("Effects", ("effect", "quantity", "value>", "unit"), rows)
-    true = (values_table("The axis, on the motor's side", axis), added)
-    file = doc.file("truth.json", "the truth", truth.as_json())
+    rows = (
+        (effect, quantity, number(value, digits=5), unit_text(unit))
+        for effect, found in values.items()
+        for quantity, value, unit in found
+    )
+    added = doc.table("Effects", ("effect", "quantity", "value>", "unit"), rows)
+    true = (
+        values_table("The axis, on the motor's side", axis),
+        added if values else doc.Paragraph(text="No effect was added."),
+    )
     return doc.Document(
         title=name,
         subject=f"Simulation of {truth.rig}: {name}",
         verdict=f"{seconds} of the profile {words(truth.profile)} were simulated{hidden}.",
         tone="sure",
-        answers=answers,
+        answers={
+            f"{kind.in_words(INERTIA).capitalize()}?": number(truth.parameters.inertia, kind.inertia_unit, 5),
+            "What is hidden?": "; ".join(effects) or "Nothing beyond inertia and friction.",
+            "Where is the friction?": f"In the {truth.friction}.",
+        },
         sections=(
             doc.section("motion", "Recorded and true", _recorded(simulated)),
             doc.section("truth", "The truth", *true),
-            doc.section("files", "The numbers", doc.Downloads(files=(file,))),
+            doc.section("files", "The numbers", doc.downloads(doc.file("truth.json", "the truth", truth.as_json()))),
         ),
         origin=(*origin(None), f"seed {truth.seed}"),
     )
 
 
-def _values(present: Present, truth: Truth) -> list[tuple[str, float, str]]:
-    units = {quantity.name: truth.parameters.kind.unit(quantity) for quantity in present.effect.quantities}
-    return [(words(name), value, units[name]) for name, value in present.values]
-
-
 def _recorded(simulated: Simulated) -> doc.TimeGraph:
     """Speed and position as recorded and as they were, and the recorded effort."""
     trace, states = simulated.trace, simulated.states
-    period = float(states.time[1] - states.time[0])
-    ticks = ((trace.time - states.time[0]) / period).round().astype(int)
-    was = {"velocity": ("speed", states.velocity[ticks, 0]), "position": ("position", states.position[ticks, 0])}
-    signals = [
-        Plotted(label, trace.units[name], trace.time, trace[name], [trace[name] - true], "true", name="recorded")
-        for name, (label, true) in was.items()
-        if name in trace
-    ]
+    ticks = ((trace.time - states.time[0]) / (states.time[1] - states.time[0])).round().astype(int)
+    was = {"velocity": ("speed", states.velocity), "position": ("position", states.position)}
+    signals = []
+    for name, (label, true) in was.items():
+        if name in trace:
+            left = trace[name] - true[ticks, 0]
+            signals.append(Plotted(label, trace.units[name], trace.time, trace[name], [left], "true", "recorded"))
     efforts = [name for name in ("current", "torque", "force") if name in trace]
     signals += [Plotted(name, trace.units[name], trace.time, trace[name], name="recorded") for name in efforts]
     alternative = (
@@ -125,13 +122,11 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         "Does it move like the axis?": moves,
         "Is it this axis?": " ".join(replayed.warnings) or "Nothing speaks against it.",
     }
-    signals = [
-        Plotted(label, unit, replayed.time, measured, [measured - simulated])
-        for label, unit, measured, simulated in (
-            ("speed", replayed.speed_unit, replayed.velocity, replayed.velocity_simulated),
-            (effort, replayed.effort_unit, replayed.torque, replayed.torque_simulated),
-        )
-    ]
+    both = {
+        ("speed", replayed.speed_unit): (replayed.velocity, replayed.velocity_simulated),
+        (effort, replayed.effort_unit): (replayed.torque, replayed.torque_simulated),
+    }
+    signals = [Plotted(*of, replayed.time, seen, [seen - made]) for of, (seen, made) in both.items()]
     shown = f"Speed and {effort} of the recording as measured and as the model has them, and what is left of each."
     graph = time_graph("Over time.", shown, replayed.time, signals)
     motion = doc.section("motion", "Measured and simulated", graph)
@@ -141,7 +136,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         verdict=f"{line}.",
         tone="sure" if torque[0] < LEFT and not replayed.warnings else "open",
         answers=answers,
-        sections=(motion, *warnings_sections(replayed.warnings), model_section(model)),
+        sections=doc.sections(motion, *model_sections(model, replayed.warnings)),
         origin=origin(None),
     )
 
@@ -177,30 +172,31 @@ def view(
     answers = {
         "What moves?": shown.simulated_is,
         "How far apart?": f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most",
+        **({} if free is None else {"And let free?": _after(free, kind)}),
+    }
+    both = {
+        ("speed", kind.speed_unit): (shown.ghost_velocity, shown.velocity),
+        ("position", kind.length_unit): (shown.ghost, shown.position),
     }
     signals = [
-        Plotted(label, unit, shown.time, ghost, [ghost - simulated], name=shown.ghost_is)
-        for label, unit, ghost, simulated in (
-            ("speed", kind.speed_unit, shown.ghost_velocity, shown.velocity),
-            ("position", kind.length_unit, shown.ghost, shown.position),
-        )
+        Plotted(*of, shown.time, ghost, [ghost - simulated], name=shown.ghost_is)
+        for of, (ghost, simulated) in both.items()
     ]
     alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
     graph = time_graph("Over time.", alternative, shown.time, signals, part=PART)
-    sections = [
-        doc.section("moving", "Moving", motion_of(shown, robot)),
-        doc.section("motion", "Over time", graph),
-    ]
-    if free is not None:
-        sections.append(doc.section("free", "Let free", *_let_free(free, shown.kind)))
-        answers["And let free?"] = _after(free, shown.kind)
+    let_free = [] if free is None else _let_free(free, kind)
     return doc.Document(
         title=title,
         subject=f"View: {title}",
         verdict=f"The simulated axis stays within {furthest} of the motion {shown.ghost_is}, over {seconds}.",
         tone="open" if warnings else "sure",
         answers=answers,
-        sections=(*sections, *warnings_sections(warnings), model_section(model)),
+        sections=doc.sections(
+            doc.section("moving", "Moving", motion_of(shown, robot)),
+            doc.section("motion", "Over time", graph),
+            doc.section("free", "Let free", *let_free),
+            *model_sections(model, warnings),
+        ),
         origin=origin(None),
     )
 
@@ -208,31 +204,23 @@ def view(
 def _after(free: FreeRun, kind: AxisKind) -> str:
     """How far off it is a while after it was let free."""
     at = [(horizon, int(np.searchsorted(free.time, horizon * (1.0 - 1e-6)))) for horizon in HORIZONS]
-    off = [
-        f"after {number(horizon, 's')} {number(float(free.position[k]), kind.length_unit, 3)}"
-        for horizon, k in at
-        if k < free.time.size
-    ]
-    last = f"after {number(float(free.time[-1]), 's', 3)} {number(float(free.position[-1]), kind.length_unit, 3)}"
-    return f"{', '.join(off or [last])} RMS, of {free.windows} windows"
+    at = [(number(horizon, "s"), k) for horizon, k in at if k < free.time.size]
+    at = at or [(number(float(free.time[-1]), "s", 3), -1)]
+    off = (f"after {when} {number(float(free.position[k]), kind.length_unit, 3)}" for when, k in at)
+    return f"{', '.join(off)} RMS, of {free.windows} windows"
 
 
-def _let_free(free: FreeRun, kind: AxisKind) -> tuple[doc.Chart, doc.Chart]:
+def _let_free(free: FreeRun, kind: AxisKind) -> Iterator[doc.Chart]:
     """How far off position and speed are over the time since it was let free."""
     every = max(free.time.size // DRAWN, 1)
     alternative = (
         f"RMS of simulated less measured over the time since the model was let free: {free.windows} windows begin "
         "with what the sensors say, the recorded effort drives the model, and nothing holds it."
     )
-
-    def chart(title: str, label: str, unit: str, values: Array) -> doc.Chart:
-        drawn = doc.series(label, "line", "model", free.time[::every], values[::every])
-        return one_panel(title, alternative, ("time since it was let free", "s"), (label, unit), [drawn])
-
-    return (
-        chart("Position.", "position off (RMS)", kind.length_unit, free.position),
-        chart("Speed.", "speed off (RMS)", kind.speed_unit, free.velocity),
-    )
+    for name, unit, off in (("position", kind.length_unit, free.position), ("speed", kind.speed_unit, free.velocity)):
+        label = f"{name} off (RMS)"
+        drawn = doc.series(label, "line", "model", free.time[::every], off[::every])
+        yield one_panel(f"{sentence(name)}.", alternative, LET_FREE, (label, unit), [drawn])
 
 
 def motion_of(shown: SideBySide, robot: RobotAlong | None = None) -> doc.Moving:
@@ -276,12 +264,7 @@ def motion_of(shown: SideBySide, robot: RobotAlong | None = None) -> doc.Moving:
 def moving_section(mjcf: Path, motions: Mapping[str, JointMotion]) -> doc.Section:
     """The robot along the log that most joints were identified from, and how far off each is where nothing holds it."""
     origins = [motion.origin for motion in motions.values()]
-    along = max(origins, key=origins.count)
-    return doc.section("moving", "Moving", _robot_motion(mjcf, along, motions), *_free_charts(motions))
-
-
-def _free_charts(motions: Mapping[str, JointMotion]) -> Iterator[doc.Chart]:
-    """A chart of the joints that turn, and one of those that slide."""
+    charts = []
     for unit, move in (("rad", "turn"), ("m", "slide")):
         free = {name: one for name, one in motions.items() if one.unit == unit and one.off.size}
         colours: Iterator[doc.Colour] = cycle(doc.COLOURS)
@@ -291,8 +274,9 @@ def _free_charts(motions: Mapping[str, JointMotion]) -> Iterator[doc.Chart]:
                 f"RMS of simulated less measured position of the joints that {move}, over the time since the model of"
                 " each was let free, driven by its recorded torque, beside the others as measured."
             )
-            axes = ("time since it was let free", "s"), ("position off (RMS)", unit)
-            yield one_panel("Let free.", alternative, *axes, drawn)
+            charts.append(one_panel("Let free.", alternative, LET_FREE, ("position off (RMS)", unit), drawn))
+    robot = _robot_motion(mjcf, max(origins, key=origins.count), motions)
+    return doc.section("moving", "Moving", robot, *charts)
 
 
 def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) -> doc.Moving:

@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import zip_longest
 
 from rich.cells import cell_len
 from rich.console import Console
@@ -119,18 +120,17 @@ def _table(table: Table, width: int) -> Text:
     else:
         return found.append_text(_stacked(table, headings, rows, width))
 
-    def line(cells: list[str]) -> list[str]:
+    def line(cells: list[str]) -> str:
         held = [wrapped(cell, widest) for cell, widest in zip(cells, widths, strict=True)]
-        set_ = [
-            [_set(one, widest, column.number) for one in (*lines, *[""] * (max(map(len, held)) - len(lines)))]
-            for lines, widest, column in zip(held, widths, table.columns, strict=True)
-        ]
-        return [(" " * gap).join(parts).rstrip() for parts in zip(*set_, strict=True)]
+        lines = []
+        for parts in zip_longest(*held, fillvalue=""):
+            set_ = map(_set, parts, widths, (column.number for column in table.columns))
+            lines.append((" " * gap).join(set_).rstrip())
+        return "\n".join(lines)
 
-    found.append("\n".join(line(headings)), "bold").append(
-        f"\n{writable(RULE) * (sum(widths) + gap * (len(widths) - 1))}\n"
-    )
-    shown = [Text("\n".join(line(row)), "bold" * (k in table.marked)) for k, row in enumerate(rows)]
+    rule = writable(RULE) * (sum(widths) + gap * (len(widths) - 1))
+    found.append(line(headings), "bold").append(f"\n{rule}\n")
+    shown = [Text(line(row), "bold" * (k in table.marked)) for k, row in enumerate(rows)]
     return found.append_text(Text("\n").join(shown))
 
 

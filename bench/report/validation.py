@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +43,22 @@ NOTE = (
 LEVEL = LEVELS[-1]
 #: Share that the chart's scale begins at, where no bound lies below it; fewer runs than tell as much are too few.
 FROM = 0.8
+NO_QUANTITY = "No run tells a quantity."
 FEW = " More runs narrow these bounds."
+#: Shares and counts of names as JSON has them, in its order.
+NAMING = {
+    "nulls_with_false_name": "nulls",
+    "nulls_by_motion": "nulls_by_motion",
+    "with_false_name": "false",
+    "with_false_name_explained": "silent",
+    "named_exactly": "exact",
+    "refused": "refused",
+    "named": "named",
+    "falsely_named": "falsely",
+    "confusion": "confusion",
+}
+#: What a diagnosis says of a run, as a table has it.
+SAID = ("verdict", "named", "false", "missed", "diagnose_reason")
 FILES = {
     "validation.json": "all of it, as data",
     "runs.csv": "what each run was, and what was said of it",
@@ -54,21 +68,23 @@ FILES = {
 
 def validation_json(found: Validation, provenance: Mapping[str, Any]) -> str:
     """The whole, as the contract's JSON; nan is null."""
-    status = Counter(run.status for run in found.runs)
-    content = {
-        "schema": SCHEMA,
-        "runs": {"asked": len(found.runs), **{name: status[name] for name in ("done", "refused", "failed")}},
-        "coverage": [_coverage_json(each) for each in found.coverage],
-        "naming": None if found.naming is None else _naming_json(found.naming),
-        "provenance": provenance,
-    }
-    return serialised(content)
+    status, naming = Counter(run.status for run in found.runs), found.naming
+    return serialised(
+        {
+            "schema": SCHEMA,
+            "runs": {"asked": len(found.runs), **{name: status[name] for name in ("done", "refused", "failed")}},
+            "coverage": found.coverage,
+            "naming": naming and {key: getattr(naming, name) for key, name in NAMING.items()},
+            "provenance": provenance,
+        }
+    )
 
 
-def _coverage_json(found: Coverage) -> dict[str, Any]:
-    names = (field.name for field in fields(found) if field.name != "inside")
-    plain = {name: known(each) if isinstance(each, float) else each for name, each in picked(found, *names).items()}
+@as_json.register
+def _(found: Coverage) -> dict[str, Any]:
+    plain = {name: known(each) if isinstance(each, float) else each for name, each in vars(found).items()}
     inside = [{"level": level, **as_json(each)} for level, each in zip(LEVELS, found.inside, strict=True)]
+    del plain["inside"]
     return {**plain, "inside": inside}
 
 
@@ -77,35 +93,13 @@ def _(found: Share) -> dict[str, Any]:
     return {**picked(found, "count", "of"), "share": found.value if found.of else None, "bounds95": found.bounds}
 
 
-def _naming_json(found: Naming) -> dict[str, Any]:
-    return {
-        "nulls_with_false_name": found.nulls,
-        "nulls_by_motion": found.nulls_by_motion,
-        "with_false_name": found.false,
-        "with_false_name_explained": found.silent,
-        "named_exactly": found.exact,
-        "refused": found.refused,
-        "named": found.named,
-        "falsely_named": found.falsely,
-        "confusion": found.confusion,
-    }
-
-
 def validation(found: Validation, provenance: Mapping[str, Any], command: str, own: bool) -> doc.Document:
     """The document of a validation that `command` does again; on one's own axis how well it is known comes first."""
     first, naming, note, runs = _first(found), found.naming, doc.Paragraph(text=NOTE), _outcomes(found.runs)
-    numbers, parts = ([*_numbers(found, whole)] for whole in (True, False))
+    numbers, parts = (_numbers(found, whole) for whole in (True, False))
     names = [] if naming is None else [*_naming(naming)]
-    sections = [doc.section("coverage", "How often an interval holds the truth", *_charts(found))]
-    if own:
-        axis = doc.section("axis", "This motion on this drive", *_determined(found.runs))
-        sections.insert(0, axis)
-    sections.append(doc.section("numbers", "How far off numbers are", *numbers, note))
-    if parts:
-        sections.append(doc.section("parts", "The same, by parts of these runs", *parts, detail=True))
-    if names:
-        sections.append(doc.section("names", "Whether names are right", *names))
-    sections.append(doc.section("runs", "All runs", runs, doc.neighbours(FILES)))
+    charts = [chart for quantity in SYMBOLS if (chart := _chart(found, quantity, -1)).spans]
+    coverage = charts or [doc.Paragraph(text=NO_QUANTITY)]
     tables = filter(None, map(markdown, (runs, *numbers, *parts, note, *names)))
     text = "\n\n".join([f"# Validation\n\n`{command}`", *tables])
     low = any(one.inside[-1].bounds[1] < LEVEL for one in first)
@@ -116,7 +110,14 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
         verdict=_verdict(first, naming),
         tone="open" if not _enough(first) or low or false else "sure",
         answers=dict(_answers(found, first)),
-        sections=tuple(sections),
+        sections=doc.sections(
+            doc.section("axis", "This motion on this drive", *(_determined(found.runs) if own else ())),
+            doc.section("coverage", "How often an interval holds the truth", *coverage),
+            doc.section("numbers", "How far off numbers are", *numbers, note),
+            doc.section("parts", "The same, by parts of these runs", *parts, detail=True),
+            doc.section("names", "Whether names are right", *names),
+            doc.section("runs", "All runs", runs, doc.neighbours(FILES)),
+        ),
         origin=origin(provenance),
         pictures=tuple(_pictures(found)),
         beside={"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"},
@@ -161,17 +162,16 @@ def _answers(found: Validation, first: list[Coverage]) -> Iterator[tuple[str, st
     yield "Runs?", f"{len(found.runs)}: {counts}."
 
 
-def _charts(found: Validation) -> Iterator[doc.AnyPart]:
-    """Share of intervals that hold the truth with its bounds, by quantity and group of runs."""
-    charts = [_chart(found, quantity, -1) for quantity in SYMBOLS]
-    if not any(chart.spans for chart in charts):
-        yield doc.Paragraph(text="No run tells a quantity.")
-    yield from (chart for chart in charts if chart.spans)
-
-
 def _chart(found: Validation, quantity: str, place: int) -> doc.Intervals:
-    """The same of a quantity, at the level of this place among all."""
+    """Share of intervals that hold the truth with its bounds, by group of runs, at the level of this place."""
     level, shown = LEVELS[place], [one for one in found.coverage if one.quantity in SYMBOLS and one.told]
+    spans = []
+    for one in shown:
+        inside = one.inside[place]
+        low, value, high = (100.0 * each for each in (inside.bounds[0], inside.value, inside.bounds[1]))
+        colour, name = "ink" if one.by == "identify" else "model", f"{one.by}: {one.group}"
+        if one.quantity == quantity:
+            spans.append(doc.Span(name=name, colour=colour, value=value, low=low, high=high))
     least = min((one.inside[place].bounds[0] for one in shown), default=FROM)
     return doc.Intervals(
         title=f"{sentence(TERM_WORDS[quantity])}, {SYMBOLS[quantity]}.",
@@ -181,53 +181,42 @@ def _chart(found: Validation, quantity: str, place: int) -> doc.Intervals:
         unit="%",
         right=(100.0 * level, 100.0 * level),
         limits=(100.0 * min(FROM if level > FROM else level / 2.0, least), 100.0),
-        spans=tuple(_span(one, place) for one in shown if one.quantity == quantity),
+        spans=tuple(spans),
     )
-
-
-def _span(one: Coverage, place: int) -> doc.Span:
-    inside = one.inside[place]
-    low, value, high = (100.0 * each for each in (inside.bounds[0], inside.value, inside.bounds[1]))
-    colour = "ink" if one.by == "identify" else "model"
-    return doc.Span(name=f"{one.by}: {one.group}", colour=colour, value=value, low=low, high=high)
 
 
 def _pictures(found: Validation) -> Iterator[doc.Picture]:
     """Coverage of each quantity at every level, and names by what is hidden."""
     rows = [tuple(_chart(found, quantity, place) for place in range(len(LEVELS))) for quantity in SYMBOLS]
     estimated = tuple(row for row in rows if row[0].spans)
-    nothing = doc.table("", ("",), [("No run tells a quantity.",)])
+    nothing = doc.table("", ("",), [(NO_QUANTITY,)])
     yield doc.Picture(name="coverage", title="How often an interval holds the truth", rows=estimated or ((nothing,),))
     if found.naming is not None:
         matrix = confusion(found.naming.confusion)
         yield doc.Picture(name="confusion", title="Named, by what is hidden", rows=((matrix,),))
 
 
-def _numbers(found: Validation, whole: bool) -> Iterator[doc.AnyPart]:
+def _numbers(found: Validation, whole: bool) -> list[doc.Table]:
     """Bias, spread, width and coverage, of whole groups of runs or of parts of them."""
-    for by, title in TITLES.items():
-        some = [one for one in found.coverage if one.by == by and one.whole is whole]
-        if some:
-            yield _covered(some, title)
-
-
-def _covered(found: Sequence[Coverage], title: str) -> doc.Table:
-    rows = (
-        (
-            each.group,
-            SYMBOLS.get(each.quantity, each.quantity),
-            f"{each.told}/{each.runs}",
-            f"{_percent(each.bias, 2)}±{_percent(NORMAL95 * each.bias_error, 1)}",
-            _percent(each.typical),
-            _percent(each.half_width),
-            f"{each.width_over_error:.2f}" if math.isfinite(each.width_over_error) else "–",
-            *(f"{100.0 * inside.value:.1f}" if inside.of else "–" for inside in each.inside),
-            "{:.1f}-{:.1f}".format(*(100.0 * bound for bound in each.inside[-1].bounds)) if each.told else "–",
-        )
-        for each in found
-    )
     levels = (f"{level:.0%}>" for level in LEVELS)
-    return doc.table(title, ("runs", "of", "known>", "bias %>", "RMS %>", "± %>", "±/RMS>", *levels, "bounds>"), rows)
+    headings = ("runs", "of", "known>", "bias %>", "RMS %>", "± %>", "±/RMS>", *levels, "bounds>")
+    rows = {by: [] for by in TITLES}
+    for each in found.coverage:
+        if each.whole is whole:
+            rows[each.by].append(
+                (
+                    each.group,
+                    SYMBOLS.get(each.quantity, each.quantity),
+                    f"{each.told}/{each.runs}",
+                    f"{_percent(each.bias, 2)}±{_percent(NORMAL95 * each.bias_error, 1)}",
+                    _percent(each.typical),
+                    _percent(each.half_width),
+                    f"{each.width_over_error:.2f}" if math.isfinite(each.width_over_error) else None,
+                    *(f"{100.0 * inside.value:.1f}" if inside.of else None for inside in each.inside),
+                    "{:.1f}-{:.1f}".format(*(100.0 * bound for bound in each.inside[-1].bounds)) if each.told else None,
+                )
+            )
+    return [doc.table(title, headings, rows[by]) for by, title in TITLES.items() if rows[by]]
 
 
 def _determined(runs: tuple[Run, ...]) -> tuple[doc.AnyPart, ...]:
@@ -272,13 +261,11 @@ def _naming(found: Naming) -> Iterator[doc.AnyPart]:
         yield doc.table("By effect", ("effect", "named where it is>", "runs>", "where it is not>"), by_name)
     if found.confusion:
         yield confusion(found.confusion)
-    rows = ((words(hidden), _counts(counts)) for hidden, counts in found.confusion.items())
+    rows = []
+    for hidden, counts in found.confusion.items():
+        ordered = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
+        rows.append((words(hidden), ", ".join(f"{words(name)} {number(count)}" for name, count in ordered)))
     yield doc.table("What is said where one effect is hidden, or nothing", ("hidden", "said, and how often~"), rows)
-
-
-def _counts(counts: Mapping[str, int]) -> str:
-    ordered = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
-    return ", ".join(f"{words(name)} {number(count)}" for name, count in ordered)
 
 
 def confusion(counts: Mapping[str, Mapping[str, int]]) -> doc.HeatMap:
@@ -296,7 +283,6 @@ def confusion(counts: Mapping[str, Mapping[str, int]]) -> doc.HeatMap:
 
 
 def _bounded(found: Share) -> str:
-    """A share with its bounds."""
     if not found.of:
         return "–"
     low, high = found.bounds
@@ -318,7 +304,10 @@ def runs_table(runs: tuple[Run, ...]) -> pa.Table:
     """One row a run."""
     rows = []
     for run in runs:
-        named = run.named
+        named, said = run.named, dict.fromkeys(SAID)
+        if named is not None:
+            names = ("+".join(each) for each in (named.names, named.false, named.missed))
+            said = dict(zip(SAID, (named.verdict or "refused", *names, named.reason), strict=True))
         rows.append(
             {
                 **{name: getattr(run, name) for name in ("index", "plant", "motion", "kind", "noise")},
@@ -328,36 +317,24 @@ def runs_table(runs: tuple[Run, ...]) -> pa.Table:
                 "severity": run.severity,
                 "identify": run.status,
                 "reason": run.reason,
-                "verdict": None if named is None else named.verdict or "refused",
-                "named": None if named is None else "+".join(named.names),
-                "false": None if named is None else "+".join(named.false),
-                "missed": None if named is None else "+".join(named.missed),
-                "diagnose_reason": None if named is None else named.reason,
+                **said,
             }
         )
-    texts = ("verdict", "named", "false", "missed", "diagnose_reason")
     schema = pa.Table.from_pylist(rows).schema
-    for name in texts:  # of type null, where none was diagnosed
+    for name in SAID:  # of type null, where none was diagnosed
         schema = schema.set(schema.get_field_index(name), pa.field(name, pa.string()))
     return pa.Table.from_pylist(rows, schema)
 
 
 def quantities_table(runs: tuple[Run, ...]) -> pa.Table:
     """One row a quantity that a run tells."""
-    return pa.Table.from_pylist(
-        [
-            {
-                "index": run.index,
-                **{name: getattr(one, name) for name in ("by", "effect", "quantity")},
-                "unit": one.parameter.unit,
-                "true": one.true,
-                **{name: getattr(one.parameter, name) for name in ("value", "std_error")},
-                **dict(zip(("low", "high"), one.parameter.ci95, strict=True)),
-            }
-            for run in runs
-            for one in run.scored
-        ]
-    )
+    rows = []
+    for run in runs:
+        for one in run.scored:
+            found, of = one.parameter, {name: getattr(one, name) for name in ("by", "effect", "quantity")}
+            known = {"unit": found.unit, "true": one.true, "value": found.value, "std_error": found.std_error}
+            rows.append({"index": run.index, **of, **known, "low": found.ci95[0], "high": found.ci95[1]})
+    return pa.Table.from_pylist(rows)
 
 
 def write_validation(folder: Path, found: Validation, document: doc.Document) -> list[Path]:

@@ -11,8 +11,8 @@ import numpy as np
 from bench.errors import InputError
 from bench.names import nearest, short
 from bench.trace.channel import Channel, Recording, split_label
-from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of
-from bench.units.conversion import UnitScale
+from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of, wanted_units
+from bench.units.conversion import UnitScale, scale_or_none
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
@@ -127,13 +127,11 @@ def of_axis(recording: Recording, axis: str | None) -> tuple[Channel, ...]:
         return tuple(channel for channel in recording.channels if channel.axis in (axis, None))
     parts = [channel for channel in recording.channels if axis.lower() in channel.name.lower().split(".")]
     if parts:
-        return (*parts, *(channel for channel in recording.channels if channel not in parts and _serves_all(channel)))
+        others = [channel for channel in recording.channels if channel not in parts]
+        times = [one for one in others if signal_of(one.name) == "time" or is_index(one.name) or "." not in one.name]
+        return (*parts, *times)
     found = f"no axis '{axis}'{nearest(axis, list(axes))}"
     raise InputError(recording.origin, found, f"found: {', '.join(axes) or 'one axis without a name'}")
-
-
-def _serves_all(channel: Channel) -> bool:
-    return signal_of(channel.name) == "time" or is_index(channel.name) or "." not in channel.name
 
 
 def axes_of(channels: Iterable[Channel]) -> tuple[str, ...]:
@@ -153,40 +151,38 @@ def _require(
             advice = 'give its sample_period = "1 ms" in the rig\'s [trace], or its column: time = "column [unit]"'
             raise missing(recording, "column 'time'", advice)
     for group in ENOUGH:
-        if not any(signal in chosen for signal in group):
-            for signal in group:
-                if signal in faults:
-                    raise faults[signal]
+        found = [faults[signal] for signal in group if signal in faults]
+        if found and not any(signal in chosen for signal in group):
+            raise found[0]
 
 
 def _signal(
     recording: Recording, whole: Recording, signal: str, columns: Mapping[str, str], notes: list[str]
 ) -> SignalColumn | None:
     """The channel of a signal, by a column's name of the whole recording's; None where there is none."""
-    given = columns.get(signal)
-    channel, unit, sign = None, None, 1.0
+    given, named, unit = columns.get(signal), None, None
     if given is not None:
-        sign = -1.0 if given.strip().startswith("-") else 1.0
         name, unit = split_label(given.strip().removeprefix("-"))
-        channel = _named(recording, signal, name) or _named(whole, signal, name)
-    named = channel is not None
+        named = _named(recording, signal, name) or _named(whole, signal, name)
+    channel = named or _known(recording, signal)
     if channel is None:
-        channel, sign, unit = _known(recording, signal), 1.0, None
-        if channel is None and given is not None:
-            raise missing(recording, f"column '{given.strip().lstrip('-')}'")
-        if channel is None:
-            return None
         if given is not None:
-            notes.append(f"{signal} read from '{channel.label}', as the file has no '{given}'")
+            raise missing(recording, f"column '{given.strip().lstrip('-')}'")
+        return None
+    if named is None and given is not None:
+        notes.append(f"{signal} read from '{channel.label}', as the file has no '{given}'")
+        unit = None
     if channel.defect is not None:
         raise channel.defect
     own = unit_of(channel.unit)
     stated = unit_of(unit or channel.unit)
     usual = recording.usual_units.get(signal) if stated is None and not channel.moments else None
     scale = _scale(signal, channel, stated or usual)
-    if named and not channel.moments and None not in (unit, own) and not _means(str(own), signal, scale):
+    contrary = own is not None and scale_or_none(own, wanted_units(signal)) != scale
+    if named is not None and unit is not None and not channel.moments and contrary:
         notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
-    return SignalColumn(channel, scale, sign, usual)
+    inverted = named is not None and str(given).strip().startswith("-")
+    return SignalColumn(channel, scale, -1.0 if inverted else 1.0, usual)
 
 
 def _scale(signal: str, channel: Channel, unit: str | None) -> UnitScale:
@@ -200,14 +196,6 @@ def _scale(signal: str, channel: Channel, unit: str | None) -> UnitScale:
         return scale_in(signal, unit, channel.place())
     except InputError as error:
         raise InputError(error.where, error.found, f"{error.allowed}; {line} says which") from error
-
-
-def _means(unit: str, signal: str, scale: UnitScale) -> bool:
-    """Whether a signal's unit is worth as much; what is no unit of it is not."""
-    try:
-        return scale_in(signal, unit, "") == scale
-    except InputError:
-        return False
 
 
 def _named(recording: Recording, signal: str, name: str) -> Channel | None:
@@ -238,10 +226,10 @@ def _differ(signal: str, one: Channel, other: Channel) -> bool:
     """Whether two columns of one signal are two signals; where one of them cannot be read, the other is it."""
     if other is one or signal == "time" or {one.defect, other.defect} != {None} or one.values.size != other.values.size:
         return False
-    try:
-        ours, theirs = (c.values * scale_in(signal, c.unit or "", "").factor for c in (one, other))
-    except InputError:
+    scale, scale_too = (scale_or_none(channel.unit or "", wanted_units(signal)) for channel in (one, other))
+    if scale is None or scale_too is None:
         return False
+    ours, theirs = one.values * scale.factor, other.values * scale_too.factor
     both = np.isfinite(ours) & np.isfinite(theirs)
     return bool(both.any()) and float(np.std((ours - theirs)[both])) > SAME * float(np.std(ours[both]))
 

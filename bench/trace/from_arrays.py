@@ -53,9 +53,13 @@ def recording_of(
         found = "found a column of it and a sample_period" if timed else "found no column of it and no sample_period"
         raise InputError(f"{origin}: time", found, "allowed: one of them")
     if sample_period is not None:
+        where = f"{origin}: sample_period"
+        period = parse(sample_period, "s", where) if isinstance(sample_period, str) else float(sample_period)
+        if not (math.isfinite(period) and period > 0.0):
+            allowed = "allowed: a positive time, in s where no unit is stated"
+            raise InputError(where, f"found {sample_period}", allowed)
         samples = max((channel.values.size for channel in channels), default=0)
-        times = np.arange(samples, dtype=np.float64) * _period(sample_period, origin)
-        channels.append(Channel("time", "s", times, origin))
+        channels.append(Channel("time", "s", np.arange(samples, dtype=np.float64) * period, origin))
     return Recording(tuple(channels), FORMAT, origin)
 
 
@@ -64,7 +68,14 @@ def _channels(signals: Arrays, origin: str) -> Iterator[Channel]:
     if isinstance(signals, Mapping):
         found = (_channel(label, values, origin) for label, values in signals.items())
     else:
-        table = _table(signals, origin)
+        try:
+            table = pa.table(signals)
+        except TypeError as error:
+            allowed = "allowed: arrays by their names, or a data frame"
+            raise InputError(origin, f"found {type(signals).__name__}", allowed) from error
+        except pa.ArrowException as error:
+            said = f"the data frame cannot be read ({' '.join(str(error).split())})"
+            raise InputError(origin, said, "allowed: columns of one type each; drop the others") from error
         found = (channel_of(*column, origin) for column in zip(table.schema, table.columns, strict=True))
     return (replace(channel, values=channel.values.copy()) for channel in found)
 
@@ -83,18 +94,6 @@ def _channel(label: str, values: ArrayLike, origin: str) -> Channel:
     return replace(channel, defect=InputError(channel.place(), f"found {found}", "allowed: one number a sample"))
 
 
-def _table(frame: ArrowStream, origin: str) -> pa.Table:
-    try:
-        return pa.table(frame)
-    except TypeError as error:
-        allowed = "allowed: arrays by their names, or a data frame"
-        raise InputError(origin, f"found {type(frame).__name__}", allowed) from error
-    except pa.ArrowException as error:
-        reason = " ".join(str(error).split())
-        found = f"the data frame cannot be read ({reason})"
-        raise InputError(origin, found, "allowed: columns of one type each; drop the others") from error
-
-
 def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> None:
     """InputError naming the first signal of no unit, neither in its column's name nor stated."""
     names = {channel.name for channel in channels}
@@ -106,11 +105,3 @@ def _require_units(channels: Sequence[Channel], columns: Mapping[str, str]) -> N
             usual = "s" if signal == "time" else SI_UNITS[signal][0]
             allowed = f'allowed: units={{"{channel.name}": "{usual}"}} or another unit of it'
             raise InputError(f"{channel.origin}: {channel.name}", "has no unit", allowed)
-
-
-def _period(given: float | str, origin: str) -> float:
-    where = f"{origin}: sample_period"
-    period = parse(given, "s", where) if isinstance(given, str) else float(given)
-    if not (math.isfinite(period) and period > 0.0):
-        raise InputError(where, f"found {given}", "allowed: a positive time, in s where no unit is stated")
-    return period

@@ -60,20 +60,12 @@ class SampledSignal:
         clock: its sample times.
         values: SI - (n,).
         unknown: where the file has no value and neighbours were used - (n,); None: nowhere.
+        wraps: of a position, which were undone.
     """
 
     clock: Clock
     values: Array
     unknown: NDArray[np.bool_] | None = None
-
-
-@dataclass(frozen=True)
-class InSI:
-    """Signals in SI units, what the user should know, and wraps of the position that were undone."""
-
-    signals: dict[str, SampledSignal]
-    units: dict[str, str]
-    notes: tuple[str, ...] = ()
     wraps: Wraps | None = None
 
 
@@ -81,9 +73,10 @@ def in_si(
     chosen: Mapping[str, SignalColumn],
     recording: Recording,
     how: ReadingOptions,
+    notes: list[str],
     wrapping: dict[str, Unwrapping] | None = None,
-) -> InSI:
-    """Bring the chosen channels of a recording to SI.
+) -> dict[str, SampledSignal]:
+    """Bring the chosen channels of a recording to SI, and add to `notes` what the user should know.
 
     `wrapping` is what was found of positions in the pieces before, where a recording is read in pieces.
 
@@ -95,26 +88,22 @@ def in_si(
     _one_kind_of_axis(units, recording)
     if not units:
         raise missing(recording, "position or velocity", "map them in the rig's [trace.columns]")
-    notes: list[str] = []
-    clocks: dict[int, Clock] = {}
+    clocks: dict[Channel | None, Clock] = {}
     signals: dict[str, SampledSignal] = {}
     for name in units:
-        choice = chosen[name]
-        channel = choice.channel
-        if id(channel.time) not in clocks:
-            clocks[id(channel.time)] = _clock_of(channel, chosen.get("time"), how, notes)
-        clock, values = clocks[id(channel.time)], _values(choice)
+        channel = chosen[name].channel
+        if channel.time not in clocks:
+            clocks[channel.time] = _clock_of(channel, chosen.get("time"), how, notes)
+        clock, values = clocks[channel.time], _values(chosen[name])
         if values.size != clock.time.size:
             allowed = f"allowed: {clock.time.size}, as its time has"
             raise InputError(channel.place(), f"found {values.size} values", allowed)
         signals[name] = _known_samples(name, SampledSignal(clock, values), channel, notes)
-    wraps: Wraps | None = None
     for name in ("position", "position_reference"):
         if name in signals:
             unwrapping = (wrapping if wrapping is not None else {}).setdefault(name, Unwrapping(how.position_period))
-            signals[name], undone = _unwrapped(name, chosen[name], signals, unwrapping, notes)
-            wraps = undone if name == "position" else wraps
-    return InSI(signals, units, tuple(notes), wraps)
+            signals[name] = _unwrapped(name, chosen[name], signals, unwrapping, notes)
+    return signals
 
 
 def _one_kind_of_axis(units: Mapping[str, str], recording: Recording) -> None:
@@ -164,16 +153,15 @@ def _known_samples(name: str, sampled: SampledSignal, channel: Channel, notes: l
 
 def _unwrapped(
     name: str, choice: SignalColumn, signals: Mapping[str, SampledSignal], unwrapping: Unwrapping, notes: list[str]
-) -> tuple[SampledSignal, Wraps | None]:
-    sampled = signals[name]
-    speed = signals.get(name.replace("position", "velocity"))
+) -> SampledSignal:
+    sampled, speed = signals[name], signals.get(name.replace("position", "velocity"))
     speeds = speed.values if speed is not None and speed.clock is sampled.clock else None
     count, place = abs(choice.scale.factor), choice.channel.place
     values, wraps = unwrapping(sampled.values, sampled.clock.time, speeds, count, place)
     if wraps is None:
-        return sampled, None
+        return sampled
     notes.append(f"{name} wraps {wraps.count} times by {wraps.period:.6g} {choice.scale.unit}; made continuous")
-    return replace(sampled, values=values), wraps
+    return replace(sampled, values=values, wraps=wraps)
 
 
 def _clock_of(channel: Channel, time: SignalColumn | None, how: ReadingOptions, notes: list[str]) -> Clock:

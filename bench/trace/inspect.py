@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
@@ -20,9 +18,8 @@ from bench.arrays import Array, correlation, rms
 from bench.errors import InputError
 from bench.structured import json_text
 from bench.trace.channel import Channel, Recording
-from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis, reading_options
+from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis
 from bench.trace.in_si import in_si
-from bench.trace.read import read_recording
 from bench.trace.signals import REFERENCE, SI_UNITS, WORDS, is_index, scale_in, signal_of, unit_of, wanted_units
 from bench.trace.trace import on_time_base, unused
 from bench.units.conversion import is_unit, scale_of
@@ -137,16 +134,10 @@ class Inspection:
         columns: of the file, in its order.
         axes: of the file.
         asks: why the file cannot be read as it is, and what to write; None if it can.
-        samples: on the regular time base.
-        segments: stretches between holes.
+        samples, segments: on the regular time base, and its stretches between holes.
         start, duration: of the recording - s.
         rate: sample rate - Hz.
-        jitter: largest deviation of a step from whole sample periods - share of the period.
-        holes: (start, duration) of each - s.
-        duplicates: samples dropped because their time stood already in the recording.
-        interpolated: samples placed between measured ones.
-        resampled: whether jittering samples were interpolated onto regular times.
-        steps: between which four of five steps are, where they are not regular - s.
+        jitter, holes, duplicates, interpolated, resampled, steps: as of `bench.trace.time_base.TimeBase`.
         signals: in the order of `bench.trace.signals`.
         dropped: columns that are no known signal.
         metadata: what the file says about itself.
@@ -180,34 +171,30 @@ class Inspection:
         return tuple(column.suggestion for column in self.columns if column.suggestion is not None)
 
 
-def inspect(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Inspection:
-    """Look into a recording; path and columns as for `bench.trace.read.read`.
+def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
+    """Look into a recording.
 
     Raises:
-        InputError: no table or container that the bench knows; a column that the rig names is not there, or has no
-            unit. A file that needs a rig to be read is no error here.
+        InputError: a column that the options name is not there, or has no unit. A recording that needs a rig to be read
+            is no error here.
     """
-    return inspect_recording(read_recording(path), reading_options(columns))
-
-
-def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
-    """See `inspect`."""
     origin, kind, axes, metadata = recording.origin, recording.format, axes_of(recording.channels), recording.metadata
     try:
-        chosen, notes = choose(recording, how)
-        found = in_si(chosen, recording, how)
-        trace = on_time_base(found, recording, chosen, (*recording.notes, *notes))
+        chosen, assumed = choose(recording, how)
+        notes = [*recording.notes, *assumed]
+        sampled = in_si(chosen, recording, how, notes)
+        trace = on_time_base(sampled, chosen, recording, notes)
     except InputError as error:
         if how.columns:
             raise
-        columns = _columns(recording, {}, how)
+        columns = tuple(_columns(recording, {}, how))
         return Inspection(origin, kind, columns, axes, str(error), metadata=dict(metadata), notes=recording.notes)
     assert trace.time_base is not None  # a trace that was read has one
     base = asdict(trace.time_base)
     return Inspection(
         origin=origin,
         format=kind,
-        columns=_columns(recording, chosen, how),
+        columns=tuple(_columns(recording, chosen, how)),
         axes=axes,
         asks=None,
         samples=len(trace),
@@ -217,7 +204,7 @@ def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
         rate=1.0 / base.pop("sample_period"),
         **base,
         signals=tuple(
-            _summary(name, trace.units[name], chosen[name].channel.label, values, found.signals[name].values)
+            _summary(name, trace.units[name], chosen[name].channel.label, values, sampled[name].values)
             for name, values in trace.signals.items()
         ),
         dropped=tuple(unused(chosen, recording)),
@@ -244,37 +231,32 @@ def _resolution(values: Array) -> float | None:
     return float(steps.min()) if steps.size else None
 
 
-def _columns(
-    recording: Recording, chosen: Mapping[str, SignalColumn], how: ReadingOptions
-) -> tuple[ColumnSummary, ...]:
+def _columns(recording: Recording, chosen: Mapping[str, SignalColumn], how: ReadingOptions) -> Iterator[ColumnSummary]:
     """Every column of the axis in numbers, with what it is read as or likely to be."""
     channels = of_axis(recording, how.axis)
-    read = {id(choice.channel): signal for signal, choice in chosen.items()}
-    guesses = {place: guess for place, guess in likely_signals(channels).items() if guess.signal not in chosen}
-    return tuple(_column(channel, read.get(id(channel)), guesses.get(place)) for place, channel in enumerate(channels))
-
-
-def _column(channel: Channel, read: str | None, guess: Guess | None) -> ColumnSummary:
-    numbers = channel.values[np.isfinite(channel.values)]
-    signal, why, suggestion = read, (), None
-    if read is None and guess is not None:
-        unit = "" if channel.moments else f" [{guess.unit or '?'}]"  # of which only the user knows it
-        signal, why = guess.signal, guess.why
-        suggestion = f"{signal} = {json.dumps(channel.name + unit, ensure_ascii=False)}"
-    return ColumnSummary(
-        name=channel.name,
-        unit=channel.unit,
-        axis=channel.axis,
-        count=int(numbers.size),
-        minimum=float(numbers.min()) if numbers.size else None,
-        maximum=float(numbers.max()) if numbers.size else None,
-        resolution=_resolution(numbers),
-        rate=_rate(channel),
-        signal=signal,
-        read=read is not None,
-        why=why if channel.defect is None else (str(channel.defect.found),),
-        suggestion=suggestion,
-    )
+    read = {choice.channel: signal for signal, choice in chosen.items()}
+    guesses = likely_signals(channels)
+    for channel in channels:
+        numbers = channel.values[np.isfinite(channel.values)]
+        signal, guess, why, suggestion = read.get(channel), guesses.get(channel), (), None
+        if signal is None and guess is not None and guess.signal not in chosen:
+            unit = "" if channel.moments else f" [{guess.unit or '?'}]"  # of which only the user knows it
+            signal, why = guess.signal, guess.why
+            suggestion = f"{signal} = {json.dumps(channel.name + unit, ensure_ascii=False)}"
+        yield ColumnSummary(
+            name=channel.name,
+            unit=channel.unit,
+            axis=channel.axis,
+            count=int(numbers.size),
+            minimum=float(numbers.min()) if numbers.size else None,
+            maximum=float(numbers.max()) if numbers.size else None,
+            resolution=_resolution(numbers),
+            rate=_rate(channel),
+            signal=signal,
+            read=channel in read,
+            why=why if channel.defect is None else (str(channel.defect.found),),
+            suggestion=suggestion,
+        )
 
 
 def _rate(channel: Channel) -> float | None:
@@ -303,44 +285,42 @@ class Guess:
 
 
 @np.errstate(over="ignore", invalid="ignore")  # implausible magnitudes give no reasons
-def likely_signals(channels: Sequence[Channel]) -> dict[int, Guess]:
-    """What each channel is likely to be, by its place in the file; no two of an axis are the same signal."""
-    numeric = {
-        place: channel for place, channel in enumerate(channels) if channel.defect is None and channel.values.size > 1
-    }
-    times = [place for place, channel in numeric.items() if _rises(channel.values)]
-    derived = _derivatives({place: channel for place, channel in numeric.items() if place not in times})
+def likely_signals(channels: Sequence[Channel]) -> dict[Channel, Guess]:
+    """What each channel is likely to be; no two of an axis are the same signal."""
+    numeric = [channel for channel in channels if channel.defect is None and channel.values.size > 1]
+    times = {channel for channel in numeric if _rises(channel.values)}
+    derived = _derivatives([channel for channel in numeric if channel not in times])
     found = [
-        (guess, place)
-        for place, channel in numeric.items()
-        for guess in _guesses(channel, derived.get(place), place in times)
+        (guess, channel) for channel in numeric for guess in _guesses(channel, derived.get(channel), channel in times)
     ]
-    given: dict[int, Guess] = {}
+    given: dict[Channel, Guess] = {}
     taken: set[tuple[str, str | None]] = set()
-    for guess, place in sorted(found, key=lambda pair: -pair[0].weight):
-        key = (guess.signal, channels[place].axis)
-        if place not in given and key not in taken:
-            given[place] = guess
+    for guess, channel in sorted(found, key=lambda pair: -pair[0].weight):
+        key = (guess.signal, channel.axis)
+        if channel not in given and key not in taken:
+            given[channel] = guess
             taken.add(key)
-    return _with_time_unit(given, channels)
+    return _with_time_unit(given)
 
 
-def _with_time_unit(given: dict[int, Guess], channels: Sequence[Channel]) -> dict[int, Guess]:
+def _with_time_unit(given: dict[Channel, Guess]) -> dict[Channel, Guess]:
     """A time without a unit takes the one in which position and velocity, both with theirs, agree."""
-    of = {guess.signal: (place, guess) for place, guess in given.items()}
+    of = {guess.signal: channel for channel, guess in given.items()}
     if not {"time", "position", "velocity"} <= set(of):
         return given
-    place, time = of["time"]
-    if time.unit is not None or channels[place].moments:
+    clock, time = of["time"], given[of["time"]]
+    if time.unit is not None or clock.moments:
         return given
-    angle, speed = (_in_si(channels[of[name][0]], of[name][1]) for name in ("position", "velocity"))
-    ticks = channels[place].values[:ENOUGH]
-    if angle is None or speed is None or not angle.size == speed.size == ticks.size:
-        return given
-    unit = time_unit(ticks, angle, speed)
+    ticks, moved = clock.values[:ENOUGH], []
+    for name in ("position", "velocity"):
+        values, unit = of[name].values[:ENOUGH], given[of[name]].unit
+        if unit is None or values.size != ticks.size:
+            return given
+        moved.append(values * scale_of(unit, wanted_units(name)).factor)
+    unit = time_unit(ticks, *moved)
     if unit is None:
         return given
-    return {**given, place: replace(time, unit=unit, why=(*time.why, f"position and velocity agree in {unit}"))}
+    return {**given, clock: replace(time, unit=unit, why=(*time.why, f"position and velocity agree in {unit}"))}
 
 
 def time_unit(ticks: Array, position: Array, velocity: Array) -> str | None:
@@ -351,13 +331,6 @@ def time_unit(ticks: Array, position: Array, velocity: Array) -> str | None:
     power = float(travelled[plain] @ travelled[plain])
     second = float(travelled[plain] @ step[plain]) / power if power > 0.0 else 0.0
     return next((unit for unit, factor in TIMES.items() if abs(second / factor - 1.0) < AGREEMENT), None)
-
-
-def _in_si(channel: Channel, guess: Guess) -> Array | None:
-    with suppress(UnitError):
-        if guess.unit is not None:
-            return channel.values[:ENOUGH] * scale_of(guess.unit, wanted_units(guess.signal)).factor
-    return None
 
 
 def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Guess]:
@@ -428,17 +401,20 @@ def _rises(values: Array) -> bool:
     return steps.size > 0 and bool((steps >= 0).all()) and float(np.median(steps)) > 0.0
 
 
-def _derivatives(columns: Mapping[int, Channel]) -> dict[int, tuple[str, str]]:
-    """Place -> signal and reason, of pairs of which one is the other's derivative."""
-    found: dict[int, tuple[str, str]] = {}
-    long = {place: c for place, c in columns.items() if c.values.size >= 64 and not is_index(c.name)}
-    smooth = {place: _smoothed(np.nan_to_num(channel.values[:ENOUGH])) for place, channel in long.items()}
-    for place, channel in long.items():
+def _derivatives(columns: Sequence[Channel]) -> dict[Channel, tuple[str, str]]:
+    """Signal and reason of pairs of which one is the other's derivative."""
+    found: dict[Channel, tuple[str, str]] = {}
+    smooth = {
+        channel: _smoothed(np.nan_to_num(channel.values[:ENOUGH]))
+        for channel in columns
+        if channel.values.size >= 64 and not is_index(channel.name)
+    }
+    for channel in smooth:
         rate = _rate_of(channel.values[:ENOUGH])
-        for other, second in long.items() if rate.size else ():
-            alike = other != place and second.values.size == channel.values.size and second.axis == channel.axis
-            if alike and abs(correlation(rate, smooth[other])) > DERIVATIVE:
-                found[place] = ("position", f"its derivative is '{second.name}'")
+        for other in smooth if rate.size else ():
+            alike = other.values.size == channel.values.size and other.axis == channel.axis
+            if alike and other is not channel and abs(correlation(rate, smooth[other])) > DERIVATIVE:
+                found[channel] = ("position", f"its derivative is '{other.name}'")
                 found[other] = ("velocity", f"is the derivative of '{channel.name}'")
     return found
 

@@ -5,7 +5,7 @@ The filter is chosen from the recording itself: source of speed, noise, cut-off.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -32,8 +32,6 @@ ENOUGH, PIECE = 2**17, 2**13
 #: Share of the fastest stretch's RMS speed above which a stretch moves. Where the axis stands, coarse signals hide
 #: their noise and effort is unrelated to motion.
 MOVES = 0.1
-#: Samples filtered at once, margins included: long enough that these cost little, short enough for the cache.
-BLOCK = 2**15
 #: A filtered sign further than this from +-1 has seen speeds of the other sign, or of none.
 ONE_SIGN = 1e-3
 
@@ -211,19 +209,17 @@ def _least_cutoff(signs: Sequence[Array], sample_period: float) -> float:
 
     A filter of width s loses 3.1*s at both ends of each run of one sign, where its reach spans a reversal.
     """
-    runs = np.concatenate([_runs(sign) for sign in signs]) * sample_period
+    found = []
+    for sign in signs:
+        edges = np.r_[0, np.flatnonzero(np.diff(sign) != 0.0) + 1, sign.size]
+        found.append(np.diff(edges)[sign[edges[:-1]] != 0.0])
+    runs = np.sort(np.concatenate(found)) * sample_period
     widths = LEAST_WIDTH * sample_period * 1.1 ** np.arange(80)
-    runs, lost = np.sort(runs), 2.0 * SIGN_REACH * widths
+    lost = 2.0 * SIGN_REACH * widths
     longer = np.searchsorted(runs, lost)
     kept = np.append(np.cumsum(runs[::-1])[::-1], 0.0)[longer] - lost * (runs.size - longer)
     widest = float(widths[np.flatnonzero(kept >= KEPT * kept[0])[-1]])
     return GaussianFilter(widest, sample_period).cutoff
-
-
-def _runs(sign: Array) -> NDArray[np.int64]:
-    """Samples of each run of one known sign."""
-    starts = np.r_[0, np.flatnonzero(np.diff(sign) != 0.0) + 1]
-    return np.diff(np.r_[starts, sign.size])[sign[starts] != 0.0]
 
 
 def _coherence(pairs: Sequence[tuple[Array, Array]], sample_period: float, order: int) -> tuple[Array, Array]:
@@ -274,33 +270,19 @@ class Motion:
 
 def motion(trace: Trace, effort: Array, conditioning: Conditioning) -> Motion:
     """Filter a recording; stretches shorter than the filter's two margins are left out."""
-    parts = [_filtered(trace, effort, conditioning, block) for block in _blocks(trace, conditioning)]
+    smooth, order = conditioning.filter, conditioning.order
+    parts = []
+    for part in trace.segments:
+        source, torque = trace[conditioning.source][part], effort[part]
+        if source.size > 2 * smooth.margin:
+            speed = raw_speed(source, conditioning.source, trace.sample_period)
+            sign = known_sign(speed, conditioning.sign_threshold)
+            made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
+            rows = smooth.columns([[term] for term in made])
+            rows[-1][np.abs(rows[-1]) < 1.0 - ONE_SIGN] = 0.0
+            parts.append((trace.time[part][smooth.margin : source.size - smooth.margin : smooth.stride], *rows))
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)] if parts else [np.empty(0)] * 6
     return Motion(*columns, conditioning=conditioning)
-
-
-def _blocks(trace: Trace, conditioning: Conditioning) -> Iterator[slice]:
-    """Blocks of each segment, overlapping by two margins so that their rows join without a gap."""
-    margin = conditioning.filter.margin
-    step = BLOCK - 2 * margin if 4 * margin < BLOCK else BLOCK
-    for segment in trace.segments:
-        for start in range(segment.start, segment.stop - 2 * margin, step):
-            yield slice(start, min(start + step + 2 * margin, segment.stop))
-
-
-def _filtered(trace: Trace, effort: Array, conditioning: Conditioning, block: slice) -> tuple[Array, ...]:
-    """Columns of one block: products and signs are formed on raw samples and filtered afterwards."""
-    smooth, order = conditioning.filter, conditioning.order
-    source = trace[conditioning.source][block]
-    speed = raw_speed(source, conditioning.source, trace.sample_period)
-    sign = known_sign(speed, conditioning.sign_threshold)
-    torque = effort[block]
-    made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
-    rows = smooth.columns([[term] for term in made])
-    direction = rows[-1]
-    direction[np.abs(direction) < 1.0 - ONE_SIGN] = 0.0
-    time = trace.time[block][smooth.margin : (block.stop - block.start) - smooth.margin : smooth.stride]
-    return time, *rows
 
 
 def known_column(trace: Trace, part: slice) -> Column:

@@ -60,7 +60,9 @@ def white_noise(*stretches: Array) -> float:
     samples = sum(values.size for values in stretches)
     sizes = {window: sum(max(values.size - 2, 0) // window * window for values in stretches) for window in WINDOWS}
     window = next((window for window, size in sizes.items() if size >= HELD * samples), WINDOWS[-1])
-    differences = _windows(stretches, window)
+    steps = [np.diff(values, 2) for values in stretches if values.size >= window + 2]
+    whole = [one[: one.size // window * window].reshape(-1, window) for one in steps]
+    differences = np.concatenate(whole) if whole else np.empty((0, window))
     differences = differences[differences.any(axis=1)]
     if not differences.size:
         return 0.0
@@ -72,15 +74,6 @@ def white_noise(*stretches: Array) -> float:
     degrees = shape.size / CORRELATION
     median = scipy.special.gammaincinv(degrees, 0.5) / degrees
     return float(np.sqrt(np.median(power @ (1.0 / shape)) / shape.size / median))
-
-
-def _windows(stretches: tuple[Array, ...], window: int) -> Array:
-    """Second differences of the stretches in whole windows that span no hole (k, window)."""
-    parts = [np.diff(values, 2) for values in stretches if values.size >= window + 2]
-    rows = [part[: part.size // window * window].reshape(-1, window) for part in parts]
-    if len(rows) == 1:
-        return rows[0]
-    return np.concatenate(rows) if rows else np.empty((0, window))
 
 
 def resolution(values: Array) -> float:

@@ -36,23 +36,16 @@ STANDING, STANDING_ASK = "standing", "standing_ask"
 #: Torque may also come as a share of the rated torque (EPOS reports %); a rig's `rated_torque` makes it N*m.
 RELATIVE_TORQUE = "dimensionless"
 #: Other names of signals; compared in lower case, with `_` as a space, after the last dot of a PLC path.
-ALIASES: dict[str, tuple[str, ...]] = {
-    "time": ("t", "timestamp", "zeit"),
-    "position": ("actual position", "actpos", "lage", "position actual value"),
-    "velocity": (
-        "actual velocity",
-        "actvel",
-        "speed",
-        "geschwindigkeit",
-        "velocity actual value",
-        "velocity actual value averaged",
-    ),
-    "acceleration": ("actual acceleration", "actacc"),
-    "current": ("iq", "strom", "current actual value", "current actual value averaged"),
-    "torque": ("actual torque", "torque actual value", "torque actual value averaged", "effort"),
-    "position_reference": ("reference position", "position demand value"),
-    "velocity_reference": ("reference velocity", "velocity demand value"),
-    "torque_reference": ("reference torque", "torque demand value"),
+ALIASES: dict[str, str] = {
+    "time": "t|timestamp|zeit",
+    "position": "actual position|actpos|lage|position actual value",
+    "velocity": "actual velocity|actvel|speed|geschwindigkeit|velocity actual value|velocity actual value averaged",
+    "acceleration": "actual acceleration|actacc",
+    "current": "iq|strom|current actual value|current actual value averaged",
+    "torque": "actual torque|torque actual value|torque actual value averaged|effort",
+    "position_reference": "reference position|position demand value",
+    "velocity_reference": "reference velocity|velocity demand value",
+    "torque_reference": "reference torque|torque demand value",
 }
 #: Words in column names, in the languages of drives, and letters of the field.
 WORDS: dict[str, str] = {
@@ -75,7 +68,7 @@ REFERENCE = re.compile(
 _INDEX = re.compile(
     r"samples?|sample (index|number|no\.?|nr)|index|idx|n|nr\.?|no\.?|row|abtastung|point|cycle|ticks?|count|counter"
 )
-_BY_ALIAS = {alias: signal for signal, aliases in ALIASES.items() for alias in aliases}
+_BY_ALIAS = {alias: signal for signal, aliases in ALIASES.items() for alias in aliases.split("|")}
 _BY_ALIAS |= {signal.replace("_", " "): signal for signal in ("time", *SI_UNITS)}
 
 #: What stands for a unit where there is none.

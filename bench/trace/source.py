@@ -113,27 +113,19 @@ def open_source(path: str | Path) -> Source:
     content = read_bytes(path, "a trace")
     name = path.name.lower()
     if content.startswith(_GZIP):
-        content = _decompress(content, path)
-    content = _as_utf8(content, path)
+        try:
+            with gzip.GzipFile(fileobj=io.BytesIO(content)) as packed:
+                content = read_bounded(packed, path, len(content))
+        except (EOFError, OSError, zlib.error) as error:
+            found = f"the gzip is truncated or damaged ({error})"
+            raise InputError(path, found, "allowed: a complete gzip") from error
+    encoding = next((encoding for mark, encoding in _MARKS if content.startswith(mark)), None)
+    if encoding is not None:
+        try:
+            content = content.decode(encoding).removeprefix("\ufeff").encode()
+        except UnicodeDecodeError as error:
+            found = f"the {encoding.upper()} text is truncated or damaged ({error.reason})"
+            raise InputError(path, found, "allowed: whole text") from error
     if not content or content.isspace():
         raise InputError(path, "the file is empty", "allowed: a trace with a header and samples")
     return Source(readable(path), content, Path(name.removesuffix(".gz")).suffix)
-
-
-def _decompress(content: bytes, path: Path) -> bytes:
-    try:
-        with gzip.GzipFile(fileobj=io.BytesIO(content)) as packed:
-            return read_bounded(packed, path, len(content))
-    except (EOFError, OSError, zlib.error) as error:
-        raise InputError(path, f"the gzip is truncated or damaged ({error})", "allowed: a complete gzip") from error
-
-
-def _as_utf8(content: bytes, path: Path) -> bytes:
-    for mark, encoding in _MARKS:
-        if content.startswith(mark):
-            try:
-                return content.decode(encoding).removeprefix("\ufeff").encode()
-            except UnicodeDecodeError as error:
-                found = f"the {encoding.upper()} text is truncated or damaged ({error.reason})"
-                raise InputError(path, found, "allowed: whole text") from error
-    return content

@@ -93,7 +93,7 @@ def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
         empty = Recording(
             tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), PARQUET.format, readable(path)
         )
-        chosen, notes = choose(empty, how)
+        chosen, assumed = choose(empty, how)
         field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
         require_ratio(path, file.metadata.num_rows * len(field_of) * WIDTH, Path(path).stat().st_size)
         start, last = 0, None
@@ -103,7 +103,8 @@ def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
                 name: replace(choice, channel=channel_of(field_of[name], batch[field_of[name].name], path, start))
                 for name, choice in chosen.items()
             }
-            part = on_time_base(in_si(pieces, empty, how, wrapping), empty, chosen, notes)
+            notes = list(assumed)
+            part = on_time_base(in_si(pieces, empty, how, notes, wrapping), chosen, empty, notes)
             last = replace(part, continues=_continues(last, part.time, part.sample_period, part.origin))
             yield last
             start += batch.num_rows

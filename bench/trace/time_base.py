@@ -83,18 +83,16 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
         InputError: fewer than two samples, time running backwards, or more than 1 % of samples at times already taken.
     """
     leader = next((name for name in LEADING if name in signals), next(iter(signals)))
-    clocks = {id(signal.clock): signal.clock for signal in signals.values()}
-    of_clock = {key: {n: s.values for n, s in signals.items() if id(s.clock) == key} for key in clocks}
-    cleaned = {key: _without_duplicates(clocks[key], of_clock[key]) for key in clocks}
-    lead = id(signals[leader].clock)
-    clock, values, duplicates = cleaned[lead]
+    of_clock: dict[Clock, dict[str, Array]] = {}
+    for name, signal in signals.items():
+        of_clock.setdefault(signal.clock, {})[name] = signal.values
+    cleaned = {recorded: _without_duplicates(recorded, values) for recorded, values in of_clock.items()}
+    clock, values, duplicates = cleaned.pop(signals[leader].clock)
     base = _find(clock, duplicates)
     placed = {name: _on_own_base(base, clock.time, array) for name, array in values.items()}
     notes = _notes(base, clock)
     time, valid = base.time, np.ones(base.time.size, dtype=bool)
-    for key, (other, others, _) in cleaned.items():
-        if key == lead:
-            continue
+    for other, others, _ in cleaned.values():
         for name, array in others.items():
             placed[name], known = _on_foreign_base(time, base, clock, other, array)
             valid &= known
@@ -118,11 +116,7 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
 
 
 def _without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock, Mapping[str, Array], int]:
-    """The clock and its signals without samples at a time already taken, and how many those were.
-
-    Raises:
-        InputError: time runs backwards, or more than 1 % of samples repeat a time with other values.
-    """
+    """The clock and its signals without samples at a time already taken, and how many those were."""
     time = clock.time
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} samples", "allowed: at least two")
@@ -219,12 +213,9 @@ def counted(count: int, what: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _RegularTimes:
-    """The regular time base found in a clock.
+    """Times of a clock, regular within each segment - s - (m,) -, which of them were measured, and what it was like.
 
-    Attributes:
-        time: regular within each segment - s - (m,).
-        measured: which of them are measured samples, in order - (m,); None: each is, unless it was resampled.
-        found: what the clock was like.
+    Measured is each where `measured` is None, unless it was resampled.
     """
 
     time: Array
@@ -237,9 +228,10 @@ def _find(clock: Clock, duplicates: int) -> _RegularTimes:
     time = clock.time
     if time.size < 2:
         raise InputError(clock.place(None), f"found {time.size} different times", "allowed: at least two")
-    exact = _exact(time)
-    if exact is not None:
-        return _RegularTimes(time, None, TimeBase(*exact, duplicates=duplicates))
+    period = float(time[-1] - time[0]) / (time.size - 1)
+    spread = float(np.ptp(time - period * np.arange(time.size))) / period
+    if spread <= EXACT:
+        return _RegularTimes(time, None, TimeBase(period, spread, duplicates=duplicates))
     step = np.diff(time)
     period = float(np.median(step))
     contiguous = step[step <= LONGEST_STEP * period]
@@ -267,16 +259,6 @@ def _find(clock: Clock, duplicates: int) -> _RegularTimes:
     measured = np.concatenate([np.isin(all_of, count) for all_of, count in zip(every, counts, strict=True)])
     placed = [start + line * all_of for start, all_of in zip(starts, every, strict=True)]
     return _RegularTimes(np.concatenate(placed), None if measured.all() else measured, found)
-
-
-def _exact(time: Array) -> tuple[float, float] | None:
-    """Period - s - and jitter - share of it - of times that follow one line through their ends exactly; None if not."""
-    period = float(time[-1] - time[0]) / (time.size - 1)
-    off = np.arange(time.size, dtype=np.float64)
-    off *= -period
-    off += time
-    spread = float(off.max() - off.min()) / period
-    return (period, spread) if spread <= EXACT else None
 
 
 def _line(segments: list[Array], counts: list[Array], guess: float) -> tuple[float, list[float], float]:

@@ -24,7 +24,7 @@ from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, choose, reading_options
-from bench.trace.in_si import InSI, in_si
+from bench.trace.in_si import SampledSignal, in_si
 from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
 from bench.trace.time_base import HOLE, TimeBase, interpolate, regular
 from bench.trace.wraps import Wraps
@@ -207,15 +207,16 @@ def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | N
             finite; times that run backwards or stand twice too often.
     """
     how = reading_options(given)
-    chosen, notes = choose(recording, how)
-    return on_time_base(in_si(chosen, recording, how), recording, chosen, (*recording.notes, *notes))
+    chosen, assumed = choose(recording, how)
+    notes = [*recording.notes, *assumed]
+    return on_time_base(in_si(chosen, recording, how, notes), chosen, recording, notes)
 
 
 def on_time_base(
-    found: InSI, recording: Recording, chosen: Mapping[str, SignalColumn], notes: tuple[str, ...]
+    sampled: Mapping[str, SampledSignal], chosen: Mapping[str, SignalColumn], recording: Recording, notes: Sequence[str]
 ) -> Trace:
-    """Trace of the signals `found` in the `chosen` columns of a recording; raises as `regular`."""
-    base = regular(found.signals)
+    """Trace of the signals `sampled` in the `chosen` columns of a recording; raises as `regular`."""
+    base = regular(sampled)
     metadata = {**recording.metadata, "format": recording.format}
     dropped = unused(chosen, recording)
     if dropped:
@@ -223,19 +224,19 @@ def on_time_base(
     return Trace(
         time=base.time,
         signals=base.signals,
-        units=found.units,
+        units={name: chosen[name].scale.unit for name in sampled},
         origin=recording.origin,
         metadata=metadata,
         time_base=base.time_base,
-        notes=(*notes, *found.notes, *base.notes),
-        wraps=found.wraps,
+        notes=(*notes, *base.notes),
+        wraps=sampled["position"].wraps if "position" in sampled else None,
     )
 
 
 def unused(chosen: Mapping[str, SignalColumn], recording: Recording) -> list[str]:
     """Labels of the columns that are no signal of the trace."""
-    used = {id(choice.channel) for choice in chosen.values()}
-    return [channel.label for channel in recording.channels if id(channel) not in used]
+    used = {choice.channel for choice in chosen.values()}
+    return [channel.label for channel in recording.channels if channel not in used]
 
 
 def require_plausible(trace: Trace) -> None:
@@ -351,11 +352,12 @@ def _sampled(trace: Trace, names: Sequence[str], period: float) -> tuple[Array, 
     """Times and signals of a recording at a sample period, stretch by stretch; as they are where it has that period."""
     if not _apart(trace, period):
         return trace.time, {name: trace[name] for name in names}
-    times: list[Array] = []
-    signals: dict[str, list[Array]] = {name: [] for name in names}
+    placed = []
     for part in trace.segments:
-        time = trace.time[part]
-        times.append(time[0] + period * np.arange(int((time[-1] - time[0]) / period * (1.0 + 1e-12)) + 1))
-        for name in names:
-            signals[name].append(interpolate(times[-1], time, trace[name][part]))
-    return np.concatenate(times), {name: np.concatenate(values) for name, values in signals.items()}
+        start, stop = trace.time[part][[0, -1]]
+        placed.append((part, start + period * np.arange(int((stop - start) / period * (1.0 + 1e-12)) + 1)))
+    signals = {
+        name: np.concatenate([interpolate(at, trace.time[part], trace[name][part]) for part, at in placed])
+        for name in names
+    }
+    return np.concatenate([at for _, at in placed]), signals

@@ -42,30 +42,26 @@ def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None
     ending = "".join(path.suffixes[-2:]).lower() if path.suffix.lower() == ".gz" else path.suffix.lower()
     if ending not in WRITERS:
         raise InputError(path, f"found the ending '{ending}'", f"allowed: {', '.join(WRITERS)}")
-    defaults = {name: LAB_UNITS[name] for name in trace.signals if name in LAB_UNITS} if ending == ".trace" else {}
-    labels = {"time": "s", **trace.units}
-    if trace.axis_kind.turns:
-        labels |= {name: unit for name, unit in defaults.items() if same_dimension(unit, labels[name])}
-    _check(units or {}, labels, path)
-    labels |= units or {}
-    signals = {"time": trace.time, **trace.signals}
-    columns = {f"{name} [{labels[name]}]": _in_unit(name, values, labels[name]) for name, values in signals.items()}
-    with whole(path) as temporary, temporary.open("wb") as file:
-        WRITERS[ending](pa.table(columns), file)
-
-
-def _in_unit(name: str, values: Array, unit: str) -> Array:
-    scale = scale_in(name, unit, name)
-    return values if scale.factor == 1.0 and not scale.offset else (values - scale.offset) / scale.factor
-
-
-def _check(units: Mapping[str, str], labels: Mapping[str, str], path: Path) -> None:
-    for name, unit in units.items():
+    si = {"time": "s", **trace.units}
+    labels = dict(si)
+    if ending == ".trace" and trace.axis_kind.turns:
+        labels |= {
+            name: unit for name, unit in LAB_UNITS.items() if name in trace and same_dimension(unit, labels[name])
+        }
+    for name, unit in (units or {}).items():
         where = f"{path}: unit of {name}"
         if name not in labels:
             raise InputError(where, "the trace holds no such signal", f"allowed: {', '.join(labels)}")
-        if scale_in(name, unit, where).unit != labels[name]:
-            raise InputError(where, f"found '{unit}'", f"allowed: a unit of {labels[name]}")
+        if scale_in(name, unit, where).unit != si[name]:
+            raise InputError(where, f"found '{unit}'", f"allowed: a unit of {si[name]}")
+        labels[name] = unit
+    columns = {}
+    for name, values in {"time": trace.time, **trace.signals}.items():
+        scale = scale_in(name, labels[name], name)
+        plain = scale.factor == 1.0 and not scale.offset
+        columns[f"{name} [{labels[name]}]"] = values if plain else (values - scale.offset) / scale.factor
+    with whole(path) as temporary, temporary.open("wb") as file:
+        WRITERS[ending](pa.table(columns), file)
 
 
 def _csv(table: pa.Table, file: IO[bytes] | gzip.GzipFile) -> None:

@@ -11,7 +11,6 @@ for single names only, so that no text of a file is an expression that it evalua
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from tokenize import TokenError
@@ -224,10 +223,18 @@ def scale_of(text: str, wanted: tuple[str, ...]) -> UnitScale:
             return UnitScale(si, factor, offset)
         if si in _MASS and powers_of(parse_unit(_MASS[si])) == powers:
             return UnitScale(si, to_si(unit)[0] * _STANDARD_GRAVITY)
-    if text != text.lower():
-        with suppress(UnitError):
-            return scale_of(text.lower(), wanted)
+    lower = scale_or_none(text.lower(), wanted) if text != text.lower() else None
+    if lower is not None:
+        return lower
     raise UnitError(f"found unit '{text}'", allowed(wanted))
+
+
+def scale_or_none(text: str, wanted: tuple[str, ...]) -> UnitScale | None:
+    """As `scale_of`; None where that raises."""
+    try:
+        return scale_of(text, wanted)
+    except UnitError:
+        return None
 
 
 @cache

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 #: Signs replaced before anything is read, and after them texts, in this order.
@@ -107,13 +106,12 @@ COUNTS, ELECTRICAL = frozenset(_COUNTS.split()), frozenset(_ELECTRICAL.split())
 #: Characters of a unit; no recorder writes a longer one, nor higher powers. `kg*m**2/s**3/A**2` has 17.
 LONGEST, _HIGHEST, _LARGEST_POWER, _DEEPEST = 80, 9, 64, 6
 
-_POWER = r"\s*(?:\^|\*\*)\s*(?:\(\s*(?P<{0}>[+-]?\d+(?:[./]\d+)?)\s*\)|(?P<{0}_bare>[+-]?\d+(?:\.\d+)?)(?![\d.,]))"
 _TOKEN = re.compile(
     r"\s*(?:"
     r"(?P<root>sqrt\s*\(\s*(?P<radicand>\d+(?:\.\d+)?)\s*\))"
-    rf"|(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)(?:{_POWER.format('raised')})?"
-    rf"|(?P<name>[^\W\d]+|%)(?:{_POWER.format('power')}|\((?P<inside>[+-]?\d)\)|(?P<exponent>[+-]?\d)(?![\d.,]))?"
-    rf"|(?P<close>\))(?:{_POWER.format('outer')})?"
+    r"|(?:(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]+|%)|(?P<close>\)))"
+    r"(?:\s*(?:\^|\*\*)\s*(?P<power>\(\s*[+-]?\d+(?:[./]\d+)?\s*\)|[+-]?\d+(?:\.\d+)?(?![\d.,]))"
+    r"|(?<=[^\W\d]|%)(?P<exponent>\([+-]?\d\)|[+-]?\d(?![\d.,])))?"
     r"|(?P<operator>[*/(])"
     r"|(?P<joint>(?<=[^\W\d])[-.](?=[^\W\d]))"
     r")"
@@ -150,7 +148,7 @@ class UnitProduct:
     powers: dict[str, float] = field(default_factory=dict)
     sign: int = 1
 
-    def take(self, factor: float, powers: Mapping[str, float], exponent: float) -> None:
+    def take(self, other: UnitProduct, exponent: float) -> None:
         """Multiply by, or behind a `/` divide by, a power of another product.
 
         Raises:
@@ -158,8 +156,8 @@ class UnitProduct:
             ValueError: a power that no unit has.
         """
         exponent *= self.sign
-        self.factor, self.sign = self.factor * factor**exponent, 1
-        for name, power in powers.items():
+        self.factor, self.sign = self.factor * other.factor**exponent, 1
+        for name, power in other.powers.items():
             raised = self.powers.pop(name, 0.0) + power * exponent
             if abs(power * exponent) > _HIGHEST:
                 raise ValueError(f"{name} to the power of {raised:g}")
@@ -221,29 +219,25 @@ def _add(match: re.Match[str], groups: list[UnitProduct], text: str, wanted: tup
         groups.append(UnitProduct())
         if len(groups) > _DEEPEST:
             raise ValueError("brackets in one another")
-    elif match["close"]:
-        inner = groups.pop()
-        groups[-1].take(inner.factor, inner.powers, _exponent(match["outer"] or match["outer_bare"]))
-    elif match["operator"] or match["joint"]:
+        return
+    if match["operator"] or match["joint"]:
         groups[-1].sign = -1 if match["operator"] == "/" else 1
+        return
+    if match["close"]:
+        taken = groups.pop()
     elif match["name"]:
-        named = _named(match["name"], text, wanted)
-        exponent = _exponent(match["power"] or match["power_bare"] or match["inside"] or match["exponent"])
-        if len(named.powers) > 1 and abs(exponent) > 1:
-            raise ValueError(f"of which of {', '.join(named.powers)} it is the power")
-        groups[-1].take(named.factor, named.powers, exponent)
+        taken = _named(match["name"], text, wanted)
     elif match["root"]:
-        groups[-1].take(math.sqrt(float(match["radicand"])), {}, 1.0)
+        taken = UnitProduct(math.sqrt(float(match["radicand"])))
     else:
-        number, power = float(match["number"].replace(",", ".")), _exponent(match["raised"] or match["raised_bare"])
-        if abs(power) > _LARGEST_POWER or number == 0.0:
-            raise ValueError("a number that is none")
-        groups[-1].take(number, {}, power)
-
-
-def _exponent(text: str | None) -> float:
-    above, _, below = (text or "1").partition("/")
-    return float(above) / float(below or 1)
+        taken = UnitProduct(float(match["number"].replace(",", ".")))
+    above, _, below = (match["power"] or match["exponent"] or "1").strip("()").partition("/")
+    exponent = float(above) / float(below or 1)
+    if match["name"] and len(taken.powers) > 1 and abs(exponent) > 1:
+        raise ValueError(f"of which of {', '.join(taken.powers)} it is the power")
+    if match["number"] and (abs(exponent) > _LARGEST_POWER or taken.factor == 0.0):
+        raise ValueError("a number that is none")
+    groups[-1].take(taken, exponent)
 
 
 def _named(name: str, text: str, wanted: tuple[str, ...]) -> UnitProduct:

@@ -20,7 +20,7 @@ from bench.arrays import Array, rms
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
 from bench.fit.fit import fit
-from bench.fit.layout import plain
+from bench.fit.hypothesis import plain
 from bench.fit.rows import Rows
 from bench.rig.rig import Rig
 from bench.trace.motion import Conditioning

@@ -37,7 +37,7 @@ class Scene:
         axis, ghost: where the positions of both stand in `qpos`.
         middle, scale: of a slide, which is drawn in the middle of its rail, and smaller than it is where that is short.
         camera: name of it.
-        times, others: when, and where the other coordinates of a robot stood then - s, rad (m) - (n,), (n, nq).
+        others: when, and where the other coordinates of a robot stood then - s, rad (m) - (n,), (n, nq).
     """
 
     model: mujoco.MjModel
@@ -47,8 +47,7 @@ class Scene:
     middle: float
     scale: float
     camera: str | int = "front"
-    times: Array | None = None
-    others: Array | None = None
+    others: tuple[Array, Array] | None = None
 
     @classmethod
     def of(cls, shown: SideBySide, load: Load | None) -> Scene:
@@ -90,16 +89,17 @@ class Scene:
             for each in (name, GHOST + name):
                 others[:, model.joint(each).qposadr[0]] = values
         axis, ghost = (int(model.joint(each).qposadr[0]) for each in (robot.joint, GHOST + robot.joint))
-        return cls(model, mujoco.MjData(model), axis, ghost, 0.0, 1.0 / robot.ratio, FREE, robot.times, others)
+        return cls(model, mujoco.MjData(model), axis, ghost, 0.0, 1.0 / robot.ratio, FREE, (robot.times, others))
 
     def placed(self, position: float, ghost: float, time: float = 0.0) -> mujoco.MjData:
         """Everything where it is with model and ghost at positions - rad (m); one that is nan stays where it was.
 
         Other joints of a robot are where they were at a time - s.
         """
-        if self.times is not None and self.others is not None:
+        if self.others is not None:
+            times, others = self.others
             kept = self.data.qpos[[self.axis, self.ghost]]
-            self.data.qpos[:] = [np.interp(time, self.times, each) for each in self.others.T]
+            self.data.qpos[:] = [np.interp(time, times, each) for each in others.T]
             self.data.qpos[[self.axis, self.ghost]] = kept
         for at, value in ((self.axis, position), (self.ghost, ghost)):
             if np.isfinite(value):

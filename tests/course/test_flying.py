@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.course.catapult import SHIFTS, by_normal_equations, columns, compare_solvers
-from bench.course.flying import contradiction
+from bench.course.flights import contradiction
 
 GRAVITY, HEIGHT, SPEED, ANGLE = 9.81, 0.46, 3.75, np.radians(45.0)
 

@@ -146,7 +146,7 @@ def test_run_up_with_another_winding(page):
     }
     assert {name: found[name] for name in expected} == printed(expected)
     peak = shown(page, "10")
-    assert peak["peak torque"][1] == f"{1.03 * Worked.of(recordings).answers()['M_max']:.5g}"
+    assert peak["peak torque"][1] == f"{1.03 * Worked(recordings).answers()['M_max']:.5g}"
     circuit = still.circuit
     corner = (circuit.voltage - circuit.resistance_at(60.0) * 5.7) / circuit.back_emf_constant
     assert peak["corner of the cold circuit"][1] == f"{corner * RPM:.5g}"

@@ -8,12 +8,12 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from bench.course.axis import lab_rig, torque_constant
+from bench.course.corner import TIME_CONSTANTS
 from bench.course.peak_torque import extrapolated_corner
 from bench.course.power import PowerOfRun, balanced_winding, circuits, speed_of_current
 from bench.course.winding import (
     CURRENT_LOOP,
     STEP,
-    TIME_CONSTANTS,
     VELOCITY_GAIN,
     WindingModel,
     full_speed,

@@ -8,8 +8,7 @@ import numpy as np
 
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit
-from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import BASE, HUM, Layout
+from bench.fit.hypothesis import BASE, HUM, Hypothesis, Layout, Term
 from tests.diagnosis.constructed import bare, moved, recorded
 
 #: Independent rows are this many rows apart in a fit made by hand.

@@ -104,7 +104,7 @@ def coupled(share, antiresonance, damping):
 
 def test_a_coupling_beside_something_else_is_no_gap():
     """Where the coupling leaves a remainder a dead zone is tried in its place, and explains less."""
-    trace, effects = recorded(MOTION, coupled(0.6, 70.0, 0.04), vibration(0.02, 11.0)), ["elastic_coupling", "backlash"]
+    trace, effects = recorded(MOTION, coupled(0.6, 100.0, 0.1), vibration(0.02, 11.0)), ["elastic_coupling", "backlash"]
     assert sought(POLICY, trace, effects) == ("elastic_coupling",)
     assert sought(without("replaces_by"), trace, effects) == ("backlash",)
 

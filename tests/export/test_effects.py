@@ -142,6 +142,15 @@ def test_a_second_run_of_a_model_begins_with_its_own_inertia():
     assert ends[0] == ends[1] != 0.0
 
 
+def test_a_model_without_effects_steps_a_second_run():
+    model_ = stored()
+    simulation, effects = model_.model.spec(PERIOD).compile(), bench.Effects(model_)
+    for _ in range(2):
+        data = mujoco.MjData(simulation)
+        effects.step(simulation, data)
+        assert data.time == pytest.approx(PERIOD)
+
+
 def test_a_servo_of_ones_own_is_asked_for_its_torque():
     """A position servo's torque is not its input."""
     xml = ARM.replace("</actuator>", '<position name="servo" joint="elbow" kp="30" kv="2"/></actuator>')

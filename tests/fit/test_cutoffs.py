@@ -7,8 +7,7 @@ import pytest
 
 from bench.arrays import rms
 from bench.fit.estimate import RefusedEstimateError
-from bench.fit.gathered import BELOW, Tried, among, choose
-from bench.fit.identify import identify
+from bench.fit.identify import BELOW, Tried, among, choose, identify
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from bench.trace.write import write

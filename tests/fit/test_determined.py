@@ -5,9 +5,9 @@ import pytest
 
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, ROTARY, VISCOUS
 from bench.errors import UndeterminedError
-from bench.fit.determined import left_open, only_direction, require_inertia
-from bench.fit.layout import BASE
-from bench.fit.normal_equations import NormalEquations
+from bench.fit.determined import left_open, require_inertia
+from bench.fit.hypothesis import BASE
+from bench.fit.solution import NormalEquations
 
 NAMES = (*BASE, OFFSET)
 PLACES = len(NAMES)
@@ -68,4 +68,4 @@ def test_it_takes_twenty_rows_a_column(rows, sure):
 def test_one_way_is_less_than_two_per_cent_the_other_way(weaker, side):
     gram = np.eye(PLACES)
     gram[2, 4] = gram[4, 2] = 1.0 - 2.0 * weaker
-    assert only_direction(equations(gram)) == side
+    assert equations(gram).one_way == side

@@ -5,10 +5,9 @@ import pytest
 
 from bench.errors import InputError, UndeterminedError
 from bench.fit.estimate import RefusedEstimateError
-from bench.fit.hypothesis import Hypothesis
+from bench.fit.hypothesis import Hypothesis, lay_out
 from bench.fit.identify import identify
 from bench.fit.lab import identify_as_in_the_lab
-from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace
 from tests.fit.motions import NAMES, RIG, UNITS, Truth, recording

@@ -5,8 +5,7 @@ import pytest
 
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis, Term
-from bench.fit.layout import lay_out
+from bench.fit.hypothesis import Hypothesis, Term, lay_out
 from bench.fit.rows import Rows
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace, less_known, with_known

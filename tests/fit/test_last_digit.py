@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis
+from bench.fit.hypothesis import DIGIT, Hypothesis, plain
 from bench.fit.identify import identify
-from bench.fit.layout import DIGIT, cut_beforehand, plain, rounding
 from bench.fit.rows import Rows
+from bench.fit.solution import cut_beforehand, rounding
 from bench.trace.noise import resolution
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import CONSTANT, COULOMB, INERTIA, RIG, SPEED_NOISE, UNITS, VISCOUS, moved

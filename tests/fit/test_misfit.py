@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.layout import lay_out
+from bench.fit.hypothesis import Hypothesis, lay_out
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.solution import equations_of, solve

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.layout import BASE, lay_out
-from bench.fit.noise import noise_power
+from bench.fit.hypothesis import BASE, Hypothesis, lay_out
 from bench.fit.rows import Rows
+from bench.fit.solution import Floor
 from tests.fit.motions import RIG, recording
 
 OMEGA = np.array([0.0, 100.0, 400.0])
@@ -25,7 +24,8 @@ def theta_of(layout, **values):
 
 def power(rows, hypothesis, source, **values):
     layout = lay_out(rows, hypothesis)
-    return noise_power(rows, hypothesis, layout, theta_of(layout, **values))(OMEGA, source)
+    theta = theta_of(layout, **values)
+    return Floor(rows, hypothesis, layout, theta, np.zeros_like(layout.effort)).power(OMEGA, source)
 
 
 def test_noise_of_the_effort_passes_its_misalignment_and_that_of_the_speed_inertia_and_friction():

@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.fit import fit, hint
+from bench.fit.hypothesis import Hypothesis, Term, lay_out
 from bench.fit.identify import identify
-from bench.fit.layout import lay_out
 from bench.fit.rows import Rows
-from bench.fit.systematic import hint
 from tests.fit.motions import RIG, Truth, recording
 
 #: Relative change of the torque constant over a recording.

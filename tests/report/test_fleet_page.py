@@ -16,8 +16,7 @@ from bench.fleet.manifest import Manifest
 from bench.fleet.store import Store
 from bench.fleet.summary import summarise
 from bench.report.document import Chart, Table
-from bench.report.fleet import AXES, CHARTS, ROWS, SKETCHED, fleet_document, write_fleet
-from bench.report.fleet_axis import DOTS
+from bench.report.fleet import AXES, CHARTS, DOTS, ROWS, SKETCHED, fleet_document, write_fleet
 from bench.report.html import html
 from bench.report.publish import write_html
 from tests.fleet.test_summary import JOB, found

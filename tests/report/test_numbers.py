@@ -54,7 +54,7 @@ def test_of_what_is_known_up_to_a_factor_both_ends_are_given(shown):
 
 
 def test_names_in_a_row():
-    assert [listed("abc"[:n]) for n in (1, 2, 3)] == ["a", "a and b", "a, b and c"]
+    assert [listed("abc"[:n]) for n in range(4)] == ["", "a", "a and b", "a, b and c"]
 
 
 @pytest.mark.parametrize(

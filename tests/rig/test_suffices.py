@@ -7,7 +7,9 @@ from bench.cli import app
 from bench.errors import InputError
 from bench.rig.given import draft
 from bench.rig.rig import Rig, lacking, load_rig, require
-from bench.trace.inspect import inspect
+from bench.trace.choose import GivenOptions
+from bench.trace.inspect import inspect_recording
+from bench.trace.read import read_recording
 
 BARE = {"name": "axis", "kind": "rotary"}
 
@@ -62,7 +64,7 @@ def test_an_effective_unit_in_a_rig_is_asked_about(tmp_path):
 def test_a_draft_is_a_rig_that_works_as_far_as_the_file_tells(tmp_path, head, mapped):
     path = tmp_path / "run.csv"
     path.write_text("\n".join([head, *(f"{k},{k % 50},{k % 7}" for k in range(300))]))
-    text = draft(inspect(path), motor="SH30701P")
+    text = draft(inspect_recording(read_recording(path), GivenOptions()), motor="SH30701P")
     (tmp_path / "rig.toml").write_text(text)
     rig = load_rig(tmp_path / "rig.toml")
     assert mapped - {"time"} <= set(rig.trace.columns)
@@ -74,4 +76,4 @@ def test_a_draft_asks_for_the_sample_period_of_what_holds_no_time_alone(tmp_path
     path = tmp_path / "run.csv"
     cells = head.count(",") + 1
     path.write_text("\n".join([head, *(",".join([f"{k}"] * cells) for k in range(300))]))
-    assert ("sample_period" in draft(inspect(path))) == asked
+    assert ("sample_period" in draft(inspect_recording(read_recording(path), GivenOptions()))) == asked

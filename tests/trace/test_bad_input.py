@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from bench.errors import InputError
-from bench.trace.inspect import inspect
-from bench.trace.read import read
+from bench.trace.choose import GivenOptions
+from bench.trace.inspect import inspect_recording
+from bench.trace.read import read, read_recording
 from bench.trace.write import write
 from tests.trace.recordings import csv_text, current, machine_expert_xml, velocity
 
@@ -139,7 +140,7 @@ def test_two_samples_are_read_and_reported(tmp_path):
     path.write_text(HEAD + ROWS[0] + ROWS[1])
     trace = read(path)
     assert len(trace) == 2 and trace.notes == ("only 2 samples",)
-    assert inspect(path).notes == trace.notes
+    assert inspect_recording(read_recording(path), GivenOptions()).notes == trace.notes
 
 
 def test_a_hole_is_reported(tmp_path):
@@ -291,7 +292,14 @@ def test_damage_anywhere_gives_a_trace_or_an_input_error(samples, tmp_path, kind
 
 @pytest.mark.parametrize(
     "content",
-    ["[]", "[3, 4]", '[{"timestamp": 0, "speed": 1}, 3]', '{"entries": [3, 4]}', '{"entries": [], "input_volts": 12}'],
+    [
+        "[]",
+        "[3, 4]",
+        '[{"timestamp": 0, "speed": 1}, 3]',
+        '{"entries": [3, 4]}',
+        '{"entries": [], "input_volts": 12}',
+        '{"charts": [{"name": "gap", "panels": [{"x": 1.0}]}]}',
+    ],
 )
 def test_a_log_whose_samples_are_no_records_is_refused_in_one_line(tmp_path, content):
     path = tmp_path / "log.json"

@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import zipfile
 from io import BytesIO
 
 import h5py
@@ -228,3 +229,11 @@ def test_a_library_that_a_file_ends_with_its_process_is_read_by_another_process(
         apart(deadly)(source)
     with bounded("5 kB"), pytest.raises(InputError, match=r"^run\.mf4: found 5120; allowed: less$"):
         apart(refusing)(source)
+
+
+def test_what_is_no_array_in_a_zip_of_arrays_is_left_out(tmp_path):
+    path = tmp_path / "log.npz"
+    np.savez(path, time=TIME, velocity=SPEED)
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("readme.txt", "of the second run")
+    holds(read(path, GivenOptions({"time": "time [s]", "velocity": "velocity [rad/s]"})))

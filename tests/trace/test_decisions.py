@@ -188,8 +188,8 @@ def test_a_column_that_correlates_by_09_with_anothers_rate_is_its_derivative(oth
     time = np.arange(4000.0)
     angle, rate = -np.cos(time / 100.0) * 100.0, np.sin(time / 100.0)
     found = likely_signals(recording(t=time, a=angle, b=rate + other * np.sin(time / 37.0)).channels)
-    guesses = {place: guess.signal for place, guess in found.items() if place > 0}
-    assert guesses == ({1: "position", 2: "velocity"} if derivative else {})
+    guesses = {channel.name: guess.signal for channel, guess in found.items() if channel.name != "t"}
+    assert guesses == ({"a": "position", "b": "velocity"} if derivative else {})
 
 
 @pytest.mark.parametrize(

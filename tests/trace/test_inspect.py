@@ -5,7 +5,9 @@ import pytest
 
 from bench.report.inspection import inspection as document
 from bench.report.terminal import show
-from bench.trace.inspect import inspect, to_json
+from bench.trace.choose import GivenOptions
+from bench.trace.inspect import inspect_recording, to_json
+from bench.trace.read import read_recording
 from tests.trace.recordings import csv_text
 
 TIME = np.delete(np.arange(400) * 1e-3, np.arange(100, 140))
@@ -17,7 +19,7 @@ def inspection(tmp_path):
     path = tmp_path / "run.csv"
     text = csv_text(TIME, velocity__rad_s=SPEED, current__mA=np.full(TIME.size, 7.0), spare__deg=TIME)
     path.write_text(text)
-    return inspect(path)
+    return inspect_recording(read_recording(path), GivenOptions())
 
 
 def test_numbers(inspection):

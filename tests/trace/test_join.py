@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.layout import lay_out
+from bench.fit.hypothesis import Hypothesis, lay_out
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace, join
 from tests.fit.motions import RIG, UNITS, recording

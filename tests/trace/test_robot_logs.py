@@ -21,7 +21,8 @@ from bench.errors import InputError
 from bench.plant.robot import Robot, joint_rig, read_log, rig_within
 from bench.rig.given import draft
 from bench.rig.rig import Rig
-from bench.trace.inspect import inspect
+from bench.trace.choose import GivenOptions
+from bench.trace.inspect import inspect_recording
 from bench.trace.read import read_recording
 from tests.export.two_links import HIDDEN, MJCF, log, write_log
 from tests.shared import SHARED, needs_shared
@@ -399,7 +400,7 @@ def test_inspect_says_which_column_is_what_and_begins_a_rig(tmp_path, elbow):
     """No column is taken for another signal than its name says, whatever its values resemble."""
     names, columns = in_columns(lambda signal, k: f"{('shoulder_lift', 'elbow')[k]}_joint.{signal}")
     path = csv(tmp_path / "run.csv", names, columns)
-    found = inspect(path)
+    found = inspect_recording(read_recording(path), GivenOptions())
     assert {one.name: one.signal for one in found.columns} == {
         "time": "time",
         **{name: name.rsplit(".", 1)[1] for name in names},

@@ -56,6 +56,13 @@ def test_machine_expert_comes_back_to_the_rounding_of_its_units(tmp_path, values
     assert again.notes == (() if len(again) >= 10 else (f"only {len(again)} samples",))
 
 
+@pytest.mark.parametrize("unit", ["rad/s", "deg/s", "rpm"])
+def test_a_machine_expert_trace_takes_units_of_ones_own(tmp_path, unit):
+    trace = _run()
+    write(trace, tmp_path / "run.trace", {"velocity": unit})
+    np.testing.assert_allclose(read(tmp_path / "run.trace")["velocity"], trace["velocity"], rtol=1e-12)
+
+
 def test_machine_expert_is_utf16_xml_in_the_labs_units(tmp_path):
     write(_run(), tmp_path / "run.trace")
     content = (tmp_path / "run.trace").read_bytes()

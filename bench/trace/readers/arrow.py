@@ -35,7 +35,7 @@ MOST_PLACES = 256
 _MOMENT = (
     r"^\s*(?:(?P<date>\d{1,4}[-./]\d{1,2}[-./]\d{1,4})[T ]+)?(?:(?P<hour>\d{1,2}):)?(?P<minute>\d{1,2}):"
     r"(?P<second>\d{2})(?:[.,:](?P<fraction>\d{1,12}))?\s*(?P<half>[AaPp]\.?[Mm]\.?)?\s*"
-    r"(?P<zone>Z|UTC|[+-]\d{2}:?\d{2})?\s*$"
+    r"(?:Z|UTC|(?P<zone>[+-])(?P<hours>\d{2}):?(?P<minutes>\d{2}))?\s*$"
 )
 _PATTERN = re.compile(_MOMENT)
 _DAY = 86400.0
@@ -102,47 +102,39 @@ def channels_of_table(table: pa.Table, path: str, known: Mapping[str, Sequence[s
 
     A column of lists of names tells those of the same length.
     """
-    table = _flat(table)
-    lists = {len(first): first for one in table.columns if _names(one.type) and (first := one[0].as_py())}
+    while any(pa.types.is_struct(kind) for kind in table.schema.types):
+        table = table.flatten()  # a column for each field, `parent.field`
+    named = [one for one in table.columns if pa.types.is_list(one.type) and pa.types.is_string(one.type.value_type)]
+    lists = {len(first): first for one in named if (first := one[0].as_py())}
     found: list[Channel] = []
     for field, column in zip(table.schema, table.columns, strict=True):
-        if (
-            pa.types.is_list(field.type)
-            or pa.types.is_large_list(field.type)
-            or pa.types.is_fixed_size_list(field.type)
-        ):
+        if _is_list(field.type):
             found.extend(_places(field, _in_one(column), path, (known or {}).get(field.name), lists))
         else:
             found.append(channel_of(field, column, path))
     return found
 
 
-def _flat(table: pa.Table) -> pa.Table:
-    """The table with a column for each field of what holds fields, however deep, `parent.field`."""
-    while any(pa.types.is_struct(kind) for kind in table.schema.types):
-        table = table.flatten()
-    return table
-
-
-def _names(kind: pa.DataType) -> bool:
-    return pa.types.is_list(kind) and pa.types.is_string(kind.value_type)
+def _is_list(kind: pa.DataType) -> bool:
+    return pa.types.is_list(kind) or pa.types.is_large_list(kind) or pa.types.is_fixed_size_list(kind)
 
 
 def _places(
     field: pa.Field, lists: pa.Array, path: str, names: Sequence[str] | None, known: Mapping[int, Sequence[str]]
 ) -> Iterator[Channel]:
     """A channel for each place in lists of numbers; one with a defect where they are none, or of several lengths."""
+    label, unit = split_label(field.name)
     lengths = np.unique(compute().list_value_length(lists).drop_null().to_numpy(zero_copy_only=False))
-    plain = len(lengths) == 1 and not lists.null_count and is_numeric(field.type.value_type)
+    each = field.type.value_type
+    plain = len(lengths) == 1 and not lists.null_count and is_numeric(each) and not each.num_fields
     if not plain or not 0 < lengths[0] <= MOST_PLACES:
         found = f"found {field.type}" if len(lengths) < 2 else f"found lists of {lengths[0]} to {lengths[-1]} numbers"
-        channel = Channel(*split_label(field.name), np.empty(0), path)
+        channel = Channel(label, unit, np.empty(0), path)
         allowed = f"allowed: numbers, or lists of as many each, {MOST_PLACES} at most"
         yield replace(channel, defect=InputError(channel.place(), found, allowed))
         return
     matrix = floats(lists.flatten()).reshape(-1, int(lengths[0]))
     names = names if names is not None and len(names) == lengths[0] else known.get(int(lengths[0]))
-    label, unit = split_label(field.name)
     for k, values in enumerate(matrix.T):
         name = f"{label}.{names[k]}" if names is not None else f"{label}[{k}]"
         yield Channel(name, unit, np.ascontiguousarray(values), path)
@@ -150,7 +142,7 @@ def _places(
 
 def is_numeric(kind: pa.DataType) -> bool:
     """Whether a column holds numbers or moments, or lists of them; of others, texts and pictures, nothing is read."""
-    if pa.types.is_list(kind) or pa.types.is_large_list(kind) or pa.types.is_fixed_size_list(kind):
+    if _is_list(kind):
         return is_numeric(kind.value_type)
     if pa.types.is_struct(kind):
         return any(is_numeric(kind.field(k).type) for k in range(kind.num_fields))
@@ -213,10 +205,9 @@ def seconds(texts: pa.ChunkedArray | pa.Array) -> Array | None:
     part = {name: pc.struct_field(parts, name).fill_null("") for name in _PATTERN.groupindex}
     hour, half = _number(part["hour"]), np.char.upper(_words(part["half"]))
     hour = np.where(half == "", hour, hour % 12 + 12 * np.char.startswith(half, "P"))
-    names, which = np.unique(_words(part["zone"]), return_inverse=True)
-    ahead = np.array([_ahead(name) for name in names])[which]
+    ahead = 3600.0 * _number(part["hours"]) + 60.0 * _number(part["minutes"])  # of UTC
     clock = _number(part["minute"]) * 60.0 + _number(part["second"]) + _number(part["fraction"], "0.", "0")
-    clock = clock + 3600.0 * hour - ahead
+    clock = clock + 3600.0 * hour - np.where(_words(part["zone"]) == "-", -ahead, ahead)
     dates = _words(part["date"])[known]
     if (dates != "").all():
         _, first, which = np.unique(dates, return_index=True, return_inverse=True)
@@ -234,9 +225,3 @@ def _number(digits: pa.Array, before: str = "0", after: str = "") -> Array:
 
 def _words(texts: pa.Array) -> np.ndarray:
     return texts.to_numpy(zero_copy_only=False).astype(str)
-
-
-def _ahead(zone: str) -> float:
-    """Seconds by which the clock of a time zone is ahead of UTC."""
-    digits = zone.replace(":", "")
-    return float(f"{digits[0]}1") * (3600 * int(digits[1:3]) + 60 * int(digits[3:5])) if zone[:1] in ("+", "-") else 0.0

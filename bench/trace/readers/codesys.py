@@ -54,11 +54,7 @@ def _root_name(source: Source) -> str:
 
 
 def _parse(source: Source) -> ElementTree.Element:
-    """Root element; its namespaces are left out of all names.
-
-    Raises:
-        InputError: not well-formed, as a truncated file is not.
-    """
+    """Root element, without namespaces in any name; InputError where it is not well-formed, as a truncated file."""
     try:
         text: str | bytes = source.content.decode("utf-8")  # a str, for the declaration may still say utf-16
     except UnicodeDecodeError:

@@ -31,11 +31,7 @@ _EXTRAS = {
 
 
 def library(module: str, path: str, container: str) -> Any:  # noqa: ANN401
-    """A module of a library that reads a container.
-
-    Raises:
-        InputError: it is not installed; says how to install it.
-    """
+    """A module of a library that reads a container; InputError says how to install it where it is not there."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
@@ -120,11 +116,7 @@ def warnings_of(name: str) -> Iterator[dict[str, None]]:
 
 
 def unpack(packed: bytes, size: int) -> bytes:
-    """Content of a block that declares `size` bytes, compressed for itself.
-
-    Raises:
-        ValueError: it holds more, or is packed in a way that is not known.
-    """
+    """Content of a packed block that declares `size` bytes; ValueError if it holds more, or its packing is unknown."""
     if packed.startswith(_ZLIB):
         content = zlib.decompressobj().decompress(packed, size + 1)
     elif packed.startswith(_ZSTD):

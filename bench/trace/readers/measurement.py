@@ -110,7 +110,10 @@ def _read_tdms(source: Source) -> Recording:
         nptdms.TdmsFile.open(content) as file,
     ):
         numeric = [
-            (group.name, channel) for group in file.groups() for channel in group.channels() if _numeric(channel)
+            (group.name, channel)
+            for group in file.groups()
+            for channel in group.channels()
+            if channel.dtype is not None and np.dtype(channel.dtype).kind in _NUMERIC  # texts are not read
         ]
         require_expansion(source.path, sum(len(channel) for _, channel in numeric) * _WIDTH, len(source.content))
         read = [(group, channel, channel[:]) for group, channel in numeric]
@@ -126,11 +129,6 @@ def _read_tdms(source: Source) -> Recording:
     if not channels:
         raise InputError(source.path, "holds no channel of numbers", "allowed: channels of samples")
     return Recording(with_shared_times(channels), TDMS.format, source.path, metadata, notes=tuple(warnings))
-
-
-def _numeric(channel: Any) -> bool:  # noqa: ANN401
-    """Whether a channel holds numbers or moments; texts are not read."""
-    return channel.dtype is not None and np.dtype(channel.dtype).kind in _NUMERIC
 
 
 def _tdms_channel(channel: Any, values: np.ndarray, axis: str | None, first: Any, path: str) -> Channel:  # noqa: ANN401

@@ -111,12 +111,12 @@ def _read_numpy(source: Source) -> Recording:
         loaded = np.load(BytesIO(source.content), allow_pickle=False)
         lone = isinstance(loaded, np.ndarray)
         arrays = {"": loaded} if lone else {name: _array(loaded, name) for name in loaded.files}
-    texts = [one for one in arrays.values() if one is not None and one.dtype.kind == "U" and one.ndim == 1]
+    texts = [one for one in arrays.values() if one.dtype.kind == "U" and one.ndim == 1]
     names = {one.size: [str(text) for text in one] for one in texts}
     for name, value in arrays.items():
         if is_samples(value):
             channels.extend(channels_of(name, value, source.path, names=names))
-        elif value is not None and value.ndim == 0:
+        elif value.ndim == 0:
             metadata[name] = str(value)
     if lone and loaded.dtype.names is None:
         channels = [replace(channel, name=f"column {number}") for number, channel in enumerate(channels, 1)]
@@ -124,13 +124,14 @@ def _read_numpy(source: Source) -> Recording:
 
 
 def _array(loaded: np.lib.npyio.NpzFile, name: str) -> np.ndarray:
-    """An array of a zip; an empty one where it holds Python objects, which are not loaded."""
+    """An array of a zip; an empty one where it holds Python objects, which are not loaded, or another file."""
     try:
-        return loaded[name]
+        value = loaded[name]
     except ValueError as error:
         if "pickle" in str(error):
             return np.empty(0)
         raise
+    return value if isinstance(value, np.ndarray) else np.empty(0)
 
 
 def _read_hdf5(source: Source) -> Recording:
@@ -206,11 +207,7 @@ MAT = FileFormat(
 
 
 def load_mat(content: bytes, where: str) -> dict[str, Any]:
-    """Variables of a MAT file up to version 7, structs as dictionaries.
-
-    Raises:
-        InputError: truncated, damaged, or of more than a file may expand to; names `where`.
-    """
+    """Variables of a MAT file up to version 7, structs as dictionaries; InputError where it is damaged or too large."""
     from scipy.io import loadmat  # 0.05 s, for one format of ten
 
     with reading(where, "MAT"):
@@ -228,65 +225,59 @@ def _variables(content: dict, prefix: str = "") -> Iterator[tuple[str, object]]:
 
 
 def _check_structure(content: bytes, where: str) -> None:
-    """Walk through all elements.
-
-    Raises:
-        ValueError: a type that is none, a length beyond the file, parts missing from a matrix, or cells in cells in ...
-        InputError: it expands to more than it may; names `where`.
-    """
+    """Walk through all elements; ValueError where they are damaged, InputError where they expand too far."""
     if content[126:128] not in (b"IM", b"MI"):
         raise ValueError("no byte order in the header")
     order = "<" if content[126:128] == b"IM" else ">"
     left = most = bounds().most(len(content))
-    for kind, begin, end in _elements(content, order, _HEADER, len(content)):
+    for kind, data in _elements(memoryview(content)[_HEADER:], order):
         if kind == _MATRIX:
-            _check_matrix(content, order, begin, end)
+            _check_matrix(data, order)
         elif kind == _COMPRESSED:
             stream = zlib.decompressobj()
-            data = stream.decompress(content[begin:end], left + 1)
-            left -= len(data)
+            unpacked = stream.decompress(data, left + 1)
+            left -= len(unpacked)
             if left < 0:
                 raise too_much(where, len(content), f"more than {shown(most)}")
             if not stream.eof:
                 raise ValueError("a compressed element is cut off")
-            for inner, first, last in _elements(data, order, 0, len(data)):
+            for inner, part in _elements(memoryview(unpacked), order):
                 if inner == _COMPRESSED:
                     raise ValueError("a compressed element in a compressed element")
                 if inner == _MATRIX:
-                    _check_matrix(data, order, first, last)
+                    _check_matrix(part, order)
 
 
-def _elements(data: bytes, order: str, start: int, stop: int) -> Iterator[tuple[int, int, int]]:
-    """Type, begin and end of the data of each element."""
-    while start < stop:
-        if start + 8 > stop:
+def _elements(data: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
+    """Type and data of each element."""
+    start = 0
+    while start < len(data):
+        if start + 8 > len(data):
             raise ValueError("an element is cut off")
         kind, size = struct.unpack_from(f"{order}II", data, start)
         begin = start + 8
         if kind >> 16:  # a small element: its length in the upper half of the type, its data inside the tag
             kind, size, begin = kind & 0xFFFF, kind >> 16, start + 4
-        if kind not in _TYPES or begin + size > stop:
+        if kind not in _TYPES or begin + size > len(data):
             raise ValueError(f"an element of type {kind} and {size} bytes")
-        yield kind, begin, begin + size
+        yield kind, data[begin : begin + size]
         start = begin + size + (0 if kind == _COMPRESSED else -size % (4 if begin == start + 4 else 8))
 
 
-def _check_matrix(data: bytes, order: str, begin: int, end: int, depth: int = 0) -> None:
+def _check_matrix(data: memoryview, order: str, depth: int = 0) -> None:
     if depth > _DEEPEST:
         raise ValueError(f"more than {_DEEPEST} matrices in one another")
-    parts = list(_elements(data, order, begin, end))
+    parts = list(_elements(data, order))
     if not parts:
         return  # an empty cell
-    kind, first, last = parts[0]
-    if kind not in _NUMBERS or last - first != 8:
+    kind, flags = parts[0]
+    if kind not in _NUMBERS or len(flags) != 8:
         raise ValueError("a matrix without flags")
-    (flags,) = struct.unpack_from(f"{order}I", data, first)
-    wanted = _PARTS.get(flags & 0xFF, 0)
-    right = len(parts) == wanted + bool(flags & _COMPLEX) and all(
-        kind in _TYPES - {_MATRIX, _COMPRESSED} for kind, _, _ in parts
-    )
+    (flag,) = struct.unpack_from(f"{order}I", flags)
+    wanted = _PARTS.get(flag & 0xFF, 0)
+    right = len(parts) == wanted + bool(flag & _COMPLEX) and not {kind for kind, _ in parts} & {_MATRIX, _COMPRESSED}
     if wanted and not right:
         raise ValueError(f"a matrix of {len(parts)} parts")
-    for kind, first, last in parts:
+    for kind, part in parts:
         if kind == _MATRIX:
-            _check_matrix(data, order, first, last, depth + 1)
+            _check_matrix(part, order, depth + 1)

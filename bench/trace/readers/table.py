@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,8 +23,7 @@ from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.arrow import channels_of_table, compute, floats, seconds, speaks_of_moment
 from bench.trace.signals import signal_of, unit_of
 from bench.trace.source import FileFormat, Source, decode, no_samples, utf8
-from bench.units.conversion import is_unit, scale_of
-from bench.units.grammar import UnitError
+from bench.units.conversion import is_unit, scale_or_none
 
 BLANKS = " "
 SEPARATORS = ("\t", ";", ",", BLANKS)
@@ -76,21 +75,6 @@ class TableLayout:
         return "\t" if self.separator == BLANKS else self.separator
 
 
-@dataclass(frozen=True)
-class SampleLines:
-    """Lines of samples in a text.
-
-    Attributes:
-        text: the lines, as UTF-8.
-        line: number of the first of them in the file; None where lines were left out.
-        notes: what the user should know.
-    """
-
-    text: bytes
-    line: int | None
-    notes: tuple[str, ...] = ()
-
-
 def _recognises(source: Source) -> bool:
     marked_up = "\0" in source.head or source.head.lstrip().startswith(("{", "[{", "<"))
     return not marked_up and _layout_of(source) is not None
@@ -104,18 +88,16 @@ def _read(source: Source) -> Recording:
             allowed = "allowed: at least two, one of them velocity or position"
             raise InputError(f"{source.path}: line 1", "found one column", allowed)
         raise no_samples(source)
-    content, start = utf8(source.content), 0
-    for _ in range(layout.start):
-        start = content.find(b"\n", start) + 1
-    channels, notes = read_lines(SampleLines(content[start:], layout.start + 1), layout, source.path)
+    samples = utf8(source.content).split(b"\n", layout.start)[-1]
+    channels, notes = read_lines(samples, layout.start + 1, layout, source.path)
     return Recording(channels, TABLE.format, source.path, notes=notes)
 
 
 TABLE = FileFormat("CSV table", (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm"), _recognises, _read)
 
 
-def read_lines(lines: SampleLines, layout: TableLayout, path: str) -> tuple[tuple[Channel, ...], tuple[str, ...]]:
-    """Channels of lines of samples, of whatever preamble they stand under, and what the user should know.
+def read_lines(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[tuple[Channel, ...], tuple[str, ...]]:
+    """Channels of lines of samples, the first of which has the number `line`, and what the user should know.
 
     Raises:
         InputError: too many columns, a line with too few or too many cells, or a quote that is not closed; names
@@ -124,16 +106,15 @@ def read_lines(lines: SampleLines, layout: TableLayout, path: str) -> tuple[tupl
     if len(layout.labels) > MOST_COLUMNS:
         raise InputError(path, f"found {len(layout.labels)} columns", f"allowed: {MOST_COLUMNS}")
     if layout.separator == BLANKS:
-        bare = re.sub(rb"(?m)^[ \t]+|[ \t]+\r?$", b"", lines.text)
-        lines = replace(lines, text=re.sub(rb"[ \t]+", b"\t", bare))
-    table, lines = parsed(lines, layout, path)
-    rows = _filled_rows(table)
-    gaps = _has_blank_lines(lines, table.num_rows) or (rows is not None and not rows[: int(rows.sum())].all())
-    line = None if gaps else lines.line
-    table = table if rows is None else table.filter(pa.array(rows))
-    by_line = _joint_of_line(table, layout)
-    if by_line is not None:
-        return tuple(_of_joints(table, layout, path, *by_line)), lines.notes
+        text = re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+\r?$", b"", text))
+    table, first, notes = parsed(text, line, layout, path)
+    filled = _filled_rows(table)
+    if not filled.all():
+        first = first if filled[: filled.sum()].all() else None
+        table = table.filter(pa.array(filled))
+    of_joints = _of_joints(table, layout, path)
+    if of_joints is not None:
+        return of_joints, notes
     unnamed = [label == f"column {number}" for number, label in enumerate(layout.labels, 1)]
     kept: list[Channel] = []
     for label, column, kind, plain in zip(layout.labels, table.columns, layout.kinds, unnamed, strict=True):
@@ -141,42 +122,43 @@ def read_lines(lines: SampleLines, layout: TableLayout, path: str) -> tuple[tupl
         if lists is not None:
             kept.extend(channels_of_table(pa.table({label: lists}), path))
             continue
-        channel = channel_of_cells(label, column, layout.decimal, path, line)
+        channel = channel_of_cells(label, column, layout.decimal, path, first)
         if not plain or all(unnamed) or channel.defect is not None or np.isfinite(channel.values).any():
             kept.append(channel)
-    return tuple(kept), lines.notes
+    return tuple(kept), notes
 
 
-def _joint_of_line(table: pa.Table, layout: TableLayout) -> tuple[int, np.ndarray, list[str]] | None:
-    """Column that names the joint of each line, where they take turns: its place, which one (n,), and their names."""
-    for place, (label, column, kind) in enumerate(zip(layout.labels, table.columns, layout.kinds, strict=True)):
+def _of_joints(table: pa.Table, layout: TableLayout, path: str) -> tuple[Channel, ...] | None:
+    """Channels of joints that take turns in the lines, `joint.column` or `joint`, with times of their own; else None.
+
+    A column of texts, or of such a name, tells the joint of each line.
+    """
+    columns = list(zip(layout.labels, table.columns, layout.kinds, strict=True))
+    for label, column, kind in columns:
         if kind == "text" or _NUMBERED.search(label):
             encoded = compute().dictionary_encode(column.combine_chunks())
             which = encoded.indices.fill_null(0).to_numpy(zero_copy_only=False)
             names = [f"{name:g}" if isinstance(name, float) else str(name) for name in encoded.dictionary.to_pylist()]
             turns = len(names)
-            if not 2 <= turns <= MOST_JOINTS or which.size < 4 * turns:
-                continue
-            again, other = which[turns:] == which[:-turns], which[turns:] != which[turns - 1 : -1]
-            if float(np.mean(again & other)) >= IN_TURN:
-                return place, which, names
-    return None
-
-
-def _of_joints(
-    table: pa.Table, layout: TableLayout, path: str, place: int, which: np.ndarray, names: Sequence[str]
-) -> Iterator[Channel]:
-    """Channels of each joint out of lines that are of one each, with times of their own: `joint.column`, or `joint`."""
-    kinds = zip(layout.labels, table.columns, layout.kinds, strict=True)
-    others = [(label, column) for k, (label, column, kind) in enumerate(kinds) if k != place and kind != "text"]
-    alone = sum(signal_of(split_label(label)[0]) != "time" for label, _ in others) == 1
+            if 2 <= turns <= MOST_JOINTS and which.size >= 4 * turns:
+                again, other = which[turns:] == which[:-turns], which[turns:] != which[turns - 1 : -1]
+                if float(np.mean(again & other)) >= IN_TURN:
+                    break
+    else:
+        return None
+    others = [(name, cells) for name, cells, kind in columns if cells is not column and kind != "text"]
+    alone = sum(signal_of(split_label(name)[0]) != "time" for name, _ in others) == 1
+    found: list[Channel] = []
     for k, joint in enumerate(names):
         own = pa.array(which == k)
-        channels = [channel_of_cells(label, cells.filter(own), layout.decimal, path, None) for label, cells in others]
+        channels = [channel_of_cells(name, cells.filter(own), layout.decimal, path, None) for name, cells in others]
         time = next((channel for channel in channels if signal_of(channel.name) == "time"), None)
-        for channel in channels:
-            if channel is not time:
-                yield replace(channel, name=joint if alone else f"{joint}.{channel.name}", time=time)
+        found += [
+            replace(channel, name=joint if alone else f"{joint}.{channel.name}", time=time)
+            for channel in channels
+            if channel is not time
+        ]
+    return tuple(found)
 
 
 def as_lists(cells: pa.ChunkedArray) -> pa.ChunkedArray | None:
@@ -192,31 +174,17 @@ def as_lists(cells: pa.ChunkedArray) -> pa.ChunkedArray | None:
 def read_timed(lines: Sequence[str], line: int, labels: Sequence[str], separator: str, path: str) -> list[Channel]:
     """Channels of lines of numbers whose column called `time` is the time of the others; a decimal comma is a point.
 
-    Args:
-        lines: of samples, without what stands above them.
-        line: number of the first of them in the file.
-        labels: of the columns, with their units.
-        separator: of them.
-        path: of the file.
-
     Raises:
         InputError: as `read_lines`, no column of that name, or a text among the times.
     """
     layout = TableLayout(tuple(labels), separator, ".", 0, ("number",) * len(labels))
-    channels, _ = read_lines(SampleLines("\n".join(lines).replace(",", ".").encode(), line), layout, path)
+    channels, _ = read_lines("\n".join(lines).replace(",", ".").encode(), line, layout, path)
     time = next((channel for channel in channels if channel.name == "time"), None)
     if time is None:
         raise InputError(path, f"found columns {', '.join(labels)}", "allowed: one of them called time")
     if time.defect is not None:
         raise time.defect
     return [replace(channel, time=time) for channel in channels if channel is not time]
-
-
-def _has_blank_lines(lines: SampleLines, rows: int) -> bool:
-    """Whether a line between samples is blank; where every line is a row none is, and to count lines takes no time."""
-    if lines.text.count(b"\n") + (not lines.text.endswith(b"\n")) == rows:
-        return False
-    return re.search(rb"\n[ \t\r]*\n", lines.text.rstrip()) is not None
 
 
 def _arrow_table(text: bytes, kinds: Sequence[pa.DataType], layout: TableLayout, nulls: Sequence[str]) -> pa.Table:
@@ -232,61 +200,61 @@ def _arrow_table(text: bytes, kinds: Sequence[pa.DataType], layout: TableLayout,
     )
 
 
-def parsed(lines: SampleLines, layout: TableLayout, path: str) -> tuple[pa.Table, SampleLines]:
-    """Columns as their kinds say, all as text where a cell is not as its kind; and the lines that they are of.
+def parsed(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[pa.Table, int | None, tuple[str, ...]]:
+    """Columns as their kinds say, all as text where a cell is not as its kind; and what the user should know.
 
-    Raises:
-        InputError: a line with too few or too many cells, or a quote that is not closed.
+    Between them the line of the first row, None where not every line from there on is a row; raises as `read_lines`.
     """
     try:
-        return _arrow_table(lines.text, [TYPES[kind] for kind in layout.kinds], layout, EMPTY), lines
+        table = _arrow_table(text, [TYPES[kind] for kind in layout.kinds], layout, EMPTY)
     except pa.ArrowInvalid:
-        lines = _cleaned(lines, layout, path)
+        text, first, notes = _cleaned(text, line, layout, path)
+    else:
+        lines = text.count(b"\n") + (not text.endswith(b"\n"))  # to count them takes no time
+        blank = lines != table.num_rows and re.search(rb"\n[ \t\r]*\n", text.rstrip()) is not None
+        return table, None if blank else line, ()
     try:
-        return _arrow_table(lines.text, [pa.string()] * len(layout.labels), layout, ()), lines
+        return _arrow_table(text, [pa.string()] * len(layout.labels), layout, ()), first, notes
     except pa.ArrowInvalid as error:
-        first = lines.line or 1
-        numbered = enumerate(lines.text.splitlines(), first)
+        first = first or 1
+        numbered = enumerate(text.splitlines(), first)
         quoted = next((number for number, line in numbered if line.count(b'"') % 2), first)
         raise InputError(f"{path}: line {quoted}", "found a quote that is not closed", "allowed: numbers") from error
 
 
-def _cleaned(lines: SampleLines, layout: TableLayout, path: str) -> SampleLines:
-    """Lines of samples without comments and blank lines among them, and without what a recorder writes below."""
+def _cleaned(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[bytes, int | None, tuple[str, ...]]:
+    """Lines without comments and blank lines among them, and without what a recorder writes below; else as `parsed`."""
     separator, width = layout.delimiter, len(layout.labels)
-    numbered = list(enumerate(lines.text.splitlines(), lines.line or 1))
-    written = [(number, line) for number, line in numbered if line.strip() and not _COMMENT.match(line)]
-    comments = sum(_COMMENT.match(line) is not None for _, line in numbered)
-    kept = [(number, line) for number, line in written if line.strip(b' \t\r"')]
+    numbered = list(enumerate(text.splitlines(), line))
+    written = [(number, one) for number, one in numbered if one.strip() and not _COMMENT.match(one)]
+    comments = sum(_COMMENT.match(one) is not None for _, one in numbered)
+    kept = [(number, one) for number, one in written if one.strip(b' \t\r"')]
     while kept and not any(map(is_number, cells_of(kept[-1][1].decode("utf-8", errors="replace"), separator))):
         kept.pop()
     below = sum(number > kept[-1][0] for number, _ in written) if kept else 0
-    for number, line in kept:
-        found = line.count(separator.encode()) + 1
-        if found != width and b'"' in line:
-            found = len(cells_of(decode(line), separator))
+    for number, one in kept:
+        found = one.count(separator.encode()) + 1
+        if found != width and b'"' in one:
+            found = len(cells_of(decode(one), separator))
         if found != width:
             cells = f"found {found} cell{'s' * (found > 1)}"
             raise InputError(f"{path}: line {number}", cells, f"allowed: {width}, as the header has")
     left_out = {f"comment{'s' * (comments > 1)}": comments, "line below the samples": below}
     notes = tuple(f"{count} {what} left out" for what, count in left_out.items() if count)
     whole = kept and kept[-1][0] - kept[0][0] == len(kept) - 1
-    return SampleLines(b"\n".join(line for _, line in kept) + b"\n", kept[0][0] if whole else None, notes)
+    return b"\n".join(one for _, one in kept) + b"\n", kept[0][0] if whole else None, notes
 
 
-def _filled_rows(table: pa.Table) -> np.ndarray | None:
-    """Which rows hold anything; None: all."""
+def _filled_rows(table: pa.Table) -> np.ndarray:
+    """Which rows hold anything (n,)."""
+    pc = compute()
     filled = np.zeros(table.num_rows, dtype=bool)
     for column in table.columns:
-        if pa.types.is_string(column.type):
-            pc = compute()
-            filled |= ~pc.equal(pc.utf8_trim_whitespace(column), "").to_numpy().astype(bool)
-        elif not column.null_count:
-            return None
-        else:
-            filled |= ~column.is_null().to_numpy()
+        text = pa.types.is_string(column.type)
+        known = pc.not_equal(pc.utf8_trim_whitespace(column), "") if text else column.is_valid()
+        filled |= known.to_numpy().astype(bool)
         if filled.all():
-            return None
+            break
     return filled
 
 
@@ -384,10 +352,7 @@ def _may_be_time(label: str) -> bool:
     name, unit = split_label(label)
     if signal_of(name) not in (None, "time"):
         return False
-    try:
-        return unit_of(unit) is None or scale_of(str(unit), ("s",)) is not None
-    except UnitError:
-        return False
+    return unit_of(unit) is None or scale_or_none(str(unit), ("s",)) is not None
 
 
 def _separator(shown: list[str]) -> tuple[str, int]:
@@ -427,8 +392,8 @@ def _is_sample(cells: list[str], kinds: Sequence[str]) -> bool:
     if len(cells) != len(kinds):
         return False
     numeric = [cell for cell, kind in zip(cells, kinds, strict=True) if kind != "text"]
-    numbers = sum(cell in EMPTY or is_number(cell) or _LIST.fullmatch(cell) is not None for cell in numeric)
-    return numbers > 0.5 * len(numeric) and any(is_number(cell) or _LIST.fullmatch(cell) for cell in numeric)
+    values = sum(is_number(cell) or _LIST.fullmatch(cell) is not None for cell in numeric)
+    return values > 0 and values + sum(cell in EMPTY for cell in numeric) > 0.5 * len(numeric)
 
 
 def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
@@ -441,25 +406,24 @@ def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
         rows.append(row)
     names = rows[0] if rows else [""] * width
     if len(rows) == 2 and _is_unit_row(rows[0]) and not _is_unit_row(rows[1]):
-        names = [_with_unit(name, unit) for name, unit in zip(rows[1], map(_bare, rows[0]), strict=True)]
+        units = [unit_of(_bare(cell)) for cell in rows[0]]
+        names = [
+            f"{name} [{unit}]" if unit is not None and split_label(name)[1] is None else name
+            for name, unit in zip(rows[1], units, strict=True)
+        ]
     return tuple(
         name if split_label(name)[0] else f"column {number} {name}".strip() for number, name in enumerate(names, 1)
     )
 
 
-def _with_unit(name: str, unit: str) -> str:
-    return f"{name} [{unit}]" if unit_of(unit) is not None and split_label(name)[1] is None else name
-
-
 def _header_row(line: str, separator: str, width: int) -> list[str] | None:
     """Cells of a line of names; None where it is none: another count of cells, or numbers among them."""
-    for text in (line, _LEADING.sub("", line)):
-        for row in _cuts(text, separator):
-            row = row[:-1] if len(row) == width + 1 and not row[-1] else row
-            row = [*row, ""] if len(row) == width - 1 and separator != BLANKS and row[0] else row
-            row[:1] = [_LEADING.sub("", row[0])] if row else []
-            if len(row) == width and any(row) and not any(map(is_number, row)):
-                return row
+    for row in (*_cuts(line, separator), *_cuts(_LEADING.sub("", line), separator)):
+        row = row[:-1] if len(row) == width + 1 and not row[-1] else row
+        row = [*row, ""] if len(row) == width - 1 and separator != BLANKS and row[0] else row
+        row[:1] = [_LEADING.sub("", row[0])] if row else []
+        if len(row) == width and any(row) and not any(map(is_number, row)):
+            return row
     return None
 
 

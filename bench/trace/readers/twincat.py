@@ -10,6 +10,7 @@ whether that was done: where the header names a scaling, the unit is open (Beckh
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
@@ -19,7 +20,7 @@ import pyarrow as pa
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
-from bench.trace.readers.table import SampleLines, TableLayout, channel_of_cells, parsed
+from bench.trace.readers.table import TableLayout, channel_of_cells, parsed
 from bench.trace.source import FileFormat, Source, decode, no_samples, shows
 
 _HEAD = re.compile(r"\AName[\t;,].*^(Starttime of export|Data-Type|SymbolName)[\t;,]", re.DOTALL | re.MULTILINE)
@@ -32,46 +33,43 @@ _NO_SCALING = {"Offset": "0", "ScaleFactor": "1", "Unit Offset": "0", "Unit Scal
 
 def _read(source: Source) -> Recording:
     separator = source.head[len("Name")]
-    header, body, line = _split(source, separator)
+    header, rows, line = _split(source, separator)
     names = _names(header, source)
-    rows = _filled(body, separator.encode(), len(names))
-    instants = _FILETIME.match(body) is not None  # in steps of 100 ns, from the first of all
+    text = b"\n".join(_filled(rows, separator.encode(), len(names)))
+    instants = _FILETIME.match(rows[0] + b"\n") is not None  # in steps of 100 ns, from the first of all
     kinds = tuple("exact" if instants and name == "Name" else "number" for name in names)
-    decimal = "," if separator != "," and re.search(rb"\d,\d", body) else "."
-    layout = TableLayout(tuple(names), separator, decimal, 0, kinds)
-    table, lines = parsed(SampleLines(b"\n".join(rows), line), layout, source.path)
+    decimal = "," if separator != "," and re.search(rb"\d,\d", text) else "."
+    table, first, _ = parsed(text, line, TableLayout(tuple(names), separator, decimal, 0, kinds), source.path)
     start = min((_first(column) for column in table.columns if pa.types.is_decimal(column.type)), default=0)
     time = np.empty(0)
     channels: list[Channel] = []
     for number, (name, column) in enumerate(zip(names, table.columns, strict=True)):
-        cells = channel_of_cells(name, column, decimal, source.path, lines.line)
+        cells = channel_of_cells(name, column, decimal, source.path, first)
         if cells.defect is not None:
             raise cells.defect
         if name == "Name":
             exact = pa.types.is_decimal(column.type)
             time = (cells.values + (_first(column) - start)) / 1e4 if exact else cells.values
         elif number > 0:
-            channel = _described(name, number, header, source)
-            channels.append(_sampled(replace(channel, line=lines.line), time, cells.values))
+            head = {row[0]: row[number] for row in header if len(row) > number}
+            channels.append(_channel(name, head, time, cells))
     return Recording(with_shared_times(channels), TWINCAT.format, source.path, _metadata(header))
 
 
 TWINCAT = FileFormat("TwinCAT Scope CSV", (), shows(_HEAD), _read)
 
 
-def _split(source: Source, separator: str) -> tuple[list[list[str]], bytes, int]:
-    """Header rows, bytes of the samples, and the number of their first line."""
-    start, line, header = 0, 1, []
-    while start < len(source.content):
-        end = source.content.find(b"\n", start)
-        end = len(source.content) if end < 0 else end
-        cells = [cell.strip() for cell in decode(source.content[start:end]).split(separator)]
+def _split(source: Source, separator: str) -> tuple[list[list[str]], list[bytes], int]:
+    """Cells of the header's rows, rows of samples, and the number of their first line."""
+    header: list[list[str]] = []
+    rows = source.content.split(b"\n")
+    for number, row in enumerate(rows):
+        cells = [cell.strip() for cell in decode(row).split(separator)]
         # the first time column may have ended or not begun: its cells are empty, yet the row holds numbers
         if any(_NUMBER.match(cell) for cell in cells) and (not cells[0] or _NUMBER.match(cells[0])):
-            return header, source.content[start:], line
+            return header, rows[number:], number + 1
         if any(cells):
             header.append(cells)
-        start, line = end + 1, line + 1
     raise no_samples(source)
 
 
@@ -85,10 +83,11 @@ def _names(header: list[list[str]], source: Source) -> list[str]:
     return rows[-1][: last + 1]
 
 
-def _filled(body: bytes, mark: bytes, width: int) -> list[bytes]:
+def _filled(rows: list[bytes], mark: bytes, width: int) -> Iterator[bytes]:
     """Rows of samples, which end with the last channel that still has some, filled up."""
-    rows = (row.rstrip(b"\r") for row in body.split(b"\n"))
-    return [row + mark * (width - 1 - row.count(mark)) for row in rows if row.strip() not in (b"", b"EOF")]
+    for row in rows:
+        if row.strip() not in (b"", b"EOF"):
+            yield row.rstrip(b"\r") + mark * (width - 1 - row.count(mark))
 
 
 def _first(column: pa.ChunkedArray) -> int:
@@ -96,33 +95,29 @@ def _first(column: pa.ChunkedArray) -> int:
     return int(next(iter(column.drop_null()[:1].to_pylist()), 0))
 
 
-def _described(name: str, number: int, header: list[list[str]], source: Source) -> Channel:
-    """The channel without its samples; its unit is open where the header names a scaling."""
-    column = {cells[0]: cells[number] for cells in header if len(cells) > number}
-    unit = column.get("Unit", "(None)")
-    scaling = [
-        f"{key} {column[key]}" for key, plain in _NO_SCALING.items() if column.get(key, plain) not in (plain, "")
-    ]
-    if not scaling:
-        return Channel(name, unit, np.empty(0), source.path)
-    reason = f"has an open unit: the header names '{unit}' and {', '.join(scaling)}, not whether values are scaled"
-    return Channel(name, None, np.empty(0), source.path, open_unit=reason)
+def _channel(name: str, head: Mapping[str, str], time: Array, cells: Channel) -> Channel:
+    """The channel of a column with its head's entries: samples where both time and value stand; one alone is a defect.
 
-
-def _sampled(channel: Channel, time: Array, values: Array) -> Channel:
-    """The channel with samples where both time and value stand; one without the other is a defect."""
+    Its unit is open where the head names a scaling.
+    """
+    unit = head.get("Unit", "(None)")
+    scaling = [f"{key} {head[key]}" for key, plain in _NO_SCALING.items() if head.get(key, plain) not in (plain, "")]
+    reason = None
+    if scaling:
+        reason = f"has an open unit: the header names '{unit}' and {', '.join(scaling)}, not whether values are scaled"
+        unit = None
+    every = Channel(name, unit, cells.values, cells.origin, line=cells.line, open_unit=reason)
     present = ~np.isnan(time)
     rows = np.flatnonzero(present)
-    first = channel.line or 0
     gapless = rows.size > 0 and rows[-1] - rows[0] == rows.size - 1
-    line = first + int(rows[0]) if gapless else None
-    clock = Channel("time", "ms", time[present], channel.origin, line=line)
-    lonely = present != ~np.isnan(values)
+    line = (every.line or 0) + int(rows[0]) if gapless else None
+    lonely = present != ~np.isnan(every.values)
     defect = None
     if lonely.any():
-        place = channel.place(int(np.argmax(lonely)))
+        place = every.place(int(np.argmax(lonely)))
         defect = InputError(place, "found a time or a value alone", "allowed: both; the file may be truncated")
-    return replace(channel, values=values[present], line=line, time=clock, defect=defect)
+    clock = Channel("time", "ms", time[present], every.origin, line=line)
+    return replace(every, values=every.values[present], line=line, time=clock, defect=defect)
 
 
 def _metadata(header: list[list[str]]) -> dict[str, str]:

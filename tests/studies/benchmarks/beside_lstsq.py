@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bench.fit.layout import lay_out, plain
-from bench.fit.normal_equations import BLOCKS, normal_equations
+from bench.axis_kind import OFFSET
+from bench.fit.hypothesis import lay_out, plain
 from bench.fit.rows import Rows
+from bench.fit.solution import equations_of, solved
 from tests.fit.motions import RIG, recording
 from tests.studies.benchmarks.table import Table
 from tests.studies.benchmarks.timing import in_turn
@@ -21,12 +22,11 @@ def measured(durations: Sequence[float] = (3.0, 30.0, 300.0), rounds: int = 15) 
     found = []
     for duration in durations:
         rows = Rows.of(recording(np.random.default_rng(0), duration=duration), RIG)
-        laid, time, width = lay_out(rows, plain(rows)), rows.time, rows.conditioning.filter.width
+        laid = lay_out(rows, plain(rows))
 
         def core() -> np.ndarray:
-            names, noise = laid.owners, laid.noise  # noqa: B023
-            whole = normal_equations(names, laid.columns, laid.effort, time, noise, width)  # noqa: B023
-            return whole.coarsened(BLOCKS).solve()[0]
+            whole = equations_of(rows, laid).only(lambda name: name != OFFSET)  # noqa: B023
+            return solved(whole.total, whole.moment.sum(axis=0), whole.count * whole.noise)[0]
 
         def lstsq() -> np.ndarray:
             return np.linalg.lstsq(laid.columns, laid.effort, rcond=None)[0]  # noqa: B023

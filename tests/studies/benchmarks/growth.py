@@ -16,9 +16,8 @@ from bench.effects.acting import FrictionLevel
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from bench.fit.estimate import Estimate
-from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.hypothesis import Hypothesis, Layout, Term, lay_out
 from bench.fit.identify import identify
-from bench.fit.layout import Layout, lay_out
 from bench.fit.rows import Memory, Rows
 from bench.plant.run import run, run_ticked
 from bench.trace.read import read

@@ -20,7 +20,9 @@ from nptdms import ChannelObject, TdmsWriter
 from bench.errors import BenchError
 from bench.plant.model_file import load_model
 from bench.rig.rig import load_rig
-from bench.trace.inspect import inspect, to_json
+from bench.trace.choose import GivenOptions
+from bench.trace.inspect import inspect_recording, to_json
+from bench.trace.read import read_recording
 from bench.units import parse
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -41,7 +43,7 @@ def model(data: bytes) -> None:
 
 
 def readers(data: bytes) -> None:
-    to_json(inspect(written(data, "run")))
+    to_json(inspect_recording(read_recording(written(data, "run")), GivenOptions()))
 
 
 TARGETS = {target.__name__: target for target in (units, rig, model, readers)}
