@@ -10,9 +10,8 @@ from bench.errors import BenchError, InputError, UndeterminedError
 
 if TYPE_CHECKING:
     from bench.baseline.check import Checked, check
-    from bench.diagnosis.diagnosis import diagnose
+    from bench.diagnosis.diagnosis import Diagnosis, diagnose
     from bench.diagnosis.replay import replay
-    from bench.diagnosis.show import Diagnosis
     from bench.export.effects import Effects
     from bench.fit.estimate import Estimate
     from bench.fit.identify import identify
@@ -48,7 +47,7 @@ __version__ = "0.1.0"
 #: Module of each name; a test compares it with the imports above, which type checkers read.
 _MODULES = {
     "Checked": "bench.baseline.check",
-    "Diagnosis": "bench.diagnosis.show",
+    "Diagnosis": "bench.diagnosis.diagnosis",
     "Effects": "bench.export.effects",
     "Estimate": "bench.fit.estimate",
     "IdentifiedRobot": "bench.joints.robot",

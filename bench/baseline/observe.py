@@ -11,11 +11,10 @@ import numpy as np
 from bench.arrays import rms
 from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, DetectionLimits, NamedHere, RemainingGap, State
 from bench.comparison.difference import Measured
-from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.show import Diagnosis
 from bench.fit.estimate import Estimate
 from bench.fit.fit import Fit, fit, shaped
 from bench.fit.hum import with_hum

@@ -19,8 +19,7 @@ from bench.plant.profile_names import DEFAULT
 
 if TYPE_CHECKING:
     from bench.cli.common import Subject
-    from bench.diagnosis.let_free import FreeRun
-    from bench.diagnosis.replay import Replay
+    from bench.diagnosis.replay import FreeRun, Replay
     from bench.plant.model_file import StoredModel
     from bench.view.side_by_side import SideBySide
 
@@ -118,7 +117,7 @@ def view(
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:
     """Model and ghost, how far off the model runs by itself, and what the user should know before believing them."""
-    from bench.diagnosis.let_free import BARE, bare, let_free, otherwise
+    from bench.diagnosis.replay import BARE, bare, let_free, otherwise
     from bench.view.side_by_side import along_profile, along_recording
 
     if trace is None:

@@ -16,19 +16,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.diagnosis.held_out import HeldOut
 from bench.diagnosis.model import (
     BANDWIDTH,
     HOLDOUT,
     RECORDING,
     Extension,
+    HeldOut,
     Placed,
     Recorded,
-    Stage,
     VelocityGaps,
     holding_bandwidth,
     present_of,
@@ -97,6 +97,7 @@ class Added:
     """The accepted effects.
 
     Attributes:
+        recordings, suspects: in which they were found, and among what.
         extension: the effects accepted, fitted to the whole recording.
         stages: the model after none, one, ... all of them.
         gaps: velocity gaps, simulated for every addition.
@@ -105,21 +106,21 @@ class Added:
         refined: the final model, its quantities refined by simulation where that helps.
         repeats: whether the recording's events occur in the holdout too.
         compared: whether the holdout is of this axis.
-        warnings: about a holdout of another axis, or a model that MuJoCo cannot simulate.
         closed_loop: velocity gap under the drive of the rig, without and with the effect that is visible only there -
             rad/s (m/s); None without such an effect.
         refused: why a parameter is not determined beside the effects, by its name; the model is then the last that is.
     """
 
+    recordings: Recordings
+    suspects: Suspects
     extension: Extension
-    stages: tuple[Stage, ...]
+    stages: tuple[Extension, ...]
     gaps: VelocityGaps
     recorded: tuple[Recorded, ...]
     rejected: tuple[Rejected, ...]
     refined: Refined
     repeats: bool
     compared: SameAxis
-    warnings: tuple[str, ...]
     closed_loop: tuple[float, float] | None
     refused: Mapping[str, str]
 
@@ -134,19 +135,21 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
     held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
-    recorded = [Recorded.of(RECORDING, recordings.trace, recordings.rig)]
+    recorded = [Recorded(RECORDING, recordings.trace, recordings.rig)]
     if recordings.holdout is not None:
-        recorded.append(Recorded.of(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
-    extension = Extension(recordings.rows, RECORDING, found.hypothesis, suspects.outside, recordings.rig)
+        recorded.append(Recorded(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
+    extension = Extension(recordings.rows, found.hypothesis, suspects.detected, recordings.rig)
     closed_loop = closed_loop_gap(recordings, extension)
     rejected: list[Rejected] = []
     while True:
-        refused = refusals(recordings, extension.whole.fitted)
-        modelled = last_determined(recordings, extension, suspects.policy) if refused else extension.whole
+        refused = refusals(recordings, extension.fitted)
+        modelled = last_determined(recordings, extension, suspects.policy) if refused else extension
         gaps = holding(extension, modelled, recordings)
-        stages = without_models(extension.stages, modelled, refused)
+        stages, reason = extension.stages, str(next(iter(refused.values()), ""))
+        count = next((index for index, stage in enumerate(stages) if stage is modelled), -1) + 1
+        stages = (*stages[:count], *(replace(stage, refused=reason) for stage in stages[count:]))
         shown = [(stage, each) for stage in stages for each in recorded]
-        against = rejection(recordings, suspects, held_out, extension, gaps, shown)
+        against = rejection(recordings, held_out, extension, gaps, shown)
         against = against or unlimited(extension, closed_loop)
         if against is None:
             break
@@ -157,8 +160,9 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     if refused:
         determined = {name: found for name, found in kept.parameters.items() if name not in refused}
         kept = replace(kept, model=kept.model or (modelled and modelled.model), parameters=determined)
-    problem = [f"not added to the MuJoCo model: {stages[-1].problem}"] if stages[-1].problem else []
     return Added(
+        recordings=recordings,
+        suspects=suspects,
         extension=extension,
         stages=stages,
         gaps=gaps,
@@ -167,10 +171,16 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         refined=kept,
         repeats=repeats,
         compared=compared,
-        warnings=(*compared.warnings, *problem),
         closed_loop=closed_loop,
         refused={name: refusal.reason for name, refusal in refused.items()},
     )
+
+
+def everywhere(balance: Balance, other: Rows | None) -> bool:
+    """Whether events repeat in every recording: the holdout shows them at the same time after its start."""
+    if other is None or not any(isinstance(term.effect, Occasional) for term in balance.hypothesis.terms):
+        return False
+    return balance.repeating(True).gap(other) < balance.gap(other)
 
 
 def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError]:
@@ -180,7 +190,7 @@ def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError
     return refused_masses(masses, rig, clipped(recordings.trace, rig))
 
 
-def last_determined(recordings: Recordings, extension: Extension, policy: Policy) -> Stage | None:
+def last_determined(recordings: Recordings, extension: Extension, policy: Policy) -> Extension | None:
     """The last stage that determines the inertia; None where none does because of what is missing from the model.
 
     Raises:
@@ -197,23 +207,7 @@ def last_determined(recordings: Recordings, extension: Extension, policy: Policy
     return stage
 
 
-def without_models(
-    stages: Sequence[Stage], modelled: Stage | None, refused: Mapping[str, UndeterminedError]
-) -> tuple[Stage, ...]:
-    """Stages without a MuJoCo model after the last one whose inertia is determined."""
-    count = next((index for index, stage in enumerate(stages) if stage is modelled), -1) + 1
-    later = [replace(stage, model=None, problem=str(next(iter(refused.values())))) for stage in stages[count:]]
-    return (*stages[:count], *later)
-
-
-def everywhere(balance: Balance, other: Rows | None) -> bool:
-    """Whether events repeat in every recording: the holdout shows them at the same time after its start."""
-    if other is None or not any(isinstance(term.effect, Occasional) for term in balance.hypothesis.terms):
-        return False
-    return balance.repeating(True).gap(other) < balance.gap(other)
-
-
-def holding(extension: Extension, modelled: Stage | None, recordings: Recordings) -> VelocityGaps:
+def holding(extension: Extension, modelled: Extension | None, recordings: Recordings) -> VelocityGaps:
     """Velocity gaps under a cascade that holds every model of an extension to the recording, `modelled` the last."""
     if modelled is None or modelled.model is None:
         return VelocityGaps(BANDWIDTH, extension.stages[0].fitted.base.inertia if modelled else None)
@@ -223,28 +217,27 @@ def holding(extension: Extension, modelled: Stage | None, recordings: Recordings
 
 def rejection(
     recordings: Recordings,
-    suspects: Suspects,
     held_out: HeldOut,
     extension: Extension,
     gaps: VelocityGaps,
-    shown: Sequence[tuple[Stage, Recorded]],
+    shown: Sequence[tuple[Extension, Recorded]],
 ) -> tuple[int, str] | None:
     """Index of the last effect that held-out motion contradicts, with the reason; None if it contradicts none.
 
     The torque gaps come first, as they cost no simulation. Where they contradict none, what is shown in the end is
     simulated beside the judged model: side by side that costs hardly more.
     """
-    judged, judge = replace(extension, recording=held_out.fitted, rows=held_out.rows), held_out.recorded
+    judged, judge = replace(extension, recording=held_out.fitted), held_out.recorded
     floor = NULL * white_noise(measured_velocity(recordings.trace))
     asked: list[tuple[int, Extension]] = []
     by_torque: tuple[int, str] | None = None
     for index in reversed(range(len(judged.names))):
-        if judged.a(Occasional, index) and (not judge.events or held_out.rows != RECORDING):
+        if judged.a(Occasional, index) and (not judge.events or held_out.fitted is not recordings.rows):
             continue
-        if not held_out.determines(judged.whole.fitted, extension.whole.fitted, index):
+        if not held_out.determines(judged.fitted, extension.fitted, index):
             continue
         less = judged.less(index)
-        balances = (Balance.of(each.whole.fitted).repeating(judge.events) for each in (less, judged))
+        balances = (Balance.of(each.fitted).repeating(judge.events) for each in (less, judged))
         before, after = (balance.gap(held_out.judge) for balance in balances)
         if after > before:
             by_torque = index, _grows(f"torque gap of the {judge.name}", before, after, judged.rig.effort_unit)
@@ -252,29 +245,29 @@ def rejection(
         asked.append((index, less))
     if not asked:
         return by_torque
-    gaps.simulate([(judged.whole, judge), *(() if by_torque else shown)])
-    if not gaps.of(judged.whole, judge) > floor:  # less than which never counts as worse
+    gaps.simulate([(judged, judge), *(() if by_torque else shown)])
+    if not gaps.of(judged, judge) > floor:  # less than which never counts as worse
         return by_torque
-    gaps.simulate((less.whole, judge) for _, less in asked)
+    gaps.simulate((less, judge) for _, less in asked)
     for index, less in asked:
-        in_phase = gaps.in_phase(judged.whole, judge)
-        in_phase = in_phase or (not judged.a(Placed, index) and gaps.in_phase(less.whole, judge))
-        before, after = (gaps.of(each.whole, judge) for each in (less, judged))
+        in_phase = gaps.in_phase(judged, judge)
+        in_phase = in_phase or (not judged.a(Placed, index) and gaps.in_phase(less, judge))
+        before, after = (gaps.of(each, judge) for each in (less, judged))
         allowed = float(np.hypot(before, floor) * (1.0 if in_phase else np.sqrt(ERRS_TWICE)))
         worse = min(before, after) < judge.varies and after > allowed
-        if worse and not _comes_closer(recordings, suspects, judged.whole, held_out, gaps, allowed):
+        if worse and not _comes_closer(recordings, judged, held_out, gaps, allowed):
             unit = judged.rig.axis_kind.speed_unit
             return index, _grows(f"velocity gap of the {judge.name}", before, after, unit)
     return by_torque
 
 
 def _comes_closer(
-    recordings: Recordings, suspects: Suspects, whole: Stage, held_out: HeldOut, gaps: VelocityGaps, allowed: float
+    recordings: Recordings, whole: Extension, held_out: HeldOut, gaps: VelocityGaps, allowed: float
 ) -> bool:
     """Whether refinement by simulation brings the velocity gap of all effects below what is allowed."""
     if whole.model is None:
         return True
-    numbers = Numbers.of(*named(recordings, whole.fitted, whole.detected(suspects)))
+    numbers = Numbers(*named(recordings, whole.fitted, whole.outside))
     found = refined_model(whole.model, numbers, held_out, gaps)
     return found is not None and found[2] <= allowed
 
@@ -292,16 +285,16 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
     index = under_drive(extension)
     if index is None or "velocity_reference" not in recordings.trace:
         return None
-    without, whole = extension.less(index).whole, extension.whole
-    if without.model is None or whole.model is None:
+    without = extension.less(index)
+    if without.model is None or extension.model is None:
         return None
-    ((shown, limit),) = ((one, one.effect) for one in whole.outside if isinstance(one.effect, DriveLimit))
-    trace = limit.shown_in(recordings.trace, recordings.rig, dict(shown.values))
+    ((limit, shown),) = ((one, found) for one, found in extension.outside.items() if isinstance(one, DriveLimit))
+    trace = limit.shown_in(recordings.trace, recordings.rig, shown.values)
     velocity = measured_velocity(trace)
     try:
         before, after = (
             rms(follow_references(stored.model, trace, recordings.rig).velocity[:, 0] - velocity)
-            for stored in (without.model, whole.model)
+            for stored in (without.model, extension.model)
         )
     except BenchError:
         return None
@@ -311,7 +304,7 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
 def under_drive(extension: Extension) -> int | None:
     """Index of the effect that is visible only under the drive of the rig; None without one."""
     own = len(extension.hypothesis.terms)
-    shown = [own + k for k, present in enumerate(extension.outside) if isinstance(present.effect, DriveLimit)]
+    shown = [own + k for k, effect in enumerate(extension.outside) if isinstance(effect, DriveLimit)]
     return shown[0] if shown else None
 
 
@@ -327,20 +320,22 @@ def _grows(what: str, before: float, after: float, unit: str = "") -> str:
     return f"the {what} grows with it: {before:.3g} -> {after:.3g} {unit}".rstrip()
 
 
-def refined(recordings: Recordings, stage: Stage, suspects: Suspects, held_out: HeldOut, gaps: VelocityGaps) -> Refined:
+def refined(
+    recordings: Recordings, stage: Extension, suspects: Suspects, held_out: HeldOut, gaps: VelocityGaps
+) -> Refined:
     """The quantities of a model with their intervals, refined if that is possible and helps.
 
     It is possible if effects were added, no unexplained remainder would bias the values, and the gap exceeds that of a
     complete model.
     """
-    effects, parameters = named(recordings, stage.fitted, stage.detected(suspects))
+    effects, parameters = named(recordings, stage.fitted, stage.outside)
     plain = Refined(stage.model, effects, parameters, None)
     if stage.model is None or not effects or suspects.policy.remains(stage.fitted):
         return plain
     before = gaps.of(stage, held_out.recorded)
     if not before > NULL * white_noise(measured_velocity(recordings.trace)):
         return plain
-    numbers = Numbers.of(effects, parameters)
+    numbers = Numbers(effects, parameters)
     found = refined_model(stage.model, numbers, held_out, gaps)
     if found is None or not found[2] < (1.0 - WON) * before:
         return plain
@@ -356,10 +351,10 @@ def refined_model(
     Returns:
         The model, its values (p,), and its velocity gap in the motion held out - rad/s (m/s).
     """
-    values = stepped(stored, numbers, held_out.seen, gaps)
-    if values is None:
-        return None
     try:
+        values = stepped(stored, numbers, held_out.seen, gaps)
+        if values is None:
+            return None
         model = numbers.model(stored, values)
     except InputError:
         return None
@@ -373,30 +368,25 @@ class Numbers:
 
     Attributes:
         effects, parameters: as named, with intervals; of the parameters the first three.
-        places: (effect's index, quantity) of each free one, (-1, name) of J, K_w and K_0.
-        values, errors: (p,) and their standard errors.
-        bounds: of their intervals of 95 % (p, 2).
     """
 
-    effects: tuple[NamedEffect, ...]
+    effects: Sequence[NamedEffect]
     parameters: Mapping[str, Parameter]
-    places: tuple[tuple[int, str], ...]
-    values: Array
-    errors: Array
-    bounds: Array
 
-    @classmethod
-    def of(cls, effects: Sequence[NamedEffect], parameters: Mapping[str, Parameter]) -> Numbers:
-        """The free values of named effects and parameters."""
-        free = [((-1, name), parameters[name]) for name in list(parameters)[:3]]
-        for index, effect in enumerate(effects):
+    @cached_property
+    def free(self) -> list[tuple[tuple[int, str], Parameter]]:
+        """(Effect's index, quantity) of each, (-1, name) of J, K_w and K_0, with its interval."""
+        free = [((-1, name), self.parameters[name]) for name in list(self.parameters)[:3]]
+        for index, effect in enumerate(self.effects):
             fixed = {slot.quantity.name for slot in effect.effect.shapes if slot.whole or slot.quantity.instant}
             known = dict(present_of(effect.effect, effect.values).values)
             free += [((index, key), p) for key, p in effect.parameters.items() if key in known and key not in fixed]
-        free = [(place, p) for place, p in free if np.isfinite(p.std_error) and p.std_error > 0.0]
-        values, errors = np.array([p.value for _, p in free]), np.array([p.std_error for _, p in free])
-        bounds = np.array([p.ci95 for _, p in free])
-        return cls(tuple(effects), parameters, tuple(place for place, _ in free), values, errors, bounds)
+        return [(place, p) for place, p in free if np.isfinite(p.std_error) and p.std_error > 0.0]
+
+    @property
+    def values(self) -> Array:
+        """(p,)."""
+        return np.array([p.value for _, p in self.free])
 
     def model(self, stored: StoredModel, values: Array) -> StoredModel:
         """The model with other values; InputError if they are not allowed."""
@@ -412,7 +402,7 @@ class Numbers:
         """Effects and parameters with other values; their intervals stay as wide, as the noise is the same."""
         parameters = dict(self.parameters)
         effects = [dict(effect.parameters) for effect in self.effects]
-        for (index, key), value in zip(self.places, values.tolist(), strict=True):
+        for ((index, key), _), value in zip(self.free, values.tolist(), strict=True):
             table = parameters if index < 0 else effects[index]
             table[key] = table[key].at(value, index >= 0 and key in self.effects[index].effect.positive)
         found = [replace(e, parameters=table) for e, table in zip(self.effects, effects, strict=True)]
@@ -420,12 +410,13 @@ class Numbers:
 
 
 def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: VelocityGaps) -> Array | None:
-    """Values (p,) with the least simulation error on a recording, from a regression's model; None if one fails."""
-    moved = numbers.values + np.diag(STEP * numbers.errors)
-    try:
-        models = [stored, *(numbers.model(stored, row) for row in moved)]
-    except InputError:
-        return None
+    """Values (p,) with the least simulation error on a recording, from a regression's model; None if one fails.
+
+    Raises:
+        InputError: a step of a derivative is not allowed.
+    """
+    values, errors = numbers.values, np.array([p.std_error for _, p in numbers.free])
+    models = [stored, *(numbers.model(stored, row) for row in values + np.diag(STEP * errors))]
     simulated = gaps.velocities(models, recorded)
     differences = [recorded.difference(velocity) for velocity in simulated if velocity is not None]
     if len(differences) < len(models):
@@ -433,6 +424,6 @@ def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: Vel
     jacobian = np.stack([other - differences[0] for other in differences[1:]], axis=1) / STEP
     from scipy.optimize import lsq_linear  # 0.2 s, which only a named effect has to pay
 
-    within = (numbers.bounds - numbers.values[:, None]) / numbers.errors[:, None]
+    within = (np.array([p.ci95 for _, p in numbers.free]) - values[:, None]) / errors[:, None]
     found = lsq_linear(jacobian, -differences[0], bounds=(within[:, 0], within[:, 1]))
-    return numbers.values + numbers.errors * found.x
+    return values + errors * found.x

@@ -1,23 +1,222 @@
-"""Diagnosis in five steps: fit, where, name, add, show."""
+"""Diagnosis in five steps: fit, where, name, add, show; with the verdict, and every objection to it.
+
+A model claims to explain everything. Each objection is a function that gives its reason in one line, empty if there is
+none.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from bench.diagnosis.add import add
-from bench.diagnosis.name import name
-from bench.diagnosis.policy import POLICY, Policy
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.arrays import Array, known_rms, rms
+from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
+from bench.comparison.spread import Between
+from bench.diagnosis.add import Added, Rejected, add
+from bench.diagnosis.name import NamedEffect, name
+from bench.diagnosis.next_experiment import NextExperiment, propose
+from bench.diagnosis.policy import ERRS_TWICE, POLICY, Policy
+from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings, fit_bare
-from bench.diagnosis.show import Diagnosis, show
-from bench.diagnosis.where import where
+from bench.diagnosis.same_axis import SameAxis, apart
+from bench.diagnosis.search import Searched, Step
+from bench.diagnosis.where import Profile, Where, profiles, where
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import Effect
 from bench.effects.present import named
+from bench.errors import InputError
+from bench.fit.estimate import Alone
+from bench.fit.fit import Fit
+from bench.fit.rows import Rows
+from bench.fit.stored import Balance
+from bench.gate.check import Check
 from bench.gate.gate import joined, passed
+from bench.gate.signals import clipped
+from bench.names import nearest, words
+from bench.packed import unpack
+from bench.parameter import Parameter
+from bench.plant.model_file import StoredModel, model_xml
+from bench.presented import Presented
 from bench.rig.given import Given, recordings_of, rig_of, trace_of
 from bench.rig.rig import Rig
+from bench.trace.motion import measured_velocity
+from bench.trace.noise import white_noise
+from bench.trace.trace import Trace
 
-Progress = Callable[[float], None]
+#: File of a saved diagnosis that holds all of it.
+PACKED = "diagnosis.npz"
+
+
+@dataclass(frozen=True)
+class Gap:
+    """RMS gap before and after the effects were added, on both recordings, against the noise floor.
+
+    Attributes:
+        unit: of all numbers.
+        noise_floor: expected RMS from sensor noise alone.
+        identify, holdout: (before, after) over all rows; None if not available.
+        judged: share of the rows that the verdict is based on, and the gap on them; None if it is all rows.
+    """
+
+    unit: str
+    noise_floor: float
+    identify: tuple[float, float] | None
+    holdout: tuple[float, float] | None = None
+    judged: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Shrunk:
+    """Gaps after one addition to the model.
+
+    Attributes:
+        effect: added last; empty for the bare axis.
+        torque: of the recording, and of the holdout where there is one - N*m (N).
+        velocity: the same - rad/s (m/s); nan if not available.
+    """
+
+    effect: str
+    torque: tuple[float, ...]
+    velocity: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Course:
+    """One recording over time, with the residuals of the model after each addition.
+
+    Attributes:
+        name: `recording` or `holdout`.
+        origin: of it.
+        time: s - (n,).
+        velocity: as measured - rad/s (m/s) - (n,).
+        velocity_left: measured less simulated, for each step (n,), nan outside the model; None without a model, or
+            if it diverged.
+        rows: index into the samples of each row of the torque balance (m,).
+        torque: as measured, filtered - N*m (N) - (m,).
+        torque_left: measured less modelled, for each step (m,).
+    """
+
+    name: str
+    origin: str
+    time: Array
+    velocity: Array
+    velocity_left: tuple[NDArray[np.float32] | None, ...]
+    rows: NDArray[np.int64]
+    torque: Array
+    torque_left: tuple[Array, ...]
+
+
+@dataclass(frozen=True)
+class Considered:
+    """An effect of the catalogue, and why it was accepted or not.
+
+    Attributes:
+        effect: of the catalogue.
+        taken: whether it is in the model.
+        probability: that the axis has it.
+        alone: share of the squared gap that it explains alone; None if it was not tried.
+        beside: share of the squared residual that it explains in addition to the others; None if it was not tried.
+        reason: for or against it.
+    """
+
+    effect: Effect
+    taken: bool
+    probability: float
+    alone: float | None
+    beside: float | None
+    reason: str
+
+
+@dataclass(frozen=True, repr=False)
+class Diagnosis(Presented):
+    """What is missing from the model of an axis, and the model with it; goes through its effects, or gives one by name.
+
+    Attributes:
+        verdict, effects, parameters: as the contract has them.
+        because: what speaks against its being all; empty unless something remains.
+        probabilities: of sets of names, and that none of the catalogue's is right.
+        where: shares of the gap before any effect; unexplained_share, unexplained_where: of what is left.
+        torque, velocity: gaps before and after.
+        bandwidth: of the cascade that held the models to the recordings - rad/s.
+        closed_loop: velocity gap under the rig's drive without and with what shows only there - rad/s (m/s).
+        refined: velocity gap of held-out motion before and after values were refined by simulation; None if not kept.
+        steps: the bare axis, then the model after each addition.
+        holdout: whether it is of the same axis, and in what it differs.
+        next_experiment: that tells apart what this recording does not.
+        rejected: names that held-out motion spoke against.
+        refused: why a parameter is not determined beside the effects, by its name; the model is the last that has all.
+        stopped: what ended the search before it was done; None if nothing did.
+        model, balance: with all effects; no model where MuJoCo cannot have them.
+        courses: the recordings over time beside the model as it grew.
+        profiles: the gap over each coordinate before and after, what accounts for most first.
+        considered: every effect of the catalogue, and why it was taken or not.
+        recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
+        warnings: what a user should know.
+        checks: what the gate found before the fit.
+    """
+
+    verdict: str
+    because: list[str]
+    effects: list[NamedEffect]
+    probabilities: Probabilities
+    where: list[Where]
+    unexplained_share: float
+    unexplained_where: list[Where]
+    parameters: dict[str, Parameter]
+    torque: Gap
+    velocity: Gap
+    bandwidth: float
+    closed_loop: tuple[float, float] | None
+    refined: tuple[float, float] | None
+    steps: list[Shrunk]
+    rejected: tuple[Rejected, ...]
+    refused: Mapping[str, str]
+    holdout: SameAxis
+    next_experiment: NextExperiment | None
+    stopped: str | None
+    model: StoredModel | None
+    balance: Balance
+    courses: tuple[Course, ...]
+    profiles: tuple[Profile, ...]
+    considered: tuple[Considered, ...]
+    recordings: tuple[Alone, ...] = ()
+    between: Mapping[str, Between] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+    checks: tuple[Check, ...] = ()
+
+    def __iter__(self) -> Iterator[NamedEffect]:
+        return iter(self.effects)
+
+    def __contains__(self, name: object) -> bool:
+        return name in {effect.name for effect in self}
+
+    def __getitem__(self, name: str) -> NamedEffect:
+        found = {effect.name: effect for effect in self}
+        if name not in found:
+            raise KeyError(f"{name}: found none{nearest(name, [*found])}; allowed: {', '.join(found) or 'none'}")
+        return found[name]
+
+    @classmethod
+    def load(cls, folder: str | Path) -> Diagnosis:
+        """The diagnosis of a folder that `save` wrote, with all that it draws.
+
+        Raises:
+            InputError: no such folder, or one of another version of the bench.
+        """
+        return unpack(Path(folder) / PACKED, cls)
+
+    @property
+    def mjspec(self) -> mujoco.MjSpec:
+        """The model as MuJoCo has it natively, to edit, attach or compile; InputError where MuJoCo cannot have it."""
+        if self.model is None:
+            raise InputError("mjspec", "MuJoCo cannot have this model", "its torque balance is in model.toml")
+        return mujoco.MjSpec.from_string(model_xml(self.model))
 
 
 def diagnose(
@@ -25,7 +224,7 @@ def diagnose(
     rig: Rig | str | Path,
     holdout: Given | None = None,
     excluded: Collection[str] = (),
-    progress: Progress = lambda share: None,
+    progress: Callable[[float], None] = lambda share: None,
     policy: Policy = POLICY,
 ) -> Diagnosis:
     """Find what is missing, name it, add it, and show the gap shrink.
@@ -58,5 +257,330 @@ def diagnose(
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
-    shown, checks = show(recordings, bare, located, suspects, added), joined([each.checks for each in gated])
+    shown, checks = show(bare, located, added), joined([each.checks for each in gated])
     return replace(shown, checks=checks, warnings=[*shown.warnings, *moves])
+
+
+def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
+    """The diagnosis of what was named and kept; `located`: where the gap of the bare fit sits."""
+    recordings, whole, kept = added.recordings, added.extension.fitted, added.refined
+    unit, kind, current = recordings.unit, recordings.rig.axis_kind, recordings.current
+    parameters, alone, spread, differing = apart(recordings, whole, kept.parameters)
+    shown = courses(added)
+    steps = shrinking(added, shown)
+    torque, velocity = gaps(added, steps)
+    likely = added.suspects.probabilities.without(frozenset(one.name for one in added.rejected))
+    comes_to, because = verdict(Shown(added, torque, velocity))
+    return Diagnosis(
+        verdict=comes_to,
+        because=because,
+        effects=kept.effects,
+        probabilities=likely,
+        where=located,
+        unexplained_share=whole.excess / max(bare.squares, 1e-300),
+        unexplained_where=where(whole, kind, unit, current)[:3] if because else [],
+        parameters=parameters,
+        recordings=alone,
+        between=spread,
+        torque=torque,
+        velocity=velocity,
+        bandwidth=added.gaps.bandwidth,
+        closed_loop=added.closed_loop,
+        refined=kept.gap,
+        steps=steps,
+        rejected=added.rejected,
+        refused=added.refused,
+        holdout=added.compared,
+        next_experiment=propose(added),
+        stopped=added.suspects.searched.stopped,
+        model=kept.model,
+        balance=Balance.of(whole).repeating(added.repeats),
+        courses=shown,
+        profiles=profiles(bare, whole, located, kind, unit, current),
+        considered=considered(added, likely),
+        warnings=[
+            *suspicions(recordings.trace, recordings.rig, kept.parameters),
+            *left_open(recordings.rows, kind),
+            *impacts(whole, unit),
+            *out_of_phase(added),
+            *differing,
+            *added.compared.warnings,
+            *([f"not added to the MuJoCo model: {problem}"] if (problem := added.stages[-1].problem) else []),
+        ],
+    )
+
+
+def courses(added: Added) -> tuple[Course, ...]:
+    """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
+    laid_out = [rows for rows in (added.recordings.rows, added.recordings.holdout_rows) if rows is not None]
+    balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.stages]
+    found = []
+    for rows, recorded in zip(laid_out, added.recorded, strict=True):
+        trace = recorded.trace
+        models = [stage.model for stage in added.stages]
+        if added.refined.gap is not None and added.refined.model is not None:
+            models[-1] = added.refined.model
+        left = [added.gaps.residual(model, recorded) for model in models]
+        along = recorded.name, trace.origin, trace.time, measured_velocity(trace), tuple(left), rows.samples()
+        found.append(Course(*along, rows.effort, tuple(balance.left(rows) for balance in balances)))
+    return tuple(found)
+
+
+def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
+    """Gaps of the bare axis and after each addition, the last one as it was kept."""
+    return [
+        Shrunk(
+            stage.names[-1] if stage.names else "",
+            tuple(rms(course.torque_left[k]) for course in shown),
+            tuple(math.nan if (left := course.velocity_left[k]) is None else known_rms(left) for course in shown),
+        )
+        for k, stage in enumerate(added.stages)
+    ]
+
+
+def gaps(added: Added, steps: Sequence[Shrunk]) -> tuple[Gap, Gap]:
+    """Torque and velocity gap of all effects together.
+
+    Of the torque over all rows; beside it what is left on those that judge the fit, where not all do. Of the velocity
+    None where MuJoCo cannot have the model or a simulation diverged.
+    """
+    whole, recordings = added.extension.fitted, added.recordings
+    torque = zip(steps[0].torque, steps[-1].torque, strict=True)
+    velocity = zip(steps[0].velocity, steps[-1].velocity, strict=True)
+    simulated = [pair if all(map(math.isfinite, pair)) else None for pair in velocity]
+    judged = None if whole.determined.all() else (float(whole.determined.mean()), whole.rms)
+    floor = white_noise(measured_velocity(recordings.trace))
+    return (
+        Gap(recordings.unit, whole.floor, *torque, judged=judged),
+        Gap(recordings.rig.axis_kind.speed_unit, floor, *simulated),
+    )
+
+
+def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, ...]:
+    """All effects: those accepted in the order of addition, then the others by the share they explain."""
+    rounds = rounds_of(added.suspects.searched)
+    kept = {one.effect: one for one in added.refined.effects}
+    found: dict[Effect, Considered] = {}
+    for effect in catalogue().values():
+        shares = [share for tried in rounds if (share := _share(tried, effect)) is not None]
+        if effect in kept:
+            figures = (f"{key.replace('_', ' ')} {value:.3g}" for key, value in kept[effect].evidence.items())
+            reason = ", ".join(figures) or "named"
+        else:
+            reason = _against(effect, added, rounds)
+        last = _share(rounds[-1], effect) if len(rounds) > 1 and effect not in kept else None
+        likely = probabilities.names.get(effect.name, 0.0)
+        found[effect] = Considered(effect, effect in kept, likely, shares[0] if shares else None, last, reason)
+    taken = [found.pop(effect) for effect in kept]
+    return (*taken, *sorted(found.values(), key=lambda one: -(one.alone or 0.0)))
+
+
+def rounds_of(searched: Searched) -> list[Step]:
+    """Rounds of a search: each fit with what was tried beside it; beside the last nothing was accepted."""
+    pairs = zip(searched.steps, searched.steps[1:], strict=False)
+    rounds = [Step(before.fitted, after.rivals) for before, after in pairs]
+    return rounds if searched.ended is None else [*rounds, searched.ended]
+
+
+def _share(tried: Step, effect: Effect) -> float | None:
+    """Share of the squared residual that an effect explains beside a fit; None if it was not tried."""
+    gains = [candidate.gain for candidate in tried.rivals if candidate.term.effect is effect]
+    return max(0.0, *gains) / max(tried.fitted.squares, 1e-300) if gains else None
+
+
+def _against(effect: Effect, added: Added, rounds: Sequence[Step]) -> str:
+    """Why an effect is not in the model: the first of these reasons that holds."""
+    suspects = added.suspects
+    rejected = {one.name: one.reason for one in added.rejected}
+    share = _share(rounds[-1], effect) if rounds else None
+    reasons = {
+        "was not to be tried": effect.name in suspects.excluded,
+        rejected.get(effect.name, ""): effect.name in rejected,
+        "was taken up and let go: the others explain it too, or another set of names is likelier": any(
+            effect is term.effect for tried in rounds for term in tried.fitted.terms
+        ),
+        "such a recording cannot show it": not effect.sought(added.recordings.rows.scope),
+        "no more than chance": share is not None
+        and share * rounds[-1].fitted.squares < suspects.policy.by_chance(rounds[-1].fitted, 1),
+        "too little, or with values that physics forbids": share is not None,
+        "the recording tells but one of it and what was taken": not suspects.searched.last.hypothesis.admits(effect),
+    }
+    return next((reason for reason, holds in reasons.items() if holds), "nothing in the recording points to it")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a diagnosis shows, as far as the verdict depends on it.
+
+    Attributes:
+        added: the effects accepted.
+        torque, velocity: gaps of the bare axis and of the model.
+    """
+
+    added: Added
+    torque: Gap
+    velocity: Gap
+
+    @property
+    def whole(self) -> Fit:
+        """The torque balance with all effects."""
+        return self.added.extension.fitted
+
+    @property
+    def effects(self) -> list[NamedEffect]:
+        """The named effects."""
+        return self.added.refined.effects
+
+    @property
+    def friction(self) -> dict[str, tuple[Parameter, float]]:
+        """Viscous and Coulomb friction, each with its RMS torque at unit strength."""
+        kind, whole, parameters = self.added.recordings.rig.axis_kind, self.whole, self.added.refined.parameters
+        return {
+            kind.parameter(term): (parameters[kind.parameter(term)], rms(whole.columns[:, whole.owners == term]))
+            for term in (VISCOUS, COULOMB)
+        }
+
+
+def remains(shown: Shown) -> str:
+    """The torque residual is clearly above noise: by what multiple of the floor."""
+    if not shown.added.suspects.policy.remains(shown.whole):
+        return ""
+    return f"what is left is {shown.whole.chi:.3g} times the noise"
+
+
+def refused(shown: Shown) -> str:
+    """A parameter is not determined beside the effects: the first, of which others follow, and why."""
+    reasons = (f"{words(name)} is not determined: {reason}" for name, reason in shown.added.refused.items())
+    return next(reasons, "")
+
+
+def unfinished(shown: Shown) -> str:
+    """The search ended at a limit, or found an effect that was excluded."""
+    stopped = shown.added.suspects.searched.stopped
+    return stopped or ("an effect that was not to be tried" if shown.added.suspects.withheld else "")
+
+
+def moves_worse(shown: Shown) -> str:
+    """The model moves worse than the bare axis, by more than noise: in the recording that shows it first."""
+    if not shown.effects:
+        return ""
+    gap, added = shown.velocity, shown.added
+    for recorded, pair in zip(added.recorded, (gap.identify, gap.holdout), strict=False):
+        if pair is None:
+            continue
+        allowed = math.hypot(pair[0], gap.noise_floor)
+        if pair[1] > allowed * (1.0 if added.gaps.in_phase(added.extension, recorded) else math.sqrt(ERRS_TWICE)):
+            name, before, after = recorded.name, *pair
+            return f"simulated motion of the {name} is worse with it: {before:.3g} -> {after:.3g} {gap.unit}"
+    return ""
+
+
+def undetermined(shown: Shown) -> str:
+    """A quantity is undetermined: its interval is wider than its value.
+
+    One that is minor, as a share between dry and viscous friction, does not count. A phase is wide if it may be
+    anywhere in its turn, an instant if it may be anywhere in the recording. Friction as wide counts where the torque
+    that it leaves open is more than noise.
+    """
+    if not shown.effects:
+        return ""
+    time = shown.added.recordings.trace.time
+    for one in shown.effects:
+        for quantity in (each for each in one.effect.quantities if not each.minor):
+            found = one.parameters.get(quantity.name)
+            itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
+            if found is not None and found.half_width > (abs(found.value) if itself is None else itself):
+                return f"{one.name}: {_with_interval(quantity.name, found)} is not determined"
+    for friction, (found, torque) in shown.friction.items():
+        if found.half_width > abs(found.value) and found.half_width * torque > shown.torque.noise_floor:
+            return f"{_with_interval(friction, found)} is not determined"
+    return ""
+
+
+def negative_friction(shown: Shown) -> str:
+    """Friction is negative by more than noise, so it includes something else."""
+    for friction, (found, torque) in shown.friction.items():
+        if found.value < 0.0 and (found.ci95[1] < 0.0 or -found.value * torque > shown.torque.noise_floor):
+            return f"{_with_interval(friction, found)} is negative"
+    return ""
+
+
+def holdout_apart(shown: Shown) -> str:
+    """The model does not hold on the holdout: how far that is off."""
+    gap = shown.torque
+    if gap.holdout is None or gap.identify is None:
+        return ""
+    least = max(gap.identify[1], gap.noise_floor)
+    if gap.holdout[1] <= shown.added.suspects.policy.holdout_gap * least:
+        return ""
+    return f"the holdout stands apart: {gap.holdout[1]:.3g} {gap.unit} are left there, {least:.3g} here"
+
+
+#: In the order in which they are listed.
+OBJECTIONS: tuple[Callable[[Shown], str], ...] = (
+    remains,
+    refused,
+    unfinished,
+    moves_worse,
+    undetermined,
+    negative_friction,
+    holdout_apart,
+)
+
+
+def verdict(shown: Shown) -> tuple[str, list[str]]:
+    """The verdict, and the objections that it rests on."""
+    against = [objected for objection in OBJECTIONS if (objected := objection(shown))]
+    if against:
+        return "unexplained_remainder", against
+    return ("explained" if shown.effects else "nothing_missing"), []
+
+
+def _with_interval(name: str, found: Parameter) -> str:
+    return f"{name.replace('_', ' ')} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"
+
+
+def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:
+    """Warnings: less inertia than the rotor alone has, or a signal that stands at the end of its range."""
+    inertia, rotor = parameters.get("moment_of_inertia"), rig.motor.rotor_inertia
+    if inertia is None or rotor is None or inertia.unit != "kg*m**2" or inertia.ci95[1] >= rotor:
+        return clipped(trace, rig)
+    return [
+        f"the moment of inertia, {inertia.value:.3g} kg*m**2, is less than the rotor's alone, {rotor:.3g} kg*m**2: "
+        "check the units of current and speed and the torque constant",
+        *clipped(trace, rig),
+    ]
+
+
+def left_open(rows: Rows, kind: AxisKind) -> list[str]:
+    """A warning of what motion in one direction does not determine."""
+    if not rows.scope.one_way:
+        return []
+    offset, friction = kind.parameter(OFFSET), kind.parameter(COULOMB)
+    forward = float(np.mean(rows.values(lambda s: s.sign))) > 0.0
+    return [
+        f"the axis moves {'forward' if forward else 'backward'} only: {friction} holds any "
+        f"{offset} too, and no effect on friction was sought; record both directions for that"
+    ]
+
+
+def impacts(fitted: Fit, unit: str) -> list[str]:
+    """A warning if rows that depend on the instants of impacts were excluded from the verdict."""
+    share = 1.0 - float(fitted.determined.mean())
+    if share == 0.0:
+        return []
+    return [
+        f"{100.0 * share:.0f} % of the rows follow impacts so closely that their torque hangs on instants which the "
+        f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
+        "gap counts all"
+    ]
+
+
+def out_of_phase(added: Added) -> list[str]:
+    """A warning of recordings along which simulated waves, or impacts, lose the phase of the measured motion."""
+    lost = [each.name for each in added.recorded if not added.gaps.in_phase(added.extension, each)]
+    return [
+        f"the simulated position leaves the {name}'s by more than waves or impacts allow: they are judged by their "
+        "torque at the measured position, and by the velocity gap where its squares double"
+        for name in lost
+    ]

@@ -1,27 +1,30 @@
-"""Name what is missing: in the torque balance by search, elsewhere by what the recording says of drive and sensor."""
+"""Name what is missing: in the torque balance by search, elsewhere by what the recording says of drive and sensor.
+
+Events stand out of what a search leaves, whatever that is: no name for the rest is needed to see them.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+
+import numpy as np
 
 from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import Probabilities, probabilities
+from bench.diagnosis.probability import Probabilities, neighbourhood, probabilities, scored
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import Searched, search
-from bench.diagnosis.standing_out import with_events
 from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detected, Effect
-from bench.effects.present import Present
+from bench.effects.effect import Detected, Effect, Occasional, Standout
 from bench.effects.signals import Axis
 from bench.fit.estimate import load_inertia
-from bench.fit.fit import Fit, fit, hint, unbiased
+from bench.fit.fit import Fit, fit, hint, shaped, unbiased
+from bench.fit.hypothesis import Term
 from bench.fit.quantities import uncertain
 from bench.parameter import Parameter
 
@@ -76,11 +79,6 @@ class Suspects:
     policy: Policy
     excluded: frozenset[str] = frozenset()
 
-    @property
-    def outside(self) -> tuple[Present, ...]:
-        """Effects outside the torque balance."""
-        return tuple(Present.of(effect.name, found.values) for effect, found in self.detected.items())
-
 
 def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy) -> Suspects:
     """The likeliest names of those that a search finds and their neighbours, and what the signals show directly."""
@@ -91,9 +89,35 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     likely = probabilities(hypotheses, frozenset(effect.name for effect in kept), policy)
     chosen = likely.fits[likely.chosen.names]
     last = with_events(chosen, effects, policy)
-    standing = {term.effect.name for term in last.terms[len(chosen.terms) :]}
-    likely, ending = likely.showing(standing), searched.ending(last)
-    return Suspects(ending, likely, kept, len(kept) < len(recordings.detected), policy, excluded)
+    standing = frozenset(term.effect.name for term in last.terms[len(chosen.terms) :])
+    likely = replace(likely, detected=likely.detected | standing)
+    withheld = len(kept) < len(recordings.detected)
+    return Suspects(searched.ending(last), likely, kept, withheld, policy, excluded)
+
+
+def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:
+    """The fit with the events that stand out of its remainder, each beside a parabola of what is left around it."""
+    if not policy.remains(fitted):
+        return fitted
+    for effect in (each for each in effects if isinstance(each, Occasional)):
+        for apart in effect.apart(fitted):
+            fitted = _with_event(fitted, effect, apart, policy)
+    return fitted
+
+
+def _with_event(fitted: Fit, effect: Occasional, apart: Standout, policy: Policy) -> Fit:
+    """With an event that saves more than chance does, and beside whose torque little is left around it."""
+    term = Term(effect, apart.shape, around=apart.around)
+    after = shaped(fitted.rows, fitted.hypothesis.plus(term), len(fitted.terms))
+    own = after.owners == len(fitted.terms)
+    others = np.linalg.qr(after.columns[:, ~own])[0]
+    alone = after.columns[:, own] - others @ (others.T @ after.columns[:, own])
+    saved = float(np.sum((alone @ after.theta[own]) ** 2))
+    near = (fitted.time >= apart.around[0]) & (fitted.time <= apart.around[1])
+    left = float(np.sum(after.residual[near] ** 2)) - np.count_nonzero(near) * fitted.floor**2
+    numbers = after.theta[own].size + len(term.shape)
+    found = saved > max(policy.by_chance(fitted, numbers), left / policy.beside_event)
+    return after if found and policy.physical(after) else fitted
 
 
 def named(

@@ -20,7 +20,6 @@ import numpy as np
 from bench.arrays import rms
 from bench.diagnosis.add import Added
 from bench.diagnosis.model import stored_model
-from bench.diagnosis.name import Suspects
 from bench.diagnosis.recordings import Recordings
 from bench.effects.acting import ConstantTorque
 from bench.effects.catalogue import catalogue
@@ -49,6 +48,8 @@ TELLS = 3.0
 COARSEST_TICK = 0.5e-3
 #: Share of the top speed below which the direction is uncertain, and least number of samples of certain direction.
 CLEAR, LEAST = 0.01, 50
+#: Names of two explanations, their models, and why both remain.
+Alternatives = tuple[tuple[str, str], tuple[AxisModel, AxisModel], str]
 
 
 @dataclass(frozen=True)
@@ -77,25 +78,16 @@ class NextExperiment:
     motion: References
 
 
-@dataclass(frozen=True)
-class Alternatives:
-    """Two explanations, as models."""
-
-    names: tuple[str, str]
-    models: tuple[AxisModel, AxisModel]
-    reason: str
-
-
-def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExperiment | None:
+def propose(added: Added) -> NextExperiment | None:
     """The experiment for the first two explanations that can be distinguished; None if only one remains."""
-    stored = added.refined.model
+    recordings, stored = added.recordings, added.refined.model
     if stored is None or recordings.rig.drive is None:
         return None
-    width, floor = recordings.rows.conditioning.filter.width, added.extension.whole.fitted.floor
-    for pair in alternatives(recordings, suspects, added, stored.model):
+    width, floor = recordings.rows.conditioning.filter.width, added.extension.fitted.floor
+    for names, models, reason in alternatives(added, stored.model):
         try:
             found = [
-                (separation(recordings, pair.models, references, width) / floor, name, references)
+                (separation(recordings, models, references, width) / floor, name, references)
                 for name, references in motions(recordings, stored.model)
             ]
         except BenchError:
@@ -106,11 +98,11 @@ def propose(recordings: Recordings, suspects: Suspects, added: Added) -> NextExp
             duration = float(references.time[-1])
             again = int(np.ceil(LONG_ENOUGH / duration))
             motion = references.repeated(again)
-            return NextExperiment(name, speed, acceleration, duration, again, pair.names, best, pair.reason, motion)
+            return NextExperiment(name, speed, acceleration, duration, again, names, best, reason, motion)
     return None
 
 
-def alternatives(recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel) -> Iterator[Alternatives]:
+def alternatives(added: Added, model: AxisModel) -> Iterator[Alternatives]:
     """Other explanations that remain, as models."""
     for effect in added.refined.effects:
         if not isinstance(effect.effect, MotionLag):
@@ -119,17 +111,15 @@ def alternatives(recordings: Recordings, suspects: Suspects, added: Added, model
             if isinstance(catalogue()[other], MotionLag):
                 kept = [present for present in model.effects if present.effect is not effect.effect]
                 models = model, model.with_effects([*kept, Present.of(other, effect.values)])
-                yield Alternatives((effect.name, other), models, "this recording cannot tell them apart")
-    yield from nearly_as_good(recordings, suspects, added, model)
-    if recordings.rows.scope.one_way:
-        yield from one_direction(recordings, added.extension.whole.fitted.base.coulomb, model)
+                yield (effect.name, other), models, "this recording cannot tell them apart"
+    yield from nearly_as_good(added, model)
+    if added.recordings.rows.scope.one_way:
+        yield from one_direction(added.recordings, added.extension.fitted.base.coulomb, model)
 
 
-def nearly_as_good(
-    recordings: Recordings, suspects: Suspects, added: Added, model: AxisModel
-) -> Iterator[Alternatives]:
+def nearly_as_good(added: Added, model: AxisModel) -> Iterator[Alternatives]:
     """Candidates that, instead of the effect accepted last, leave hardly more of the torque."""
-    whole, searched = added.extension.whole.fitted, suspects.searched
+    whole, searched = added.extension.fitted, added.suspects.searched
     if not whole.terms or whole.hypothesis != searched.last.hypothesis:
         return
     index = len(whole.terms) - 1
@@ -138,14 +128,14 @@ def nearly_as_good(
         rival = candidate.term.effect
         if rival.name in whole.hypothesis.names or rival.name in named.ambiguous(whole.scope):
             continue
-        other = fit(recordings.rows, whole.hypothesis.without(index).plus(candidate.term))
+        other = fit(added.recordings.rows, whole.hypothesis.without(index).plus(candidate.term))
         if other.rms < NEARLY * whole.rms:
             reason = f"{rival.name} leaves but {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
             try:
-                instead = stored_model(other, added.extension.outside, recordings.rig).model
+                instead = stored_model(other, added.extension.outside, added.recordings.rig).model
             except InputError:
                 continue
-            yield Alternatives((named.name, rival.name), (model, instead), reason)
+            yield (named.name, rival.name), (model, instead), reason
 
 
 def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Iterator[Alternatives]:
@@ -158,7 +148,7 @@ def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Itera
             nothing = replace(model.parameters, coulomb_friction=0.0)
             instead = replace(model, parameters=nothing, effects=(*model.effects, Present.of(effect.name, values)))
             models = replace(model, parameters=friction), instead
-            yield Alternatives(("coulomb_friction", effect.name), models, "the axis moved in one direction only")
+            yield ("coulomb_friction", effect.name), models, "the axis moved in one direction only"
 
 
 def motions(recordings: Recordings, model: AxisModel) -> list[tuple[str, References]]:

@@ -164,7 +164,10 @@ class Policy:
         """Whether every effect keeps within what physics allows: friction resists, masses are positive."""
         return (
             fitted.base.inertia > 0.0
-            and all(_physical(fitted, index) for index in range(len(fitted.terms)))
+            and all(
+                term.effect.physical(fitted.strengths(index), term.shape, fitted.base)
+                for index, term in enumerate(fitted.terms)
+            )
             and all(_plausible(fitted, effect) for effect in {term.effect for term in fitted.terms})
             and self.outlasts_impacts(fitted)
         )
@@ -223,12 +226,6 @@ class Policy:
         left, noise = float(np.sum(before.residual[after.determined] ** 2)), self.least_coloured(before, after) ** 2
         excess = max(left - after.count * noise, 0.0)
         return left - after.squares > max(share * excess, self.by_chance(before, 1, noise))
-
-
-def _physical(fitted: Fit, index: int) -> bool:
-    """Whether one term keeps within what physics allows."""
-    term = fitted.terms[index]
-    return term.effect.physical(fitted.strengths(index), term.shape, fitted.base)
 
 
 def _plausible(fitted: Fit, effect: Effect) -> bool:

@@ -1,30 +1,55 @@
 """How likely each set of names is, and that none of the catalogue's is right.
 
+A hypothesis about an axis is a set of effects with their shapes, some of them of no catalogue. It is held by what it
+leaves beyond noise, on the rows whose torque every hypothesis determines,
+
+    E = max(v - f**2, 0) + BESIDE_NOISE*f**2
+
+v - mean squared residual; f - noise floor, its colour that of the hypothesis that leaves least, as each one's own would
+turn a difference below the noise into evidence. A holdout adds what a hypothesis, of the strengths that the recording
+gave, leaves of it beyond twice what the best one does. Then
+
     ln P = -left*max(U, LEAST) - over*min(V, MUCH) - number*numbers + constant
 
-U, V - logarithms of what a set leaves beyond noise, over what the bare axis leaves and over noise; numbers - fitted
-(`bench.diagnosis.score`). What holds an effect from outside the catalogue weighs `outside` less and, together with a
-constant weight for what was not tried, makes up "none of the catalogue"; of names beside such an effect the share
-`beside` is there. The weights, of `bench.diagnosis.policy`, are those under which recordings whose truth is known were
-likeliest (`python -m tests.studies.certainty`). The likelihood of the recording itself adds nothing to U and V: its
-weight beside them came out as zero.
+U, V - logarithms of E over that of the bare axis and over that of noise alone; numbers - fitted. What holds an effect
+from outside the catalogue weighs `outside` less and, together with a constant weight for what was not tried, makes up
+"none of the catalogue"; of names beside such an effect the share `beside` is there. The weights, of
+`bench.diagnosis.policy`, are those under which recordings whose truth is known were likeliest (`python -m
+tests.studies.certainty`). The likelihood of the recording itself adds nothing to U and V: its weight beside them came
+out as zero.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from bench.diagnosis.policy import Policy
-from bench.diagnosis.score import Contender
-from bench.effects.effect import Effect
-from bench.effects.rivals import Outside
+from bench.arrays import Array
+from bench.diagnosis.policy import Policy, freedom
+from bench.diagnosis.search import Candidate, Searched, backward_elimination, candidates, refined, settled
+from bench.effects.catalogue import simpler_forms
+from bench.effects.effect import Coupling, Effect, Occasional
+from bench.effects.rivals import RIVALS, WAVES, Outside
 from bench.effects.signals import Scope
-from bench.fit.fit import Fit
+from bench.effects.waves import Wave
+from bench.fit.fit import Fit, fit
+from bench.fit.hypothesis import Term, lay_out
+from bench.fit.rows import Rows
+from bench.fit.stored import Balance
 
+#: Noise power beside which what is left beyond noise no longer counts.
+BESIDE_NOISE = 0.03
+#: Blocks that a holdout is judged in, and residual over noise floor above which no hypothesis explains one.
+BLOCKS, EXPLAINED = 32, 3.0
+#: Power over the best hypothesis' up to which a holdout says nothing, as strengths and shapes have errors: true names
+#: of the blind set left 1.8 there.
+UNSURE = 2.0
+#: Candidates beyond the last step of a search that are hypotheses, too.
+NEXT = 2
 #: Least of U: what is left is no more than noise.
 LEAST = -9.0
 #: Largest V that counts: real axes leave more than noise whatever is named.
@@ -105,10 +130,6 @@ class Probabilities:
         before = np.cumsum([0.0, *(share for share, _ in ranked)])[:-1]
         return [names for (_, names), sure in zip(ranked, before, strict=True) if sure < level]
 
-    def showing(self, names: Collection[str]) -> Probabilities:
-        """Given that what is left shows some names directly."""
-        return replace(self, detected=self.detected | frozenset(names)) if names else self
-
     def without(self, names: frozenset[str]) -> Probabilities:
         """Given that something else is in the place of some names: what held-out motion spoke against.
 
@@ -125,9 +146,164 @@ class Probabilities:
         return Probabilities(tuple(sets), self.none + lost, self.detected - names, beside)
 
 
+@dataclass(frozen=True)
+class Contender:
+    """A hypothesis, and what speaks for it.
+
+    Attributes:
+        fitted: to the recording.
+        left: logarithm of what it leaves beyond noise over what the bare axis leaves.
+        over: the same over BESIDE_NOISE of the noise.
+        numbers: fitted beyond those of the bare axis.
+        outside: whether it has an effect that no catalogue holds.
+    """
+
+    fitted: Fit
+    left: float
+    over: float
+    numbers: int
+    outside: bool
+
+
+def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) -> Iterator[Fit]:
+    """The steps of a search, its result less each effect, the next best beside it and in place of each, and rivals.
+
+    Rivals are simpler forms of an effect, a wave of another form in the place of waves, and the best effect from
+    outside the catalogue beside the result and in the place of each of its names, and of all that it leaves nothing to;
+    those `excluded` are not tried.
+    """
+    last = searched.last
+    yield from (step.fitted for step in searched.steps)
+    less: Sequence[Fit] = searched.less if searched.ended is not None and searched.ended.fitted is last else ()
+    if not less:
+        less = [settled(fit(last.rows, last.hypothesis.without(index)), policy) for index in range(len(last.terms))]
+    if len(less) > 1:
+        yield from less
+    for instead in searched.instead:
+        if policy.undecided(last, instead):
+            yield from (instead, backward_elimination(instead, policy))
+    yield from _instead_of_the_last(searched, policy)
+    if searched.ended is not None:
+        yield from _promising(searched.ended.fitted, searched.ended.rivals[:NEXT], policy)
+    for index, term in enumerate(last.terms):
+        for form in simpler_forms(term.effect, last.scope):
+            if form.name not in excluded:
+                yield fit(last.rows, last.hypothesis.with_term(index, Term(form)))
+    yield from _of_other_form(last, policy)
+    rivals = [effect for effect in RIVALS if effect.name not in excluded]
+    beside_waves = [term for term in last.terms if not isinstance(term.effect, Wave)]
+    several = len(last.terms) - len(beside_waves) > 1
+    waveless = [fit(last.rows, last.hypothesis.with_terms(beside_waves))] if several else []
+    for beside in filter(policy.remains, (last, *less, *waveless)):
+        for rival in _promising(beside, candidates(beside, rivals)[:1], policy):
+            yield from (rival, backward_elimination(rival, policy))
+
+
+def _instead_of_the_last(searched: Searched, policy: Policy) -> Iterator[Fit]:
+    """What was nearly as good as the name that was taken up last, in its place."""
+    rivals, taken = searched.steps[-1].rivals, {term.effect for term in searched.last.terms}
+    as_good = [each for each in rivals if each.gain > policy.as_good * rivals[0].gain]
+    others = [each for each in as_good if each.term.effect not in taken]
+    if others:
+        found = _promising(searched.steps[-2].fitted, others[:NEXT], policy)
+        yield from (each for each in found if policy.undecided(searched.steps[-1].fitted, each))
+
+
+def _of_other_form(last: Fit, policy: Policy) -> Iterator[Fit]:
+    """A wave of any form in the place of those of one number, if they leave a remainder or are several.
+
+    Of each form alone, too, in the place of several.
+    """
+    waves = [term for term in last.terms if isinstance(term.effect, Wave)]
+    numbers = [term.effect.wave_number(term.shape) for term in waves if isinstance(term.effect, Wave)]
+    for number in sorted(set(numbers)):
+        replaced = [term for term, own in zip(waves, numbers, strict=True) if own == number]
+        kept = last.hypothesis.with_terms(term for term in last.terms if term not in replaced)
+        rivals = WAVES if len(replaced) > 1 else WAVES[:1] if policy.remains(last) else ()
+        yield from (fit(last.rows, kept.plus(Term(rival, (number,)))) for rival in rivals)
+
+
+def _promising(beside: Fit, found: Sequence[Candidate], policy: Policy) -> Iterator[Fit]:
+    tried = (refined(beside, each.term) for each in found if policy.promises(beside, each.gain))
+    return (after for after in tried if not policy.only_damps(beside, after))
+
+
+def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[Contender]:
+    """Hypotheses that physics allows, the first of them the bare axis, with what speaks for each.
+
+    Of several with the same effects it is the one that leaves least.
+    """
+    best: dict[frozenset[tuple[Effect, int]], Fit] = {frozenset(): tried[0]}
+    for each in tried[1:]:
+        effects = frozenset(Counter(term.effect for term in each.terms).items())
+        # a search may pass a coupling that hardly rings but not end with it
+        credible = all(term.effect.credible(term.shape) for term in each.terms if isinstance(term.effect, Coupling))
+        if policy.physical(each) and credible:
+            best[effects] = min(best.get(effects, each), each, key=lambda fitted: fitted.squares)
+    physical = list(best.values())
+    determined = np.logical_and.reduce([each.determined for each in physical])
+    power = np.array([np.mean(each.left[determined] ** 2) for each in physical])
+    white = np.array([each.noise.white**2 for each in physical])
+    nearest = physical[int(np.argmin(power / white))]
+    floor = white * (nearest.floor / nearest.noise.white) ** 2
+    excess = np.maximum(power - floor, 0.0)
+    if holdout is not None:
+        excess += _on_holdout(physical, holdout, floor)
+    left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: what damps it leaves no less for that
+    over = np.log1p(excess / (BESIDE_NOISE * floor))
+    numbers = [freedom(each) - freedom(tried[0]) for each in physical]
+    outside = [any(isinstance(term.effect, Outside) for term in each.terms) for each in physical]
+    columns = (left - left[0]).tolist(), over.tolist(), numbers, outside
+    return [Contender(*each) for each in zip(physical, *columns, strict=True)]
+
+
+def _on_holdout(physical: Sequence[Fit], holdout: Rows, floor: Array) -> Array:
+    """What each hypothesis leaves of a holdout beyond the best one, by the strengths of the recording (h,).
+
+    In blocks that some hypothesis explains, as it may hold an event of its own; but who claims that what happens is an
+    event has to explain those, too.
+    """
+    blocks = np.stack([_blocks(each, holdout) for each in physical], axis=1)
+    explained = (blocks < EXPLAINED**2 * floor).any(axis=1)
+    if not explained.any():
+        return np.zeros(len(physical))
+    power = blocks[explained].mean(axis=0)
+    eventful = np.array([any(isinstance(term.effect, Occasional) for term in each.terms) for each in physical])
+    least = UNSURE * np.maximum(power.min(), floor)
+    return np.maximum(np.where(eventful, blocks.mean(axis=0), power) - least, 0.0)
+
+
+def _blocks(fitted: Fit, holdout: Rows) -> Array:
+    """Mean squares left of a holdout in BLOCKS stretches, each event there or not as it leaves less (b,).
+
+    What the recording does not tell of an event, as when it began while the axis stood, is as leaves less, too.
+    """
+    balance = Balance.of(fitted).repeating(True)
+    events = [
+        (k, term.effect, term.shape) for k, term in enumerate(fitted.terms) if isinstance(term.effect, Occasional)
+    ]
+    for index, effect, shape in events:
+        alike = effect.indistinct(shape, fitted.time, fitted.scope)
+        if len(alike) > 1:
+            tried = [replace(balance, hypothesis=balance.hypothesis.reshaped(index, each)) for each in alike]
+            balance = min(tried, key=lambda each: each.gap(holdout))
+    left, layout = balance.left(holdout), lay_out(holdout, balance.hypothesis)
+    for index, *_ in events:
+        own = layout.owners == index
+        without = left + layout.columns[:, own] @ balance.theta[own]
+        left = min(left, without, key=lambda residual: float(residual @ residual))
+    return np.array([float(np.mean(part**2)) for part in np.array_split(left, BLOCKS) if part.size])
+
+
 def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy: Policy) -> Probabilities:
     """Of hypotheses beside each other, the first of them the bare axis, and of names that the signals show directly."""
-    logs = [_log(each, policy) for each in scored]
+    logs = [
+        -policy.left * max(each.left, LEAST)
+        - policy.over * min(each.over, MUCH)
+        - policy.number * each.numbers
+        - policy.outside * each.outside
+        for each in scored
+    ]
     weights = np.exp(np.array([*logs, policy.none]) - max(*logs, policy.none))
     shares = (weights / weights.sum()).tolist()
     ranked = sorted(zip(scored, shares, strict=False), key=lambda one: (one[0].outside, -one[1]))
@@ -145,16 +321,6 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
             shared[names] = shared.get(names, 0.0) + share
     sets = sorted((NameSet(*each) for each in shared.items()), key=lambda one: -one.probability)
     return Probabilities(tuple(sets), 1.0 - sum(each.probability for each in sets), detected, beside, fits)
-
-
-def _log(one: Contender, policy: Policy) -> float:
-    """Logarithm of a hypothesis' weight."""
-    return (
-        -policy.left * max(one.left, LEAST)
-        - policy.over * min(one.over, MUCH)
-        - policy.number * one.numbers
-        - policy.outside * one.outside
-    )
 
 
 def _called(effect: Effect, scope: Scope, called: dict[str, str]) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS, AxisKind
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.policy import POLICY
 from bench.effects.acting import FilteredSignal
 from bench.effects.catalogue import catalogue
@@ -181,32 +181,20 @@ def _require_another(trace: Trace, holdout: Trace) -> None:
 
 def _require_decidable(trace: Trace, rig: Rig, rows: Rows) -> None:
     """Refuse a recording that is too short, too quiet, or whose rows determine no inertia and friction."""
-    _require_length(trace, rows)
+    conditioning, found = rows.conditioning, rows.effort.size / rows.correlation
+    if found < INDEPENDENT:
+        moving = rows.effort.size * conditioning.filter.stride * conditioning.filter.sample_period
+        raise UndeterminedError(
+            WHAT,
+            f"{moving:.2g} s of {trace.time[-1] - trace.time[0]:.3g} s move clearly in one direction, "
+            f"{found:.0f} independent samples where {INDEPENDENT} are needed",
+            f"at least {moving * INDEPENDENT / found:.2g} s of such motion in both directions: "
+            f"{clear_motion(conditioning, trace.axis_kind)}",
+        )
     equations = equations_of(rows, lay_out(rows, plain(rows)))
     require_inertia(equations, rig.axis_kind)
     require_friction(equations, rig.axis_kind)
-    base = fit(rows, plain(rows))
-    _require_acceleration(base, rig.axis_kind)
-    _require_above_noise(base, rig.net_effort(trace)[1])
-
-
-def _require_length(trace: Trace, rows: Rows) -> None:
-    smooth = rows.conditioning.filter
-    found = rows.effort.size / rows.correlation
-    if found >= INDEPENDENT:
-        return
-    moving = rows.effort.size * smooth.stride * smooth.sample_period
-    raise UndeterminedError(
-        WHAT,
-        f"{moving:.2g} s of {trace.time[-1] - trace.time[0]:.3g} s move clearly in one direction, "
-        f"{found:.0f} independent samples where {INDEPENDENT} are needed",
-        f"at least {moving * INDEPENDENT / found:.2g} s of such motion in both directions: "
-        f"{clear_motion(rows.conditioning, trace.axis_kind)}",
-    )
-
-
-def _require_acceleration(base: Fit, kind: AxisKind) -> None:
-    conditioning, unit = base.rows.conditioning, kind.acceleration_unit
+    base, unit = fit(rows, plain(rows)), rig.axis_kind.acceleration_unit
     noise, moved = conditioning.acceleration_noise, rms(base.columns[:, base.owners == INERTIA])
     if noise**2 > NOISY * moved**2:
         raise UndeterminedError(
@@ -214,6 +202,7 @@ def _require_acceleration(base: Fit, kind: AxisKind) -> None:
             f"acceleration is {moved:.3g} {unit} RMS, {noise:.3g} {unit} of it noise of {conditioning.source}",
             f"accelerations above {noise / math.sqrt(NOISY):.3g} {unit} RMS, or a finer {conditioning.source}",
         )
+    _require_above_noise(base, rig.net_effort(trace)[1])
 
 
 def _require_above_noise(base: Fit, unit: str) -> None:

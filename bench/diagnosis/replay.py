@@ -1,32 +1,42 @@
-"""Replay: a model run along a recording, measured and simulated signals side by side."""
+"""A model run along a recording: held to it softly, both side by side, or let free.
+
+Let free, it begins as the sensors have the axis, driven by the recorded torque, and is held by nothing.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bench.arrays import Array, known_rms
+from bench.arrays import Array, known_rms, rms
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.model import holding_bandwidth, without_events
-from bench.errors import InputError, UndeterminedError
+from bench.diagnosis.model import holding_bandwidth, tracking
+from bench.errors import InputError, SimulationError, UndeterminedError
 from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
 from bench.plant.model_file import StoredModel, load_model, read_table
-from bench.plant.tracking import SoftTracking, track
+from bench.plant.tracking import SoftTracking, Tracked, run_free, track
 from bench.rig.given import Given, rig_of, trace_of
 from bench.rig.rig import Rig
 from bench.structured import csv_text
-from bench.trace.motion import measured_position, measured_velocity
-from bench.trace.trace import Trace, less_known
+from bench.trace.motion import measured_position, measured_velocity, stretches_of
+from bench.trace.trace import Trace
 
 #: Share of a recording's torque that the model of its axis does not leave unexplained.
 LEFT = 0.2
+#: Longest that it is let free - s -, and how many windows begin within the length of one.
+LONGEST, BEGIN = 5.0, 4
+#: After so long it is shown how far off it is, and begins anew where that is shown - s.
+HORIZONS = (0.5, 1.0, 2.0, 5.0)
+#: How a model is run that a weak cascade keeps near its recording, with and without its effects.
+HELD, BARE = "held softly", "held, without what was found"
 
 
 @dataclass(frozen=True, repr=False)
@@ -103,7 +113,6 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     rig = rig_of(rig)
     trace = trace_of(trace, rig)
     path, table, balance, stored = parts_of(model, rig)
-    effort, unit = rig.own_effort(trace)
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
         rows = Rows.of(trace, rig, width=balance.width, every=True, peak_effort=peak)
@@ -119,7 +128,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     position, velocity = np.full((2, len(trace)), np.nan)
     measured = measured_position(trace), measured_velocity(trace)
     if stored is not None:
-        held = driven(stored, balance, trace, effort)
+        held = tracking(stored, trace, rig, balance.recording in (EVERY, trace.origin))
         tracked = track(held, holding_bandwidth(held.model, float(np.abs(measured[1]).max())))
         position, velocity = tracked.position, tracked.velocity
     warnings = []
@@ -129,14 +138,9 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
     if left > LEFT:
         warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
     moved = measured[0], position, measured[1], velocity
-    return Replay(trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, unit, tuple(warnings))
-
-
-def driven(stored: StoredModel, balance: Balance, trace: Trace, effort: Array) -> SoftTracking:
-    """The model, and what drives it along a recording: an event is of the recording that it happened in."""
-    happening = balance.recording in (EVERY, trace.origin)
-    moving = stored.model if happening else without_events(stored.model)
-    return SoftTracking(moving, trace, effort, stored.misalignment, known=effort - less_known(trace, effort))
+    return Replay(
+        trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, rig.own_effort(trace)[1], tuple(warnings)
+    )
 
 
 def parts_of(
@@ -144,19 +148,16 @@ def parts_of(
 ) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
     """Of a model of the rig's kind: where it is from, kind and name, its torque balance, what MuJoCo runs of it."""
     if isinstance(model, Diagnosis):
-        stored = model.model
-        table = {} if stored is None else {"kind": stored.model.parameters.kind.name, "name": stored.name}
-        _require_kind("diagnosis", table, rig)
-        return "diagnosis", table, model.balance, stored
-    table = read_table(model)
-    _require_kind(model, table, rig)  # before its parameters are read, as those of that kind
-    return model, table, load_balance(model), load_model(model) if "parameters" in table else None
-
-
-def _require_kind(path: str | Path, table: Mapping[str, Any], rig: Rig) -> None:
+        path, one = "diagnosis", model.model
+        table = {} if one is None else {"kind": one.model.parameters.kind.name, "name": one.name}
+    else:
+        path, table = model, read_table(model)
     kind = table.get("kind", rig.kind)
-    if kind != rig.kind:
+    if kind != rig.kind:  # before parameters are read, as those of that kind
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
+    if isinstance(model, Diagnosis):
+        return path, table, model.balance, model.model
+    return path, table, load_balance(model), load_model(model) if "parameters" in table else None
 
 
 def load_balance(path: str | Path) -> Balance:
@@ -191,3 +192,108 @@ def _require_sound(balance: Balance, where: str) -> None:
         if len(term.shape) != size or not np.isfinite(term.shape).all():
             found = f"found {list(term.shape)}"
             raise InputError(f"{where}.effects: {term.effect.name}.shape", found, f"allowed: {size} finite numbers")
+
+
+@dataclass(frozen=True)
+class FreeRun:
+    """How far off a model runs, over the time since it was let free.
+
+    Attributes:
+        time: since then - s (n,).
+        position, velocity: RMS over windows of simulated less measured - rad (m), rad/s (m/s) - (n,).
+        windows: how many.
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    windows: int
+
+
+def let_free(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> FreeRun | None:
+    """Run a model from many moments of a recording by itself; None where it holds no motion.
+
+    Windows of 5 s, or of half of the longest stretch without holes, begin every quarter of one. Noise of the sensors at
+    the moment at which a window begins stays in its motion.
+
+    Raises:
+        InputError: as `bench.replay`.
+        SimulationError: the model diverged.
+    """
+    held = _held(model, trace, rig)
+    if held is None:
+        return None
+    stretches = stretches_of(trace)
+    length = min(round(LONGEST / trace.sample_period) + 1, max(part.stop - part.start for part in stretches) // 2)
+    every = max(length // BEGIN, 1)
+    windows = [slice(k, k + length) for part in stretches for k in range(part.start, part.stop - length + 1, every)]
+    position, velocity, runs = measured_position(trace), measured_velocity(trace), _free(held, windows)
+    off = [one.position - position[part] for one, part in zip(runs, windows, strict=True)]
+    late = [one.velocity - velocity[part] for one, part in zip(runs, windows, strict=True)]
+    time = trace.sample_period * np.arange(length, dtype=np.float64)
+    position_off, velocity_off = (np.array([rms(column) for column in np.transpose(each)]) for each in (off, late))
+    return FreeRun(time, position_off, velocity_off, len(windows))
+
+
+def otherwise(
+    model: Diagnosis | str | Path, trace: Trace, rig: Rig, horizons: Sequence[float] = HORIZONS
+) -> dict[str, Array]:
+    """Positions of a model that is let free anew every so often, by how often - rad (m) - (n,).
+
+    None of them where the model holds no motion, the recording is shorter, or the model diverged.
+
+    Raises:
+        InputError: as `bench.replay`.
+    """
+    held, found = _held(model, trace, rig), dict[str, Array]()
+    if held is None:
+        return found
+    for horizon in horizons:
+        windows, position = windows_of(trace, horizon), np.full(len(trace), np.nan)
+        if not any(part.stop - part.start == round(horizon / trace.sample_period) for part in windows):
+            continue
+        with suppress(SimulationError):
+            for part, one in zip(windows, _free(held, windows), strict=True):
+                position[part] = one.position
+            found[f"let free every {horizon:g} s"] = position
+    return found
+
+
+def windows_of(trace: Trace, horizon: float) -> list[slice]:
+    """Windows of so long - s -, one after the other, the last one of each stretch without holes as long as that is."""
+    length = max(round(horizon / trace.sample_period), 2)
+    return [
+        slice(start, min(start + length, part.stop))
+        for part in stretches_of(trace)
+        for start in range(part.start, part.stop - 1, length)
+    ]
+
+
+def bare(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> Array | None:
+    """Position of a model without its effects, held softly - rad (m) - (n,); None where it has none, or diverged.
+
+    Raises:
+        InputError: as `bench.replay`.
+    """
+    held = _held(model, trace, rig)
+    if held is None or not held.model.effects:
+        return None
+    without, top = held.model.with_effects([]), float(np.nanmax(np.abs(measured_velocity(trace))))
+    with suppress(SimulationError):
+        return track(replace(held, model=without), holding_bandwidth(without, top)).position
+    return None
+
+
+def _held(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> SoftTracking | None:
+    """A model and what drives it along a recording; None where it holds no motion."""
+    _, _, balance, stored = parts_of(model, rig)
+    return None if stored is None else tracking(stored, trace, rig, balance.recording in (EVERY, trace.origin))
+
+
+def _free(held: SoftTracking, windows: Sequence[slice]) -> list[Tracked]:
+    """Its motion in windows, in the recording's position."""
+    runs, position = run_free(held, windows), measured_position(held.trace)
+    if "position" in held.trace:
+        return runs
+    begun = (position[part.start] for part in windows)  # a run counts from zero, as an integral does
+    return [replace(one, position=one.position + at) for one, at in zip(runs, begun, strict=True)]

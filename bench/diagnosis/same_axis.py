@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -100,30 +100,20 @@ def _beyond(factor: float, found: Difference) -> bool:
     return found.outside(1.0 / factor - 1.0, factor - 1.0, SURE)
 
 
-@dataclass(frozen=True)
-class Apart:
-    """How recordings differ.
+def apart(
+    recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter]
+) -> tuple[dict[str, Parameter], tuple[Alone, ...], dict[str, Between], list[str]]:
+    """The model with all effects, and its parameters, compared to it fitted to each of several recordings alone.
 
-    Attributes:
-        parameters: of all together, with intervals that count it.
-        recordings: J, K_w and K_0 of each alone, beside the effects that were found; () of one.
-        between: their spread, of what at least two tell.
-        warnings: in what they differ.
+    Returns:
+        Its parameters, with intervals that count how recordings differ; J, K_w and K_0 of each recording alone, beside
+        the effects that were found, () of one; their spread, of what at least two tell; and warnings.
     """
-
-    parameters: dict[str, Parameter]
-    recordings: tuple[Alone, ...] = ()
-    between: Mapping[str, Between] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
-
-
-def apart(recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter]) -> Apart:
-    """The model with all effects, and its parameters, compared to it fitted to each of several recordings alone."""
     found = dict(parameters)
     if not recordings.trace.joined:
-        return Apart(found)
+        return found, (), {}, []
     alone = _each(recordings, whole)
-    warnings, spread = [], {}
+    warnings, spread = list[str](), dict[str, Between]()
     for name in filter(found.__contains__, recordings.base_units):
         own = [one.parameters[name] for one in alone if name in one.parameters]
         if len(own) < 2:
@@ -134,7 +124,7 @@ def apart(recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter
         if differ.chance < ALARM / len(recordings.base_units):
             warnings.append(spread_warning(name, own))
     found |= load_inertia(found, recordings.rig)
-    return Apart(found, alone, spread, tuple(warnings))
+    return found, alone, spread, warnings
 
 
 def widened(found: Parameter, differ: Excess, own: Sequence[Parameter]) -> Parameter:

@@ -54,12 +54,14 @@ class Searched:
         steps: the first without an effect.
         stopped: what ended it before it was done; None if nothing did.
         ended: the fit to which nothing more was added, and what was tried beside it; None without a search.
+        less: that fit without each of its terms, the shapes of the others settled; () of one term or none.
         instead: that fit with one of its earlier names exchanged for what was nearly as good.
     """
 
     steps: tuple[Step, ...]
     stopped: str | None = None
     ended: Step | None = None
+    less: tuple[Fit, ...] = ()
     instead: tuple[Fit, ...] = ()
 
     @property
@@ -87,18 +89,11 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
         if policy.leaves_room(found.last, effect):
             found = replacement(found, effect, effects, policy) or found
     if policy.remains(found.last) and found.stopped is None:
-        found = many_small(found, effects, policy)
+        # Of seven small effects at once the last four took 11 to 18 % each, and all of it together. Where they do not
+        # end it, as on real axes, each may be anything.
+        further = selected(found, effects, policy.patient)
+        found = further if further.last.excess < policy.nearly_all * found.last.excess else found
     return found
-
-
-def many_small(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
-    """The search with effects that each explain little of what is left, if together they explain nearly all of it.
-
-    Of seven small effects at once the last four took 11 to 18 % each, and all of it together. Where they do not end it,
-    as on real axes, each may be anything.
-    """
-    further = selected(found, effects, policy.patient)
-    return further if further.last.excess < policy.nearly_all * found.last.excess else found
 
 
 def selected(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
@@ -145,9 +140,9 @@ def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy
         finalists = [physical_form(after, effects, policy) for after in finalists]
         better = [after for after in finalists if policy.accepts(current, after)]
         if not better:
-            fewer = backward_elimination(current, policy, settling=True)
+            fewer, less = settled_elimination(current, policy)
             if fewer is current:
-                return Searched(steps, ended=Step(current, tuple(tried)))
+                return Searched(steps, ended=Step(current, tuple(tried)), less=less)
             steps = (*steps, Step(fewer, tuple(tried)))
             continue
         best = min(better, key=lambda after: after.squares)
@@ -213,19 +208,29 @@ def on_its_side(fitted: Fit, policy: Policy) -> Fit:
     return min(fitted, moved, key=lambda found: found.squares)
 
 
-def backward_elimination(fitted: Fit, policy: Policy, settling: bool = False) -> Fit:
-    """Without the terms that no longer explain anything beside the later ones.
-
-    The shapes of the others settle where they are without a term that is let go; `settling`: before that is decided.
-    """
+def backward_elimination(fitted: Fit, policy: Policy) -> Fit:
+    """Without the terms that no longer explain anything beside the later ones; then the shapes of the others settle."""
     for index in range(len(fitted.terms) - 1, -1, -1):
         if len(fitted.terms) < 2:
             break
         less = fit(fitted.rows, fitted.hypothesis.without(index))
-        less = settled(less, policy) if settling else less
         if not policy.needs(fitted, less, index):
-            fitted = less if settling else settled(less, policy)
+            fitted = settled(less, policy)
     return fitted
+
+
+def settled_elimination(fitted: Fit, policy: Policy) -> tuple[Fit, tuple[Fit, ...]]:
+    """The same where the others settle before it is decided; and the fits against which terms were kept."""
+    kept: list[Fit] = []
+    for index in range(len(fitted.terms) - 1, -1, -1):
+        if len(fitted.terms) < 2:
+            break
+        less = settled(fit(fitted.rows, fitted.hypothesis.without(index)), policy)
+        if policy.needs(fitted, less, index):
+            kept.insert(0, less)
+        else:
+            fitted = less
+    return fitted, tuple(kept)
 
 
 def settled(less: Fit, policy: Policy) -> Fit:

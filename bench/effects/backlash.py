@@ -30,8 +30,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, splined, symmetric_inverse
 from bench.effects.acting import Native, Spec, Spring, add_coupling_joint
-from bench.effects.effect import Contact, Coupling, Fitted, Load, Replacing
-from bench.effects.shape import FREQUENCY, Shape, Shapes, extended
+from bench.effects.effect import FREQUENCY, Contact, Coupling, Fitted, Load, Replacing, Shape, Shapes, extended
 from bench.effects.signals import Axis, Base, Number, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -92,7 +91,6 @@ class Backlash(Replacing, Coupling, Contact, Native):
     replaces = frozenset({"elastic_coupling", "current_loop_lag"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Load's acceleration less the motor's."""
         return self.columns_of(signals, [shape])
 
     def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
@@ -108,11 +106,9 @@ class Backlash(Replacing, Coupling, Contact, Native):
         return -np.ones_like(omega)
 
     def wave_number(self, shape: Sequence[float]) -> float:
-        """Of the gap."""
         return 2.0 * np.pi / shape[0]
 
     def period(self, shape: Sequence[float]) -> float:
-        """Of the contact's frequency."""
         return 2.0 * np.pi / shape[1]
 
     def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:
@@ -125,7 +121,6 @@ class Backlash(Replacing, Coupling, Contact, Native):
         return np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
 
     def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
-        """By likelihood over gaps and contacts."""
         return likeliest_shape(fitted, promises)
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
@@ -324,9 +319,15 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
     None where no shape of the first grid takes squares that promise more.
     """
 
-    def likeliest(shapes: Array, columns: Array) -> list[Likely]:
-        found = (_likely(fitted, shape, column) for shape, column in zip(shapes, columns.T, strict=True))
-        return sorted(found, key=lambda likely: likely.misfit)
+    def likeliest(shapes: Array, columns: Array) -> Likely:
+        found = []
+        for shape, column in zip(shapes, columns.T, strict=True):
+            theta, unlikely = cauchy(np.vstack([fitted.columns.T, column]), fitted.effort, SCALE * fitted.floor)
+            rate, stiffness = float(shape[3]), _stiffness(fitted, theta[:-1])
+            if rate > 0.0 and theta[-1] > 0.0 and stiffness > 0.0:
+                rate = stiffness / float(theta[-1])
+            found.append(Likely(shape, float(unlikely.sum()), rate))
+        return min(found, key=lambda likely: likely.misfit)
 
     travel = fitted.scope.rms_speed * fitted.scope.width
     contacts = contacts_of(fitted.scope)
@@ -334,19 +335,16 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
     pulled = max(_stiffness(fitted, fitted.theta), 0.0) / load if load > 0.0 else 0.0  # by a spring on the load's side
     axes = [np.array(contacts), np.array(GAPS) * travel, np.array([DAMPING]), np.unique([0.0, pulled])]
     grid = np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1)[:, [1, 0, 2, 3]]
-    # each contact in steps of its own, of which a soft one needs few
-    columns = np.concatenate([_columns(fitted, part) for part in np.split(grid, len(contacts))], axis=1)
-    if not promises(float(fitted.gains(columns, 1).max())):
+    shapes = np.split(grid, len(contacts))  # each contact in steps of its own, of which a soft one needs few
+    columns = [_columns(fitted, part) for part in shapes]
+    if not promises(float(fitted.gains(np.concatenate(columns, axis=1), 1).max())):
         return None
-    tried = likeliest(grid, columns)
-    starts = [next(found for found in tried if found.shape[1] == contact) for contact in contacts]
-    starts = sorted(starts, key=lambda likely: likely.misfit)[:STARTS]
+    starts = sorted(map(likeliest, shapes, columns), key=lambda likely: likely.misfit)[:STARTS]
     for level in range(1, ROUNDS):
         offsets = np.exp(OFFSETS * np.array(SPREAD) * 0.6 ** (level - 1))
         around = np.concatenate([start.around(offsets) for start in starts])
-        tried, size = likeliest(around, _columns(fitted, around)), len(offsets)
-        groups = [{row.tobytes() for row in around[k * size : (k + 1) * size]} for k in range(len(starts))]
-        refined = [next(found for found in tried if found.shape.tobytes() in group) for group in groups]
+        columns = np.split(_columns(fitted, around), len(starts), axis=1)
+        refined = map(likeliest, np.split(around, len(starts)), columns)
         starts = [min(pair, key=lambda likely: likely.misfit) for pair in zip(starts, refined, strict=True)]
         starts = sorted(starts, key=lambda likely: likely.misfit)[: STARTS if level < ALL_STARTS else 1]
     return tuple(float(value) for value in starts[0].shape)
@@ -368,15 +366,6 @@ def contacts_of(scope: Scope) -> list[float]:
 
 def _stiffness(fitted: Fitted, theta: Array) -> float:
     return float(theta[fitted.places(Spring)].sum())
-
-
-def _likely(fitted: Fitted, shape: Array, column: Array) -> Likely:
-    theta, unlikely = cauchy(np.vstack([fitted.columns.T, column]), fitted.effort, SCALE * fitted.floor)
-    rate = float(shape[3])
-    if rate > 0.0:
-        stiffness = _stiffness(fitted, theta[:-1])
-        rate = stiffness / float(theta[-1]) if theta[-1] > 0.0 and stiffness > 0.0 else rate
-    return Likely(shape, float(unlikely.sum()), rate)
 
 
 def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:

@@ -14,8 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench.effects.acting import MisreadEffort
-from bench.effects.effect import CopiesTorque
-from bench.effects.shape import Shapes
+from bench.effects.effect import CopiesTorque, Shapes
 from bench.effects.signals import Axis, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -34,11 +33,9 @@ class CurrentGainAsymmetry(CopiesTorque, MisreadEffort):
         return [[(-0.5 * np.abs(signals.torque), 0)]]
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
-        """No more than a sensor's tolerance."""
         return all(abs(difference) <= MOST for (difference,) in strengths)
 
     def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        """By the equation above."""
         return effort + 0.5 * values["gain_difference"] * abs(effort)
 
 

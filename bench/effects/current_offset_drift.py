@@ -26,15 +26,12 @@ class CurrentOffsetDrift(Columns, MisreadEffort):
     needed = 0.8  # more than a constant torque gives it: of the squares of one, r*t takes (T**2/2)**2/(T**3/3)/T = 3/4
 
     def sought(self, scope: Scope) -> bool:
-        """Where the axis goes both ways."""
         return not scope.one_way
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Time."""
         return [[(signals.time, 0)]]
 
     def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        """By the equation above."""
         return effort - values["rate"] * time
 
 

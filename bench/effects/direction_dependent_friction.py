@@ -28,7 +28,6 @@ class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTor
     dry = slice(1)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """1/2 and |omega|/2."""
         return [[(np.full_like(signals.time, 0.5), 0)], [(0.5 * signals.velocity * signals.sign, 0)]]
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
@@ -51,11 +50,9 @@ class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTor
         add_resisting_torque(spec, 0.5 * (forward - backward))
 
     def friction_difference(self, values: Values, axis: Axis) -> Number:
-        """Of the dry part."""
         return values["coulomb_difference"]
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """Of the viscous part."""
         return 0.5 * values["viscous_difference"] * abs(at.velocity)
 
 

@@ -16,8 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import FollowsLoad, FrictionLaw, LoadTorque
-from bench.effects.effect import LOSSIEST, CopiesTorque, Fitted, Replacing
-from bench.effects.shape import Shape, grid_of
+from bench.effects.effect import LOSSIEST, CopiesTorque, Fitted, Replacing, Shape, grid_of
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -38,7 +37,6 @@ class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
     replaces = frozenset({"load_dependent_friction"})
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Magnitude of both torques, against the motion."""
         return [[(signals.sign * np.abs(signals.torque + shape[0] * signals.load), 0)]]
 
     def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
@@ -51,12 +49,10 @@ class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
         return max(fitted.tried(self, closer), key=lambda tried: tried.gain).shape
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """K_m is the strength itself."""
         motor, ratio = strengths[0], shape[0]
         return {"motor_coefficient": motor, "load_ratio": ratio, "load_coefficient": motor * ratio}
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """By the equation above."""
         return values["motor_coefficient"] * abs(at.effort + values["load_ratio"] * at.load)
 
     def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:

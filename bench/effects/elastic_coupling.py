@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
 from bench.effects.acting import Native, Spec, add_coupling_joint
-from bench.effects.effect import Coupling, FiltersMotion, Load
-from bench.effects.shape import FREQUENCY, Shape, Shapes
+from bench.effects.effect import FREQUENCY, Coupling, FiltersMotion, Load, Shape, Shapes
 from bench.effects.signals import Axis, Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -55,7 +54,6 @@ class ElasticCoupling(Coupling, FiltersMotion, Native):
     )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Load's acceleration less the motor's."""
         return self.columns_of(signals, [shape])
 
     def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
@@ -88,7 +86,6 @@ class ElasticCoupling(Coupling, FiltersMotion, Native):
         return {"stiffness": stiffness, "damping": loss, "resonance_frequency": float(resonance)}
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
-        """A joint with stiffness and damping between motor and load."""
         joint = add_coupling_joint(spec, name)
         joint.stiffness[0], joint.damping[0] = values["stiffness"], values["damping"]
 

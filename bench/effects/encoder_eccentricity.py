@@ -14,8 +14,7 @@ import numpy as np
 
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import MisreadMotion
-from bench.effects.effect import Distortion, Fitted, Proposal
-from bench.effects.shape import Shape
+from bench.effects.effect import Distortion, Fitted, Proposal, Shape
 from bench.effects.signals import Base, Number, Scope, Signals, Values
 from bench.effects.waves import PHASE, OncePerRevolution, amplitude_and_phase
 from bench.trace.filter import Column
@@ -37,7 +36,6 @@ class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
     )
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
-        """The true motion."""
         angle, velocity = true_motion(signals.position, signals.velocity, *shape)
         return replace(signals, position=angle, velocity=velocity)
 
@@ -65,7 +63,6 @@ class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
         return 0.3 * max(float(np.linalg.norm(shape)), 1e-4)
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
-        """Amplitude and phase."""
         amplitude, phase = amplitude_and_phase(*shape)
         return {"amplitude": amplitude, "phase": phase}
 
@@ -74,13 +71,11 @@ class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
         return [float(np.linalg.norm(shape)) * (scope.drift + 0.5 * scope.latched * scope.rms_speed / NORMAL95)] * 2
 
     def seen(self, values: Values, position: Number, velocity: Number) -> tuple[Number, Number]:
-        """By the equations above."""
         angle, amplitude = position + values["phase"], values["amplitude"]
         xp = namespace(angle)
         return position + amplitude * xp.sin(angle), velocity * (1.0 + amplitude * xp.cos(angle))
 
     def unseen(self, values: Mapping[str, float], position: Array, velocity: Array) -> tuple[Array, Array]:
-        """The equations solved for the true motion."""
         amplitude, phase = values["amplitude"], values["phase"]
         return true_motion(position, velocity, amplitude * np.cos(phase), amplitude * np.sin(phase))
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from bench.arrays import namespace
 from bench.effects.acting import ResistingTorque, ScalesFriction
-from bench.effects.shape import DURATION, Shape
+from bench.effects.effect import DURATION, Shape
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -33,7 +33,6 @@ class FrictionWarmup(ScalesFriction, ResistingTorque):
     dry = slice(1)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """exp(-t/T) of the friction level, and of speed."""
         cold = np.exp(-signals.time / shape[0])
         return [[(signals.friction * cold, 0)], [(signals.velocity * cold, 0)]]
 
@@ -48,11 +47,9 @@ class FrictionWarmup(ScalesFriction, ResistingTorque):
         return base.coulomb > 0.0 and strengths[0] > 0.0
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """Of the dry part."""
         return 1.0 + _cold(values, at)
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """Of the viscous part."""
         return values["viscous_share"] * _cold(values, at) * axis.viscous * at.velocity
 
 

@@ -23,15 +23,12 @@ class LoadDependentFriction(CopiesTorque, RaisesFriction):
     quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Magnitude of the torque, against the motion."""
         return [[(signals.sign * np.abs(signals.torque), 0)]]
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """In proportion to the motor's torque."""
         return values["load_friction_coefficient"] * abs(at.effort)
 
     def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:
-        """Of the motor's torque."""
         return FrictionLaw(motor=values["load_friction_coefficient"])
 
 

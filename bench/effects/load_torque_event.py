@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import ResistingTorque
-from bench.effects.effect import Fitted, Occasional, OuterTorque, Proposal, Standout
-from bench.effects.shape import Shape, Shapes
+from bench.effects.effect import Fitted, Occasional, OuterTorque, Proposal, Shape, Shapes, Standout
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -68,8 +67,7 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         Where the axis stands or creeps, friction takes what it is given, up to its static level: nothing below that
         speaks for an event there, nor do the impacts of what meets and parts.
         """
-        moves = _moves(fitted)
-        weight = ((moves | _beyond_friction(fitted, moves)) & fitted.determined).astype(np.float64)
+        weight = (_telling(fitted) & fitted.determined).astype(np.float64)
         time = fitted.time
         edges = np.unique(np.linspace(0, time.size, EDGES + 1).astype(int))
         first, last = np.triu_indices(edges.size, 1)
@@ -98,11 +96,9 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         return []
 
     def duration(self, shape: Sequence[float]) -> float:
-        """From start to end."""
         return shape[1] - shape[0]
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """It ends after it starts."""
         return self.duration(shape) > 0.0
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
@@ -123,7 +119,6 @@ class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
         return [(start, end) for start, end in product(*places) if start < end]
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """While it acts."""
         time, torque = at.began + at.time, values["torque"]
         xp = namespace(torque)
         return xp.where((time >= values["start"]) & (time < values["end"]), torque, xp.zeros_like(torque))
@@ -135,17 +130,16 @@ def _rows_around(shape: Sequence[float], time: Array) -> Array:
     return np.column_stack([time[after - 1], time[after]])
 
 
-def _moves(fitted: Fitted) -> NDArray[np.bool_]:
-    """Rows (m,) where the axis neither stands nor creeps."""
-    speed = fitted.seen(lambda signals: [[(signals.velocity, 0)]], of_motion=True)[:, 0]
-    return np.abs(speed) > CREEPS * fitted.scope.rms_speed
+def _telling(fitted: Fitted) -> NDArray[np.bool_]:
+    """Rows (m,) where the axis neither stands nor creeps, or that ask for more than static friction holds.
 
-
-def _beyond_friction(fitted: Fitted, moves: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Rows (m,) that ask for more than static friction, by the Coulomb friction of the rows that move."""
-    sign = fitted.seen(lambda signals: [[(signals.sign, 0)]], of_motion=True)[:, 0]
+    By the Coulomb friction of the rows that move.
+    """
+    speed, sign = fitted.seen(lambda signals: [[(signals.velocity, 0)], [(signals.sign, 0)]], of_motion=True).T
+    moves = np.abs(speed) > CREEPS * fitted.scope.rms_speed
     less = fitted.residual[moves] @ sign[moves] / max(float(sign[moves] @ sign[moves]), 1.0)
-    return np.abs(fitted.base.coulomb * sign + fitted.residual) > STATIC * abs(fitted.base.coulomb + less)
+    beyond = np.abs(fitted.base.coulomb * sign + fitted.residual) > STATIC * abs(fitted.base.coulomb + less)
+    return moves | beyond
 
 
 def _short(fitted: Fitted) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from bench.effects.acting import ScalesFriction
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.effects.waves import PHASE, OncePerRevolution, sine_and_cosine, wave
+from bench.effects.waves import PHASE, OncePerRevolution, once_per_revolution, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -23,15 +23,12 @@ class PositionDependentFriction(OncePerRevolution, ScalesFriction):
     )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """sin(q) and cos(q) of the friction level."""
-        return sine_and_cosine(signals, 1.0, signals.friction)
+        return once_per_revolution(signals.position, signals.friction)
 
     def unit(self, base: Base) -> float:
-        """Coulomb friction."""
         return base.coulomb
 
     def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """Once up and down a revolution."""
         return 1.0 + wave(values, "relative_amplitude", at.position)
 
 

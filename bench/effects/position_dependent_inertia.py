@@ -25,20 +25,16 @@ class PositionDependentInertia(Harmonic, VaryingInertia, ResistingTorque):
     )
 
     def of_wave(self, signals: Signals, number: float, sine: Array, cosine: Array) -> list[Column]:
-        """Sine and cosine variation."""
         omega, half = signals.velocity, 0.5 * number * signals.velocity**2
         return [[(omega * sine, 1), (-half * cosine, 0)], [(omega * cosine, 1), (half * sine, 0)]]
 
     def unit(self, base: Base) -> float:
-        """Mean inertia."""
         return base.inertia
 
     def added_inertia(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """J(q) - J."""
         return axis.inertia * wave(values, "relative_amplitude", at.position)
 
     def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """J'(q)*omega**2/2."""
         slope = axis.inertia * values["relative_amplitude"] * values["harmonic"]
         angle = values["harmonic"] * at.position + values["phase"]
         return 0.5 * slope * namespace(angle).cos(angle) * at.velocity**2

@@ -22,7 +22,6 @@ class QuadraticDrag(OfSpeed, OuterTorque, Native):
     quantities = (Quantity("quadratic_drag", "k_q", "N*m*s**2/rad**2", lower=0.0, null=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """omega*|omega|."""
         return [[(signals.velocity * np.abs(signals.velocity), 0)]]
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
-from bench.effects.effect import Columns, CopiesTorque, Effect
-from bench.effects.shape import DURATION, FREQUENCY, SPEED, TRAVEL, Shape, Shapes
+from bench.effects.effect import DURATION, FREQUENCY, SPEED, TRAVEL, Columns, CopiesTorque, Effect, Shape, Shapes
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -40,7 +39,6 @@ class Vibration(Outside):
     shapes = (Shape(quantities[0], tuple(float(f) for f in np.geomspace(0.4, 120.0, 240)), measure=FREQUENCY),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Sine and cosine of time."""
         wave = _turning(2.0 * np.pi * shape[0], signals)
         return [[(wave.imag, 0)], [(wave.real, 0)]]
 
@@ -60,7 +58,6 @@ class Notch(Outside):
     )
 
     def sought(self, scope: Scope) -> bool:
-        """Where something turns."""
         return scope.kind.turns
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
@@ -121,7 +118,6 @@ class FrictionalMemory(Outside):
     )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """The late rise."""
         keep = np.exp(-signals.sample_period / shape[0])
         return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
 
@@ -141,7 +137,6 @@ class OtherWave(Outside, CopiesTorque):
         self._factors = [FACTORS[name] for name in factors]
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Sine and cosine times each factor."""
         angle = shape[0] * signals.position
         waves = np.sin(angle), np.cos(angle)
         return [[(factor(signals) * wave, order)] for factor, order in self._factors for wave in waves]

@@ -12,8 +12,7 @@ import numpy as np
 
 from bench.arrays import namespace
 from bench.effects.acting import FrictionLaw, RaisesFriction
-from bench.effects.effect import OfSpeed
-from bench.effects.shape import SPEED, Shape, Shapes
+from bench.effects.effect import SPEED, OfSpeed, Shape, Shapes
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -33,7 +32,6 @@ class StribeckFriction(OfSpeed, RaisesFriction):
     shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0), measure=SPEED),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """exp(-(omega/omega_s)**2) against the motion."""
         return [[(signals.sign * np.exp(-((signals.velocity / shape[0]) ** 2)), 0)]]
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
@@ -49,20 +47,15 @@ class StribeckFriction(OfSpeed, RaisesFriction):
         return all(speed <= RISE * scope.top_speed for (speed,) in shapes)
 
     def null(self, axis: Axis) -> Mapping[str, Number]:
-        """Where the effect is absent."""
         return {"static_friction": axis.coulomb}
 
-    def least(self, axis: Axis) -> Mapping[str, Number]:
-        """Friction that falls towards standstill would drive the axis on."""
-        return {"static_friction": axis.coulomb}
+    least = null  # friction that falls towards standstill would drive the axis on
 
     def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """The rise towards standstill."""
         fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)
         return (values["static_friction"] - axis.coulomb) * namespace(fallen).exp(fallen)
 
     def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:
-        """Its rise."""
         return FrictionLaw(values["static_friction"] - float(axis.coulomb), values["stribeck_velocity"])
 
 

@@ -13,8 +13,7 @@ Transactions on Industry Applications 31(2), 1995.
 from collections.abc import Sequence
 
 from bench.effects.acting import MisreadEffort
-from bench.effects.effect import CopiesTorque
-from bench.effects.shape import Shapes
+from bench.effects.effect import CopiesTorque, Shapes
 from bench.effects.signals import Axis, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -37,11 +36,9 @@ class TorqueConstantDrift(CopiesTorque, MisreadEffort):
         return [[(-signals.torque * signals.time, 0)]]
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
-        """No more than magnets can lose."""
         return all(abs(rate) * scope.duration <= MOST for (rate,) in strengths)
 
     def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        """By the equation above."""
         return effort * (1.0 + values["rate"] * time)
 
 

@@ -25,7 +25,6 @@ class TorqueConstantSaturation(CopiesTorque, TorqueLoss):
         return [[(signals.torque * (signals.torque / signals.peak_effort) ** 2, 0)]]
 
     def delivered(self, values: Values, axis: Axis, effort: Number) -> Number:
-        """What is left of the torque."""
         return effort * (1.0 - values["drop_at_peak"] * (effort / axis.peak_effort) ** 2)
 
 

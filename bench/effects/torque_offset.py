@@ -21,7 +21,6 @@ class TorqueOffset(ConstantTorque, Native):
     quantities = (Quantity("torque", "M_0", "N*m", null=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """One."""
         return [[(np.ones_like(signals.time), 0)]]
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
@@ -29,7 +28,6 @@ class TorqueOffset(ConstantTorque, Native):
         return ("direction_dependent_friction",)
 
     def load_torque(self, values: Values, at: Moment) -> Number:
-        """A weight."""
         return values["torque"]
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:

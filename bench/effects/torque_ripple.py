@@ -37,7 +37,6 @@ class TorqueRipple(Harmonic, CopiesTorque, Repeatable, ScalesTorque):
         return super().report([-strength for strength in strengths], shape, base)
 
     def torque_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
-        """Of the angle the motor is at."""
         return 1.0 + wave(values, "relative_amplitude", at.position)
 
 

@@ -20,15 +20,12 @@ class TorsionSpring(OuterTorque, Spring, Native):
     quantities = (Quantity("stiffness", "c", "N*m/rad", lower=0.0, null=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """q."""
         return [[(signals.position, 0)]]
 
     def load_torque(self, values: Values, at: Moment) -> Number:
-        """By the equation above."""
         return values["stiffness"] * at.position
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
-        """Stiffness of the joint."""
         spec.joint(AXIS).stiffness[0] += values["stiffness"]
 
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from bench.effects.acting import LoadTorque, Native, Spec, passive_motor
 from bench.effects.effect import OuterTorque
 from bench.effects.signals import Axis, Moment, Number, Signals, Values
-from bench.effects.waves import PHASE, OncePerRevolution, sine_and_cosine, wave
+from bench.effects.waves import PHASE, OncePerRevolution, once_per_revolution, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -21,11 +21,9 @@ class Unbalance(OncePerRevolution, OuterTorque, LoadTorque, Native):
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), PHASE)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """sin(q) and cos(q)."""
-        return sine_and_cosine(signals, 1.0, 1.0)
+        return once_per_revolution(signals.position, 1.0)
 
     def load_torque(self, values: Values, at: Moment) -> Number:
-        """By the equation above."""
         return wave(values, "amplitude", at.position)
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:

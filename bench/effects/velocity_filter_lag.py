@@ -59,7 +59,6 @@ class VelocityFilterLag(MotionLag, Distortion, Detectable, FilteredSignal):
         return () if "position" in scope.signals else ("current_loop_lag", "current_filter_lag")
 
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
-        """The lag, where both position and speed are recorded and disagree by one."""
         if not {"position", "velocity"} <= set(trace.signals):
             return None
         smooth = GaussianFilter(max(width, 1.5 * trace.sample_period), trace.sample_period)

@@ -14,7 +14,7 @@ import numpy as np
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import DriveLimit
 from bench.effects.effect import Detected, smoothed
-from bench.effects.signals import Axis, Number, Values, Winding
+from bench.effects.signals import Axis, Number, Values
 from bench.errors import InputError
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
@@ -61,9 +61,9 @@ class VoltageLimit(DriveLimit):
         needed = motor.resistance * current + motor.back_emf_constant * speed + (motor.inductance or 0.0) * slope
         voltage, lack = np.abs(needed), np.sign(wanted) * (wanted - speed)
         behind = lack > BEHIND * float(np.abs(trace["velocity_reference"]).max())
-        if np.count_nonzero(behind) < SAMPLES:
-            return None
         many = int(np.count_nonzero(behind))
+        if many < SAMPLES:
+            return None
         top = _top(voltage[behind], many)
         standing = behind & (np.abs(voltage / top - 1.0) < TOP)
         count = int(np.count_nonzero(standing))
@@ -94,7 +94,13 @@ class VoltageLimit(DriveLimit):
         self, values: Values, axis: Axis, velocity: Number, demand: Number, before: Number, step: float
     ) -> tuple[Number, Number]:
         """Full voltage until the current is what is demanded, then what holds it there, if the limit allows."""
-        winding, xp = _winding(axis), namespace(demand)
+        winding, xp = axis.winding, namespace(demand)
+        if winding is None:
+            raise InputError(
+                self.name,
+                "found a motor without resistance, inductance or constant",
+                "allowed: a rig whose [motor] states resistance, inductance, back_emf_constant and torque_constant",
+            )
         constant = winding.torque_constant
         tau = xp.maximum(winding.inductance / winding.resistance, QUICKEST)
         wanted, start = demand / constant, before / constant
@@ -122,16 +128,6 @@ def _time_to(wanted: Number, start: Number, settled: Number, tau: Number, step: 
     xp = namespace(wanted)
     ratio = (start - settled) / xp.where(wanted == settled, xp.inf, wanted - settled)
     return xp.minimum(tau * xp.log(xp.maximum(ratio, 1.0)), step)
-
-
-def _winding(axis: Axis) -> Winding:
-    if axis.winding is None:
-        raise InputError(
-            "voltage_limit",
-            "found a motor without resistance, inductance or constant",
-            "allowed: a rig whose [motor] states resistance, inductance, back_emf_constant and torque_constant",
-        )
-    return axis.winding
 
 
 EFFECT = VoltageLimit()

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, namespace
-from bench.effects.effect import Columns, Effect
-from bench.effects.shape import Shape, Shapes
+from bench.effects.effect import Columns, Effect, Shape, Shapes
 from bench.effects.signals import Base, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -82,10 +81,9 @@ def amplitude_and_phase(sine: float, cosine: float) -> tuple[float, float]:
     return float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))
 
 
-def sine_and_cosine(signals: Signals, number: float, of: Array | float) -> list[Column]:
-    """Columns of a wave of such a wave number, times what it is a wave of (n,)."""
-    angle = number * signals.position
-    return [[(of * np.sin(angle), 0)], [(of * np.cos(angle), 0)]]
+def once_per_revolution(position: Array, of: Array | float) -> list[Column]:
+    """Columns of a wave of one revolution along a motion (n,), times what it is a wave of (n,)."""
+    return [[(of * np.sin(position), 0)], [(of * np.cos(position), 0)]]
 
 
 def turned(position: Array, numbers: Sequence[float]) -> Iterator[tuple[float, tuple[Array, Array]]]:

@@ -37,7 +37,7 @@ from bench.trace.stream import cut
 from bench.trace.trace import Trace, assemble
 
 if TYPE_CHECKING:
-    from bench.diagnosis.show import Diagnosis
+    from bench.diagnosis.diagnosis import Diagnosis
 
 #: Storages that a manifest may name: those that only send files. fsspec knows others that start programs or unpack.
 STORAGES = ("https", "http", "s3", "gs", "gcs", "az", "abfs", "sftp", "ssh")

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, VISCOUS
-from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.show import Diagnosis
+from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
 from bench.fit.estimate import Estimate, RefusedEstimateError

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.diagnosis.let_free import BARE, HELD, otherwise, windows_of
-from bench.diagnosis.show import Diagnosis
+from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.replay import BARE, HELD, otherwise, windows_of
 from bench.rig.rig import Rig
 from bench.trace.motion import integrated, stretches_of
 from bench.trace.trace import Trace

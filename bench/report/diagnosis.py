@@ -12,11 +12,9 @@ from typing import Any
 
 from bench.axis_kind import ARMATURE, KINDS, AxisKind
 from bench.diagnosis.add import NULL
-from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.diagnosis import Course, Diagnosis, Gap, Shrunk
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
-from bench.diagnosis.show import Course, Shrunk
-from bench.diagnosis.verdict import Gap
 from bench.diagnosis.where import Where
 from bench.effects.acting import Sensing
 from bench.gate.gate import warnings_of

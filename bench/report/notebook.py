@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bench.axis_kind import KINDS
 from bench.baseline.check import Checked
-from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.show import PACKED
+from bench.diagnosis.diagnosis import PACKED, Diagnosis
 from bench.errors import InputError
 from bench.files import write_text
 from bench.fit.estimate import Estimate

@@ -13,8 +13,7 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA, AxisKind
 from bench.diagnosis.add import NULL
-from bench.diagnosis.let_free import BARE, HELD, HORIZONS, FreeRun
-from bench.diagnosis.replay import LEFT, Replay
+from bench.diagnosis.replay import BARE, HELD, HORIZONS, LEFT, FreeRun, Replay
 from bench.joints.motion import JointMotion
 from bench.names import readable, words
 from bench.plant.axis_model import parameter_quantities

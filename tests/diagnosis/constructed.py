@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import Probabilities, probabilities
+from bench.diagnosis.probability import Probabilities, neighbourhood, probabilities, scored
 from bench.diagnosis.recordings import fit_bare
-from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit

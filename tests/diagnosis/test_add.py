@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.add import add
+from bench.diagnosis.diagnosis import courses, shrinking
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, Step
-from bench.diagnosis.show import courses, shrinking
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
 from bench.fit.fit import fit
@@ -48,14 +48,14 @@ def added(recorded, terms, detected=None, with_holdout=True):
     rig, trace, holdout = recorded
     recordings = Recordings.of(trace, rig, holdout if with_holdout else None)
     searched = Searched((Step(fit(recordings.rows, Hypothesis(tuple(terms)))),))
-    return recordings, add(recordings, Suspects(searched, Probabilities((), 1.0), detected or {}, False, Policy()))
+    return add(recordings, Suspects(searched, Probabilities((), 1.0), detected or {}, False, Policy()))
 
 
 @pytest.mark.parametrize("with_holdout", [True, False])
 def test_a_true_effect_is_kept_and_both_gaps_shrink(recorded, with_holdout):
-    recordings, result = added(recorded, [SPRING], with_holdout=with_holdout)
+    result = added(recorded, [SPRING], with_holdout=with_holdout)
     assert result.rejected == ()
-    before, after = shrinking(result, courses(recordings, result))
+    before, after = shrinking(result, courses(result))
     assert (before.effect, after.effect) == ("", "torsion_spring")
     assert len(after.torque) == len(after.velocity) == (2 if with_holdout else 1)
     assert all(late < 0.3 * early for early, late in zip(before.velocity, after.velocity, strict=True))
@@ -64,7 +64,7 @@ def test_a_true_effect_is_kept_and_both_gaps_shrink(recorded, with_holdout):
 
 @pytest.mark.parametrize("with_holdout", [True, False])
 def test_an_effect_that_makes_the_simulation_worse_is_rejected_with_the_reason(recorded, with_holdout):
-    _, result = added(recorded, [SPRING], LAG, with_holdout)
+    result = added(recorded, [SPRING], LAG, with_holdout)
     (rejected,) = result.rejected
     assert rejected.name == "velocity_filter_lag"
     assert "velocity gap" in rejected.reason

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.search import backward_elimination, settled
+from bench.diagnosis.search import backward_elimination, settled, settled_elimination
 from bench.effects.catalogue import catalogue
 from bench.effects.rivals import RIVALS
 from bench.fit.fit import fit
@@ -43,7 +43,7 @@ def test_a_name_that_makes_up_for_the_shape_of_another_is_let_go(eccentric):
     """An inertia over position takes what an eccentric encoder leaves whose shape is bent to it."""
     found = bent(eccentric, 0.7, Term(catalogue()["position_dependent_inertia"], (1.0,)))
     assert backward_elimination(found, Policy()).hypothesis.names == found.hypothesis.names
-    alone = backward_elimination(found, Policy(), settling=True)
+    alone, _ = settled_elimination(found, Policy())
     assert alone.hypothesis.names == ("encoder_eccentricity",)
     assert alone.terms[0].shape == pytest.approx(TRUE, rel=0.02)
 

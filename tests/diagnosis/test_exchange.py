@@ -7,7 +7,7 @@ import pytest
 
 from bench.diagnosis import search as searching
 from bench.diagnosis.policy import Policy, worth
-from bench.diagnosis.score import neighbourhood
+from bench.diagnosis.probability import neighbourhood
 from bench.diagnosis.search import Candidate, Step, exchanged, instead_of_each, search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.diagnosis.held_out import HeldOut, balanced, regimes
+from bench.diagnosis.model import HeldOut, balanced, regimes
 from bench.diagnosis.recordings import Recordings
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis

@@ -3,6 +3,8 @@
 Truth from the independent integrator.
 """
 
+from types import SimpleNamespace
+
 import pytest
 
 from bench.diagnosis import model as modelling
@@ -66,7 +68,7 @@ def recorded(tmp_path_factory):
 def test_an_axis_that_stands_in_the_middle_keeps_its_constant_torque(recorded):
     """Beside friction that no catalogue holds. Its first two thirds go forward, where an offset is friction."""
     rig, stands, _ = recorded
-    _, result = added((rig, stands, None), [term("direction_dependent_friction")], with_holdout=False)
+    result = added((rig, stands, None), [term("direction_dependent_friction")], with_holdout=False)
     assert result.rejected == ()
     (named,) = result.refined.effects  # forward less backward is twice an offset
     assert named.parameters["coulomb_difference"].value == pytest.approx(2.0 * OFFSET, rel=0.02)
@@ -99,7 +101,6 @@ def test_phase_is_kept_within_a_sixth_of_a_turn_of_the_wave_or_of_the_gap(monkey
     away = Tracked(trace["position"] + drift, trace["velocity"])
     monkeypatch.setattr(modelling, "track_all", lambda held, bandwidth: [away for _ in held])
     bare, fitted = (fit(Rows.of(trace, RIG), Hypothesis(terms)) for terms in ((), (one,)))
-    model = modelling.Stage.of("", bare, (), RIG, "recording").model
-    stage = modelling.Stage(one.effect.name, fitted, (), "recording", model)
+    stage = SimpleNamespace(fitted=fitted, model=modelling.stored_model(bare, {}, RIG))
     gaps = modelling.VelocityGaps(20.0, fitted.base.inertia)
-    assert gaps.in_phase(stage, modelling.Recorded.of("recording", trace, RIG)) is kept
+    assert gaps.in_phase(stage, modelling.Recorded("recording", trace, RIG)) is kept

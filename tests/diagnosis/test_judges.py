@@ -11,7 +11,6 @@ from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, Step
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
-from bench.effects.present import Present
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from tests.diagnosis.constructed import RIG, SINES, moved, only_during, recorded, wave
@@ -67,8 +66,8 @@ def test_an_event_of_the_recording_is_not_judged_by_a_holdout_without_it():
 @pytest.mark.parametrize(("gap", "kept"), [((1.0, 2.0), False), ((2.0, 1.0), True), (None, True)])
 def test_what_shows_under_the_drive_only_has_to_help_there(gap, kept):
     rows = Recordings.of(recorded(MOTION, spring), RIG, None).rows
-    limit = Present.of("voltage_limit", {"voltage": 40.0})
-    against = unlimited(Extension(rows, "recording", Hypothesis((term("torsion_spring"),)), (limit,), RIG), gap)
+    limit = {catalogue()["voltage_limit"]: Detected({"voltage": 40.0}, {"voltage": 1.0})}
+    against = unlimited(Extension(rows, Hypothesis((term("torsion_spring"),)), limit, RIG), gap)
     if kept:
         assert against is None
     else:

@@ -5,8 +5,7 @@ import math
 import pytest
 
 from bench.diagnosis.policy import POLICY
-from bench.diagnosis.probability import DETECTED, NameSet, Probabilities, probabilities
-from bench.diagnosis.score import Contender
+from bench.diagnosis.probability import DETECTED, Contender, NameSet, Probabilities, probabilities
 from bench.effects.rivals import RIVALS
 from bench.fit.hypothesis import Term
 from tests.diagnosis.hand_made import level, made, term

@@ -104,8 +104,7 @@ def test_what_may_be_friction_in_one_direction_acts_against_that(rig, recordings
     seen = recordings["nothing"]
     turned = seen.with_signals({name: direction * values for name, values in seen.signals.items()}, {})
     model = followed["nothing"][0].model.model
-    (alternatives,) = one_direction(Recordings.of(turned, rig, None), AXIS.coulomb, model)
-    friction, instead = alternatives.models
+    ((_, (friction, instead), _),) = one_direction(Recordings.of(turned, rig, None), AXIS.coulomb, model)
     assert friction.parameters.coulomb_friction == AXIS.coulomb
     assert instead.parameters.coulomb_friction == 0.0
     assert dict(instead.effects[-1].values) == {"torque": direction * AXIS.coulomb}

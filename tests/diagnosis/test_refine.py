@@ -5,8 +5,7 @@ import pytest
 
 from bench.arrays import NORMAL95
 from bench.diagnosis.add import Numbers, refined, stepped
-from bench.diagnosis.held_out import HeldOut
-from bench.diagnosis.model import Stage
+from bench.diagnosis.model import Extension, HeldOut
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
@@ -54,7 +53,7 @@ def whole():
     """Recordings, held-out motion, model and suspects of a recording whose spring is named."""
     recordings = Recordings.of(TRACE, RIG, None)
     fitted = fit(recordings.rows, Hypothesis((term("torsion_spring"),)))
-    stage = Stage.of("torsion_spring", fitted, (), RIG, "recording")
+    stage = Extension(recordings.rows, fitted.hypothesis, {}, RIG)
     suspects = Suspects(Searched((Step(fitted),)), Probabilities((), 1.0), {}, False, Policy())
     return recordings, HeldOut.of(recordings, False, True, fitted), stage, suspects
 
@@ -70,14 +69,14 @@ def parameters(values):
 @pytest.mark.parametrize("away", [(1.0, -1.5, 0.5), (-0.3, 0.1, 1.9)])
 def test_a_step_within_the_intervals_ends_at_the_truth(whole, away):
     _, held_out, stage, _ = whole
-    numbers = Numbers.of((), parameters(TRUTH + np.array(away) * ERRORS))
+    numbers = Numbers((), parameters(TRUTH + np.array(away) * ERRORS))
     found = stepped(numbers.model(stage.model, numbers.values), numbers, held_out.seen, Linear())
     assert found == pytest.approx(TRUTH, rel=1e-9)
 
 
 def test_a_step_is_bounded_by_the_intervals(whole):
     _, held_out, stage, _ = whole
-    numbers = Numbers.of((), parameters(TRUTH + np.array([0.0, 0.0, 5.0]) * ERRORS))
+    numbers = Numbers((), parameters(TRUTH + np.array([0.0, 0.0, 5.0]) * ERRORS))
     found = stepped(numbers.model(stage.model, numbers.values), numbers, held_out.seen, Linear())
     assert found[2] == pytest.approx(TRUTH[2] + (5.0 - NORMAL95) * ERRORS[2], rel=1e-9)
 
@@ -99,7 +98,7 @@ def test_a_gap_of_three_and_a_half_noises_is_not_refined(whole, floors, kept):
 
 
 def test_intervals_move_with_their_values():
-    numbers = Numbers.of((), parameters(TRUTH))
+    numbers = Numbers((), parameters(TRUTH))
     _, moved_to = numbers.named(2.0 * TRUTH)
     for (name, found), value, error in zip(moved_to.items(), TRUTH, ERRORS, strict=True):
         assert found.value == pytest.approx(2.0 * value), name

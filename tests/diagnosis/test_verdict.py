@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 
 from bench.arrays import NORMAL95, rms
-from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.name import NamedEffect
-from bench.diagnosis.policy import Policy
-from bench.diagnosis.verdict import (
+from bench.diagnosis.diagnosis import (
     OBJECTIONS,
     Gap,
     Shown,
+    diagnose,
     holdout_apart,
     moves_worse,
     negative_friction,
@@ -23,6 +21,8 @@ from bench.diagnosis.verdict import (
     unfinished,
     verdict,
 )
+from bench.diagnosis.name import NamedEffect
+from bench.diagnosis.policy import Policy
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
 from bench.parameter import Parameter
@@ -62,13 +62,13 @@ def shown(
         velocity=velocity or quiet,
         torque=torque or quiet,
         friction={"coulomb_friction_torque": (parameter(*friction), 1.0)},
-        recordings=SimpleNamespace(trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
-        suspects=SimpleNamespace(policy=Policy(), searched=searched, withheld=withheld),
         whole=made(level(100.0 * chi**2)),
         added=SimpleNamespace(
+            recordings=SimpleNamespace(trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
+            suspects=SimpleNamespace(policy=Policy(), searched=searched, withheld=withheld),
             refused=refused or {},
             recorded=[SimpleNamespace(name="recording"), SimpleNamespace(name="holdout")],
-            extension=SimpleNamespace(whole=None),
+            extension=None,
             gaps=SimpleNamespace(in_phase=lambda stage, recorded: in_phase),
         ),
     )
@@ -142,10 +142,11 @@ def test_the_torque_of_friction_is_that_of_its_own_column():
         "coulomb_friction_torque": parameter(0.08, 0.001),
     }
     added = SimpleNamespace(
-        extension=SimpleNamespace(whole=SimpleNamespace(fitted=fitted)), refined=SimpleNamespace(parameters=parameters)
+        recordings=SimpleNamespace(rig=RIG),
+        extension=SimpleNamespace(fitted=fitted),
+        refined=SimpleNamespace(parameters=parameters),
     )
-    recordings = SimpleNamespace(rig=RIG)
-    friction = Shown(recordings, None, added, None, None).friction  # pyright: ignore[reportArgumentType]
+    friction = Shown(added, None, None).friction  # pyright: ignore[reportArgumentType]
     speed = rms(fitted.rows.values(lambda signals: signals.velocity))
     for name, torque in (("viscous_friction_coefficient", speed), ("coulomb_friction_torque", 1.0)):
         assert friction[name][0] is parameters[name]

@@ -37,9 +37,7 @@ def test_steps_credit_an_effect_only_with_what_the_humming_axis_leaves(humming):
     """RMS before: cogging's as the filter passes it, and noise; hum would add (HUM*k_T)**2/2 to its square."""
     found = search(humming, [COGGING], Policy())
     assert found.last.hypothesis.hum == humming.hypothesis.hum != ()
-    before, after = (
-        stage.fitted for stage in Extension(humming.rows, "recording", found.last.hypothesis, (), RIG).stages
-    )
+    before, after = (stage.fitted for stage in Extension(humming.rows, found.last.hypothesis, {}, RIG).stages)
     smooth = humming.rows.conditioning.filter
     wave_rms = rms(humming.rows.table(lambda s: [[(AMPLITUDE * np.sin(6.0 * s.position), 0)]]))
     assert before.rms == pytest.approx(np.hypot(wave_rms, after.floor), rel=0.03)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bench.diagnosis.let_free import bare, let_free, otherwise
 from bench.diagnosis.model import holding_bandwidth
+from bench.diagnosis.replay import bare, let_free, otherwise
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import StoredModel, model_toml

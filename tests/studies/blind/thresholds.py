@@ -17,9 +17,8 @@ from rich.console import Console
 from rich.progress import Progress
 
 from bench.diagnosis.policy import POLICY, Policy
-from bench.diagnosis.probability import probabilities
+from bench.diagnosis.probability import Contender, neighbourhood, probabilities, scored
 from bench.diagnosis.recordings import Recordings, fit_bare
-from bench.diagnosis.score import Contender, neighbourhood, scored
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.errors import BenchError

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from bench.diagnosis.policy import POLICY
+from bench.diagnosis.probability import neighbourhood, scored
 from bench.diagnosis.recordings import Recordings, fit_bare
-from bench.diagnosis.score import neighbourhood, scored
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.errors import BenchError
@@ -21,7 +21,7 @@ from tests.studies.blind.score import same, twins
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A set of names and what `bench.diagnosis.score` says of it."""
+    """A set of names and what `bench.diagnosis.probability` says of it."""
 
     names: tuple[str, ...]
     left: float
