@@ -30,7 +30,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, splined, symmetric_inverse
 from bench.effects.acting import Native, Spec, Spring, add_coupling_joint
-from bench.effects.effect import FREQUENCY, Contact, Coupling, Fitted, Load, Replacing, Shape, Shapes, extended
+from bench.effects.effect import Contact, Coupling, Fitted, Load, Replacing
+from bench.effects.shape import FREQUENCY, Shape, Shapes, extended
 from bench.effects.signals import Axis, Base, Number, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity

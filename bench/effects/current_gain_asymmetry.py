@@ -14,7 +14,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench.effects.acting import MisreadEffort
-from bench.effects.effect import CopiesTorque, Shapes
+from bench.effects.effect import CopiesTorque
+from bench.effects.shape import Shapes
 from bench.effects.signals import Axis, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -16,7 +16,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import FollowsLoad, FrictionLaw, LoadTorque
-from bench.effects.effect import LOSSIEST, CopiesTorque, Fitted, Replacing, Shape, grid_of
+from bench.effects.effect import LOSSIEST, CopiesTorque, Fitted, Replacing
+from bench.effects.shape import Shape, grid_of
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

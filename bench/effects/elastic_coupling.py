@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
 from bench.effects.acting import Native, Spec, add_coupling_joint
-from bench.effects.effect import FREQUENCY, Coupling, FiltersMotion, Load, Shape, Shapes
+from bench.effects.effect import Coupling, FiltersMotion, Load
+from bench.effects.shape import FREQUENCY, Shape, Shapes
 from bench.effects.signals import Axis, Base, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity

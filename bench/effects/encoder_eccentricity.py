@@ -14,7 +14,8 @@ import numpy as np
 
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import MisreadMotion
-from bench.effects.effect import Distortion, Fitted, Proposal, Shape
+from bench.effects.effect import Distortion, Fitted, Proposal
+from bench.effects.shape import Shape
 from bench.effects.signals import Base, Number, Scope, Signals, Values
 from bench.effects.waves import PHASE, OncePerRevolution, amplitude_and_phase
 from bench.trace.filter import Column

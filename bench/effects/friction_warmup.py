@@ -12,7 +12,7 @@ import numpy as np
 
 from bench.arrays import namespace
 from bench.effects.acting import ResistingTorque, ScalesFriction
-from bench.effects.effect import DURATION, Shape
+from bench.effects.shape import DURATION, Shape
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import ResistingTorque
-from bench.effects.effect import Fitted, Occasional, OuterTorque, Proposal, Shape, Shapes, Standout
+from bench.effects.effect import Fitted, Occasional, OuterTorque, Proposal, Standout
+from bench.effects.shape import Shape, Shapes
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

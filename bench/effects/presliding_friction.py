@@ -17,7 +17,7 @@ import numpy as np
 
 from bench.arrays import Array, recurrence
 from bench.effects.acting import AXIS, BRISTLES, CarriesFriction, Native, Spec, passive_motor
-from bench.effects.effect import ANGLE, Shape, Shapes
+from bench.effects.shape import ANGLE, Shape, Shapes
 from bench.effects.signals import Axis, Base, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
-from bench.effects.effect import DURATION, FREQUENCY, SPEED, TRAVEL, Columns, CopiesTorque, Effect, Shape, Shapes
+from bench.effects.effect import Columns, CopiesTorque, Effect
+from bench.effects.shape import DURATION, FREQUENCY, SPEED, TRAVEL, Shape, Shapes
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -12,7 +12,8 @@ import numpy as np
 
 from bench.arrays import namespace
 from bench.effects.acting import FrictionLaw, RaisesFriction
-from bench.effects.effect import SPEED, OfSpeed, Shape, Shapes
+from bench.effects.effect import OfSpeed
+from bench.effects.shape import SPEED, Shape, Shapes
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, namespace
-from bench.effects.effect import Columns, Effect, Shape, Shapes
+from bench.effects.effect import Columns, Effect
+from bench.effects.shape import Shape, Shapes
 from bench.effects.signals import Base, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity

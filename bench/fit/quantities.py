@@ -14,7 +14,8 @@ import numpy as np
 
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.effects.effect import Contact, Effect, FiltersMotion, is_pitch
+from bench.effects.effect import Contact, Effect, FiltersMotion
+from bench.effects.shape import is_pitch
 from bench.effects.signals import Base, Signals
 from bench.fit.fit import Fit, least_squares
 from bench.fit.hypothesis import lay_out

@@ -8,7 +8,7 @@ import pytest
 from bench.axis_kind import LINEAR, ROTARY
 from bench.effects.backlash import CONTACTS, contacts_of
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import extended, places
+from bench.effects.shape import extended, places
 from tests.effects.recording import scopes
 
 USUAL = replace(next(scopes()), kind=ROTARY, top_speed=100.0, width=1.5e-3, duration=8.0)

@@ -7,8 +7,9 @@ import numpy as np
 
 from bench.effects.acting import ConstantTorque
 from bench.effects.catalogue import simpler_forms
-from bench.effects.effect import Columns, Detectable, Distortion, Lag, MotionLag, Replacing, grid_of
+from bench.effects.effect import Columns, Detectable, Distortion, Lag, MotionLag, Replacing
 from bench.effects.present import Present
+from bench.effects.shape import grid_of
 from tests.effects.axes import model
 from tests.effects.recording import BASE, EFFECTS, RECORDED, SCOPES, every, plain, reported, shape_of, with_columns
 

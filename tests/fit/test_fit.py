@@ -9,7 +9,8 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Coupling, grid_of
+from bench.effects.effect import Coupling
+from bench.effects.shape import grid_of
 from bench.fit.fit import _own, _taken, fit
 from bench.fit.hypothesis import Hypothesis, Term, with_found_strengths
 from bench.fit.identify import identify
