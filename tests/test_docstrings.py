@@ -1,10 +1,15 @@
 """What docstrings say that functions take, classes have and functions raise is what they do."""
 
 import ast
+import inspect
+import pkgutil
 import re
+from importlib import import_module
 from pathlib import Path
 
 import pytest
+
+import bench.effects
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = sorted((ROOT / "bench").rglob("*.py"))
@@ -78,3 +83,16 @@ def test_a_docstring_that_names_what_is_not_there_is_seen(tmp_path):
     path = tmp_path / "module.py"
     path.write_text('def f(a, b):\n    """F.\n\n    Args:\n        a, c: of it.\n        b: its.\n    """\n')
     assert wrong(path) == ["1: f has no c"]
+
+
+@pytest.mark.parametrize("module", [one.name for one in pkgutil.iter_modules(bench.effects.__path__)])
+def test_a_hook_of_an_effect_is_told_where_it_is_declared(module):
+    kinds = inspect.getmembers(import_module(f"bench.effects.{module}"), inspect.isclass)
+    own = [kind for _, kind in kinds if kind.__module__.endswith(module) and not getattr(kind, "_is_protocol", False)]
+    hooks = [
+        (kind, name)
+        for kind in own
+        for name, value in vars(kind).items()
+        if not name.startswith("_") and isinstance(value, property | classmethod | type(inspect.isclass))
+    ]
+    assert [(kind.__name__, name) for kind, name in hooks if not inspect.getdoc(getattr(kind, name))] == []

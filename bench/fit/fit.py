@@ -27,8 +27,8 @@ from bench.effects.effect import (
     Effect,
     FiltersMotion,
     Proposal,
-    is_pitch,
 )
+from bench.effects.shape import is_pitch
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.hypothesis import (
     Hypothesis,

@@ -9,6 +9,7 @@ recorder's alone.
 from __future__ import annotations
 
 import re
+from abc import ABC, abstractmethod
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -49,7 +50,7 @@ class Rows:
 
 
 @dataclass(frozen=True)
-class Effect:
+class Effect(ABC):
     """A physical effect. It acts through those of these hooks that its class defines; all else is the plant's.
 
     `rows` shows the axes that have it, midway through the step; `memory` is its own state (one number an axis), `step`
@@ -93,9 +94,9 @@ class Effect:
         return cls.on_linear_axis or not axis.linear
 
     @classmethod
+    @abstractmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
         """An effect of this kind, as strong as `severity` (1: drastic) says, for a recording of `duration` - s."""
-        raise NotImplementedError
 
     def quantities(self, axis: Axis) -> dict[str, float]:
         """Values of the quantities that the contract's effect of this name has."""
