@@ -18,7 +18,7 @@ import bench
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.errors import BenchError
 from bench.trace.write import write
-from bench.validation.coverage import of_effects
+from bench.validation.coverage import UNEXPLAINED, of_effects
 from bench.validation.independent.effects import KINDS, Effect
 from bench.validation.injection import INJECTABLE, disturbance, drawn, injected
 from bench.validation.into import FLAGGED, Own, fate, own
@@ -107,6 +107,7 @@ class Row:
         seconds: of CPU that the diagnosis took - s.
         quantities: true value, value, and both ends of the interval of 95 %, by name.
         hidden: what is in the recording, too, as far as it is known or was named before.
+        held: whether the sets that hold the truth with 90 % do; None: it is refused.
     """
 
     case: Case
@@ -118,6 +119,7 @@ class Row:
     seconds: float = 0.0
     quantities: dict[str, tuple[float, float, float, float]] = field(default_factory=dict)
     hidden: tuple[str, ...] = ()
+    held: bool | None = None
 
     @property
     def believed(self) -> float:
@@ -160,7 +162,19 @@ def judged(item: tuple[Case, Source, Known]) -> Row:
     scored = of_effects([effect], own.host.axis, found)
     quantities = {one.quantity: (one.true, one.parameter.value, *one.parameter.ci95) for one in scored}
     beliefs = believed(found, case.effect, own.names)
-    return Row(case, became, new, found.verdict, "", beliefs, seconds, quantities, own.beside)
+    held = holds(found.probabilities.holding(0.9), case.effect, own, source.real)
+    return Row(case, became, new, found.verdict, "", beliefs, seconds, quantities, own.beside, held)
+
+
+def holds(sets: Sequence[frozenset[str] | None], effect: str, own: Known, real: bool) -> bool:
+    """Whether sets of names hold the truth: an effect and nothing that is not in the recording, too.
+
+    Where a real recording leaves a remainder as it is, it is that none of the catalogue is all that is missing.
+    """
+    if real and own.verdict == UNEXPLAINED:
+        return None in sets
+    true, beside = same([effect]), same(own.beside)
+    return any(names is not None and true <= same([*names]) <= true | beside for names in sets)
 
 
 def believed(found: Diagnosis, effect: str, own: Sequence[str]) -> dict[str, float]:

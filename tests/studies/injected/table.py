@@ -59,6 +59,8 @@ def headline(rows: Sequence[Row]) -> str:
         ("a false name beside the true one", str(fates[PART])),
         ("mean probability of the true name", f"{sum(row.believed for row in rows) / max(len(rows), 1):.3f}"),
         ("expected calibration error, of names", f"{calibration_error(pairs(rows)):.3f}"),
+        ("the same, but for what simulated axes hold besides", f"{calibration_error(pairs(rows, hidden=False)):.3f}"),
+        ("sets of 90 % that hold the truth", _share([row.held for row in rows if row.held is not None])),
         ("quantities within their interval of 95 %", _share(inside)),
         ("seconds of CPU of all diagnoses", f"{sum(row.seconds for row in rows):.0f}"),
     ]
@@ -79,10 +81,20 @@ def grouped(rows: Sequence[Row], group: Callable[[Row], tuple[str, str]]) -> str
     return _table(("of", "cases", *FATES), lines)
 
 
-def pairs(rows: Iterable[Row]) -> list[tuple[float, bool]]:
-    """Probability of each new name, and whether it is there; what no catalogue holds never is."""
-    there = [(row, same((row.case.effect, *row.hidden))) for row in rows]
-    return [(p, twins(name) in true) for row, true in there for name, p in row.probabilities.items() if name != NONE]
+def pairs(rows: Iterable[Row], hidden: bool = True) -> list[tuple[float, bool]]:
+    """Probability of each new name, and whether it is there; what no catalogue holds never is.
+
+    Args:
+        rows: judged cases.
+        hidden: whether names of what a recording holds beside the effect count, visible or not.
+    """
+    there = [(row, same([row.case.effect]), same(row.hidden)) for row in rows]
+    return [
+        (p, twins(name) in true | beside)
+        for row, true, beside in there
+        for name, p in row.probabilities.items()
+        if name != NONE and (hidden or twins(name) not in beside - true)
+    ]
 
 
 def calibration_error(stated: Sequence[tuple[float, bool]]) -> float:

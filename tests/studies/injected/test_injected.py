@@ -9,6 +9,7 @@ import pytest
 import bench
 from bench.diagnosis.probability import NameSet, Probabilities
 from bench.trace.trace import Trace
+from bench.validation.coverage import UNEXPLAINED
 from bench.validation.independent.effects import LoadDependentFriction, TorqueOffset
 from bench.validation.injection import INJECTABLE
 from tests.shared import needs_shared
@@ -21,6 +22,7 @@ from tests.studies.injected.cases import (
     Row,
     believed,
     draw,
+    holds,
     keep,
     kept,
     possible,
@@ -82,6 +84,28 @@ def test_what_a_simulated_recording_holds_besides_is_no_false_name():
     said = {"cogging_torque": 0.9, "torque_offset": 0.6, "backlash": 0.2}
     beside = replace(ROW, probabilities=said, hidden=("direction_dependent_friction",))  # the offset's twin
     assert pairs([beside]) == [(0.9, True), (0.6, True), (0.2, False)]
+    assert pairs([beside], hidden=False) == [(0.9, True), (0.2, False)]
+
+
+@pytest.mark.parametrize(
+    ("sets", "real", "held"),
+    [
+        ([{"cogging_torque"}], True, True),
+        ([{"backlash"}, {"cogging_torque", "unbalance"}], True, True),
+        ([{"cogging_torque", "backlash"}, {"unbalance"}, None], True, False),
+        ([{"cogging_torque"}], False, True),
+    ],
+)
+def test_a_set_holds_the_effect_and_no_more_than_is_there(sets, real, held):
+    sets = [each if each is None else frozenset(each) for each in sets]
+    assert holds(sets, "cogging_torque", KNOWN, real) == held
+
+
+def test_beside_a_remainder_of_a_real_axis_none_of_the_catalogue_is_the_truth():
+    left = replace(KNOWN, verdict=UNEXPLAINED)
+    assert not holds([frozenset({"cogging_torque"})], "cogging_torque", left, True)
+    assert holds([frozenset(), None], "cogging_torque", left, True)
+    assert holds([frozenset({"cogging_torque"})], "cogging_torque", left, False)
 
 
 def test_names_are_compared_with_variants_and_other_rounds():
