@@ -262,10 +262,33 @@ class Rows:
             columns: of the raw signals of a stretch, or of each stretch.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
         """
-        smooth = self.conditioning.filter
         tables = [columns(part.signals) for part in self.stretches] if callable(columns) else columns
-        parts = [smooth.columns(table, lag, part.places) for table, part in zip(tables, self.stretches, strict=True)]
-        return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T
+        whole = tables[0] if len(tables) == 1 else self._end_to_end(tables)
+        return self.conditioning.filter.columns(whole, lag, self._places).T
+
+    @cached_property
+    def _begins(self) -> NDArray[np.intp]:
+        """Of each stretch where all stand one behind the other, and their end (s + 1,): multiples of the stride."""
+        stride = self.conditioning.filter.stride
+        return np.cumsum([0, *(-(-part.signals.time.size // stride) * stride for part in self.stretches)])
+
+    @cached_property
+    def _places(self) -> NDArray[np.intp]:
+        """Of the used rows among those of all stretches one behind the other (m,)."""
+        firsts = self._begins // self.conditioning.filter.stride
+        return np.concatenate([first + part.places for first, part in zip(firsts, self.stretches, strict=False)])
+
+    def _end_to_end(self, tables: Sequence[Sequence[Column]]) -> list[Column]:
+        """Columns of all stretches one behind the other, to be filtered at once; no used row reaches over a joint."""
+        whole = []
+        for column in zip(*tables, strict=True):
+            joined: dict[int, Array] = {}
+            for begin, terms in zip(self._begins, column, strict=False):
+                for values, order in terms:
+                    whole_term = joined.setdefault(order, np.zeros(self._begins[-1]))
+                    whole_term[begin : begin + values.size] += values
+            whole.append([(values, order) for order, values in joined.items()])
+        return whole
 
     def against(self, targets: Array, lag: float = 0.0) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
         """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself."""

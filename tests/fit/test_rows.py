@@ -1,0 +1,26 @@
+"""Columns of a recording with holes are those of its stretches, each filtered by itself."""
+
+import numpy as np
+import pytest
+
+from bench.fit.rows import Rows
+from bench.trace.trace import Trace
+from tests.fit.motions import RIG, recording
+
+
+def test_no_row_reaches_over_a_hole():
+    whole = recording(np.random.default_rng(3), position=True)
+    kept = (np.arange(len(whole)) % 1811) > 137
+    holed = Trace(
+        whole.time[kept], {name: whole[name][kept] for name in whole.signals}, dict(whole.units), whole.origin
+    )
+    rows = Rows.of(holed, RIG)
+    assert len(rows.stretches) == 4
+
+    def columns(s):
+        late = [(s.effort, 1)] if s.time[0] > 2.0 else []  # as an event, which is not in every stretch
+        return [[(s.velocity, 1)], [(s.position, 0), (s.velocity, 1), *late]]
+
+    smooth = rows.conditioning.filter
+    alone = [smooth.columns(columns(part.signals), (0.0, 1e-3), part.places) for part in rows.stretches]
+    assert rows.table(columns, (0.0, 1e-3)) == pytest.approx(np.concatenate(alone, axis=1).T, rel=1e-9, abs=1e-9)
