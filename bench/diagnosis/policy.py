@@ -77,8 +77,9 @@ class Policy:
             over what the bare axis leaves and over noise, of a number fitted more, of an effect from outside the
             catalogue, and of what was not tried. Two more, of an effect more and of an event beside a remainder, made
             the right answers no likelier (`docs/certainty.md`).
-        beside: how often a name is there that stands beside an effect from outside the catalogue: 0.54 of the sets
-            that the weights come from (the same page).
+        beside: residual over noise floor, as share of that without a name, up to which the name is there beside an
+            effect from outside the catalogue. By their probability 99 % of names below .5 are there, and 4 % of those
+            above .7, of the sets that the weights come from (the same page).
         most: effects at most; a family of harmonics is one of them.
         members: of a family at most: more waves or events draw anything.
     """
@@ -202,6 +203,10 @@ class Policy:
             return True
         rows = one.count / one.rows.correlation
         return rows * float(np.log(over_noise(other) / over_noise(one))) < np.log(self.odds)
+
+    def stands_beside(self, without: Fit, having: Fit) -> bool:
+        """Whether a name takes more than an effect from outside the catalogue, beside which it stands, makes up for."""
+        return having.chi < self.beside * without.chi
 
     def leads(self, before: Fit, after: Fit) -> bool:
         """Whether an effect in the place of others is worth the search of what else is beside it.

@@ -13,7 +13,8 @@ gave, leaves of it beyond twice what the best one does. Then
 
 U, V - logarithms of E over that of the bare axis and over that of noise alone; numbers - fitted. What holds an effect
 from outside the catalogue weighs `outside` less and, together with a constant weight for what was not tried, makes up
-"none of the catalogue"; of names beside such an effect the share `beside` is there. The weights, of
+"none of the catalogue"; a name beside such an effect is there if without it at least twice as much is left, as that
+makes up for what is small. The weights, of
 `bench.diagnosis.policy`, are those under which recordings whose truth is known were likeliest (`python -m
 tests.studies.certainty`). The likelihood of the recording itself adds nothing to U and V: its weight beside them came
 out as zero.
@@ -312,15 +313,25 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
     beside: dict[str, float] = {}
     fits: dict[frozenset[str], Fit] = {}
     for each, share in ranked:
-        held = (term.effect for term in each.fitted.terms if not isinstance(term.effect, Outside))
+        if each.outside:
+            held = standing(each.fitted, policy) if share * policy.odds > 1.0 else []
+        else:
+            held = [term.effect for term in each.fitted.terms]
         names = frozenset(_called(effect, each.fitted.scope, called) for effect in held)
         if each.outside:
-            beside |= {name: beside.get(name, 0.0) + policy.beside * share for name in names}
+            beside |= {name: beside.get(name, 0.0) + share for name in names}
         else:
             fits.setdefault(names, each.fitted)
             shared[names] = shared.get(names, 0.0) + share
     sets = sorted((NameSet(*each) for each in shared.items()), key=lambda one: -one.probability)
     return Probabilities(tuple(sets), 1.0 - sum(each.probability for each in sets), detected, beside, fits)
+
+
+def standing(fitted: Fit, policy: Policy) -> list[Effect]:
+    """Effects beside one from outside the catalogue that it cannot make up for."""
+    own = [(index, term.effect) for index, term in enumerate(fitted.terms) if not isinstance(term.effect, Outside)]
+    less = (fit(fitted.rows, fitted.hypothesis.without(index)) for index, _ in own)
+    return [effect for (_, effect), without in zip(own, less, strict=True) if policy.stands_beside(without, fitted)]
 
 
 def _called(effect: Effect, scope: Scope, called: dict[str, str]) -> str:

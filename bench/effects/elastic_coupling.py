@@ -138,8 +138,9 @@ def _driven(state: Array, drive: Array, step: float, course: Array) -> tuple[Arr
     """
     one, inverse, mean = np.eye(2), np.linalg.inv(state), 0.5 * np.trace(state)
     turn = step * np.sqrt(complex(mean**2 - np.linalg.det(state)))
-    shear = np.sinc(1j * turn / np.pi).real * step
-    moved = np.exp(mean * step) * (np.cosh(turn).real * one + shear * (state - mean * one))
+    slow, fast = np.exp(mean * step + turn), np.exp(mean * step - turn)  # of much damping cosh alone overflows
+    sheared = np.exp(mean * step) * np.sinc(1j * turn / np.pi) if abs(turn) < 1.0 else 0.5 * (slow - fast) / turn
+    moved = 0.5 * (slow + fast).real * one + sheared.real * step * (state - mean * one)
     gains = [inverse @ (moved - one) @ drive]
     for power in range(1, len(course)):
         gains.append(inverse @ (power / step * gains[-1] - drive))

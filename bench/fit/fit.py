@@ -458,7 +458,8 @@ def together(fitted: Fit) -> Fit:
 
     def at(offset: Array) -> Fit:
         moved = fitted.hypothesis
-        for index, (term, places, own) in enumerate(zip(terms, free, np.split(offset, ends[:-1]), strict=True)):
+        steps = np.split(np.clip(offset, -FURTHEST, FURTHEST), ends[:-1])
+        for index, (term, places, own) in enumerate(zip(terms, free, steps, strict=True)):
             moved = moved.reshaped(index, _moved(term, places, own, scope))
         return fit(fitted.rows, moved)
 

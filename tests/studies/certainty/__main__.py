@@ -100,8 +100,8 @@ def names_of(case: Known, shares: Array) -> dict[str, float]:
     """Probability of each name of a case; of two that no recording tells apart, of either."""
     found: dict[frozenset[str], float] = {}
     for one, share in zip(case.hypotheses, shares.tolist(), strict=False):
-        for name in same([name for name in one.names if name in catalogue()]):
-            found[name] = found.get(name, 0.0) + share * (POLICY.beside if one.outside else 1.0)
+        for name in same([name for name in one.there if name in catalogue()]):
+            found[name] = found.get(name, 0.0) + share
     return {min(name): share for name, share in found.items()}
 
 
@@ -118,16 +118,16 @@ def reliability(cases: Sequence[Known], shares: Array) -> tuple[list[str], float
     return rows, error
 
 
-def beside_outside(cases: Sequence[Known], shares: Array) -> tuple[float, float]:
-    """Probability of all names beside an effect from outside the catalogue, and the share of it of true ones."""
+def beside_outside(cases: Sequence[Known], shares: Array, standing: bool) -> tuple[float, float]:
+    """Probability of names beside an effect from outside the catalogue that do or do not stand, and the share there."""
     pairs = [
         (share, case.true(name))
         for case, row in zip(cases, shares, strict=True)
         for one, share in zip(case.hypotheses, row.tolist(), strict=False)
         for name in (one.names if one.outside else ())
-        if name in catalogue()
+        if name in catalogue() and (name in one.standing) == standing
     ]
-    said, true = np.array(pairs, dtype=float).T
+    said, true = np.array(pairs, dtype=float).reshape(-1, 2).T
     return float(said.sum()), float(said @ true / said.sum())
 
 
@@ -171,8 +171,11 @@ def markdown(cases: Sequence[Known], found: Mapping[str, float], command: str) -
     lines += ["| from | names | mean probability | true |", "|---|---|---|---|", *rows]
     shown = [case.true(name) for case in cases for name in case.detected if "withheld" not in case.group]
     lines += ["", f"Of {len(shown)} names that the signals show directly {sum(shown)} are true."]
-    said, there = beside_outside(cases, shares)
-    lines += [f"Of names beside an effect from outside the catalogue, {said:.1f} by probability, {there:.0%} are true."]
+    for stand, which in ((True, "without which twice as much is left"), (False, "others")):
+        said, there = beside_outside(cases, shares, stand)
+        lines += [
+            f"Of names beside an effect from outside the catalogue {which}: {said:.1f} by probability, {there:.0%}."
+        ]
     return "\n".join(lines) + "\n"
 
 

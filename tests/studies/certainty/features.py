@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from bench.diagnosis.policy import POLICY
-from bench.diagnosis.probability import neighbourhood, scored
+from bench.diagnosis.probability import neighbourhood, scored, standing
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
@@ -21,13 +21,23 @@ from tests.studies.blind.score import same, twins
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A set of names and what `bench.diagnosis.probability` says of it."""
+    """A set of names and what `bench.diagnosis.probability` says of it.
+
+    Attributes:
+        standing: of the names beside an effect from outside the catalogue those that it cannot make up for.
+    """
 
     names: tuple[str, ...]
     left: float
     over: float
     numbers: int
     outside: bool
+    standing: tuple[str, ...] = ()
+
+    @property
+    def there(self) -> tuple[str, ...]:
+        """Names that are there if it is right."""
+        return self.standing if self.outside else self.names
 
 
 @dataclass(frozen=True)
@@ -83,7 +93,14 @@ def known(folder: Path, withheld: bool) -> Known | None:
     effects = [effect for name, effect in catalogue().items() if name not in excluded]
     searched = search(fit_bare(recordings.rows), effects, POLICY)
     hypotheses = [
-        Hypothesis(one.fitted.hypothesis.names, one.left, one.over, one.numbers, one.outside)
+        Hypothesis(
+            one.fitted.hypothesis.names,
+            one.left,
+            one.over,
+            one.numbers,
+            one.outside,
+            tuple(effect.name for effect in standing(one.fitted, POLICY)) if one.outside else (),
+        )
         for one in scored([*neighbourhood(searched, excluded, POLICY)], None, POLICY)
     ]
     detected = {effect.name for effect in recordings.detected}
@@ -99,7 +116,10 @@ def kept(path: Path) -> list[Known]:
     """Cases of a file."""
 
     def case(content: dict[str, Any]) -> Known:
-        every = tuple(Hypothesis(**each | {"names": tuple(each["names"])}) for each in content.pop("hypotheses"))
+        every = tuple(
+            Hypothesis(**each | {key: tuple(each[key]) for key in ("names", "standing")})
+            for each in content.pop("hypotheses")
+        )
         truth, own, detected = content.pop("truth"), tuple(content.pop("own")), tuple(content.pop("detected"))
         truth = None if truth is None else tuple(truth)
         return Known(**content, truth=truth, own=own, detected=detected, hypotheses=every)
