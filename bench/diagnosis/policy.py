@@ -78,8 +78,8 @@ class Policy:
             catalogue, and of what was not tried. Two more, of an effect more and of an event beside a remainder, made
             the right answers no likelier (`docs/certainty.md`).
         beside: residual over noise floor, as share of that without a name, up to which the name is there beside an
-            effect from outside the catalogue. By their probability 99 % of names below .5 are there, and 4 % of those
-            above .7, of the sets that the weights come from (the same page).
+            effect from outside the catalogue. By their probability 100 % of the names below .5 are there and 8 % of
+            the others, of the sets that the weights come from (the same page).
         most: effects at most; a family of harmonics is one of them.
         members: of a family at most: more waves or events draw anything.
     """

@@ -1,9 +1,11 @@
 """Probabilities of sets of names, by hand: sums, what is chosen, what else it may be."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 
+from bench.diagnosis import probability
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.probability import DETECTED, Contender, NameSet, Probabilities, probabilities
 from bench.effects.rivals import RIVALS
@@ -83,17 +85,20 @@ def test_what_no_catalogue_holds_gets_no_name():
     assert found.none > 0.99
 
 
-def test_a_name_beside_what_no_catalogue_holds_counts_a_part():
-    """The spring is in both sets, and as likely as the better one and half of the other, which costs a number less."""
+@pytest.mark.parametrize(("without", "counts"), [(2.1, 1.0), (1.9, 0.0)])
+def test_a_name_counts_that_what_no_catalogue_holds_cannot_make_up_for(monkeypatch, without, counts):
+    """The spring is in both sets, and as likely as both if without it twice as much is left beside the other one."""
     weighs = POLICY.outside - POLICY.number
     every = [
         contender(0.0, 9.0),
         contender(-5.0, 0.0, COGGING, SPRING, numbers=3),
         contender(-5.0, 0.0, SPRING, OUTSIDE, numbers=2, outside=True),
     ]
+    less = SimpleNamespace(chi=without * every[-1].fitted.chi)
+    monkeypatch.setattr(probability, "fit", lambda rows, hypothesis: less)
     found = probabilities(every, frozenset(), POLICY)
     (both,) = (each.probability for each in found.sets if each.names)
-    beside = POLICY.beside * both * math.exp(-weighs)
+    beside = counts * both * math.exp(-weighs)
     assert found.names == pytest.approx({"torsion_spring": both + beside, "cogging_torque": both}, rel=1e-6)
     assert found.none == pytest.approx(1.0 - both, abs=1e-6)
     assert found.instead_of("torsion_spring") == pytest.approx({None: found.none - beside})

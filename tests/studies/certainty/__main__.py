@@ -53,7 +53,7 @@ class Table:
         def column(values: Iterable[Sequence[float]]) -> Array:
             return np.array([np.pad(np.asarray(row, dtype=float), (0, most - len(row))) for row in values])
 
-        names = [field.name for field in fields(Hypothesis) if field.name != "names"]
+        names = [field.name for field in fields(Hypothesis) if field.name not in ("names", "standing")]
         self.of = {name: column([[getattr(h, name) for h in c.hypotheses] for c in cases]) for name in names}
         self.there = column([[1.0] * len(case.hypotheses) for case in cases]) > 0.0
         self.right = column([[case.right(h) for h in case.hypotheses] for case in cases])
@@ -171,7 +171,7 @@ def markdown(cases: Sequence[Known], found: Mapping[str, float], command: str) -
     lines += ["| from | names | mean probability | true |", "|---|---|---|---|", *rows]
     shown = [case.true(name) for case in cases for name in case.detected if "withheld" not in case.group]
     lines += ["", f"Of {len(shown)} names that the signals show directly {sum(shown)} are true."]
-    for stand, which in ((True, "without which twice as much is left"), (False, "others")):
+    for stand, which in ((True, "without which twice as much is left"), (False, "without which less is")):
         said, there = beside_outside(cases, shares, stand)
         lines += [
             f"Of names beside an effect from outside the catalogue {which}: {said:.1f} by probability, {there:.0%}."
