@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from bench.errors import InputError
-from bench.trace.read import GROUP, readers
+from bench.trace.read import readers
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -84,10 +84,19 @@ def test_a_reader_is_among_the_formats_that_a_refusal_lists(extras):
     assert "drive's memory, CSV table" in done.stderr
 
 
-def test_what_is_no_reader_is_refused(monkeypatch):
-    entry = EntryPoint("sum", "builtins:sum", GROUP)
-    monkeypatch.setattr("bench.trace.read.entry_points", lambda group: [entry])
-    with pytest.raises(InputError, match=r"servobench.readers: builtins:sum: found .*; allowed: a reader of the bench"):
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("builtins:sum", r"found <built-in function sum>; allowed: a reader with format, endings, recognises and read"),
+        (
+            "nowhere:READER",
+            r"cannot be imported \(ModuleNotFoundError: .*nowhere.*\); mend that package, or uninstall it",
+        ),
+    ],
+)
+def test_what_is_no_reader_is_refused(monkeypatch, value, said):
+    monkeypatch.setattr("bench.offered.entry_points", lambda group: [EntryPoint("other", value, group)])
+    with pytest.raises(InputError, match=rf"servobench.readers: {value}: {said}"):
         readers.__wrapped__()
 
 

@@ -16,9 +16,8 @@ import io
 import os
 import sys
 import traceback
-from collections.abc import Callable
-from importlib.metadata import entry_points
 from pathlib import Path
+from types import FunctionType
 from typing import Annotated
 
 import typer
@@ -34,6 +33,7 @@ from bench.cli.recording import diagnose, fleet, friction, identify, inspect, li
 from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate, validate
 from bench.errors import BenchError, InputError
 from bench.names import plain, short
+from bench.offered import offered
 
 app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
 
@@ -123,13 +123,11 @@ def _leave_output() -> None:
 def _add_offered() -> None:
     """Add the commands of other packages; InputError if one is no function, or has the name of one of the bench."""
     own = {command.__name__ for command in COMMANDS}
-    for entry in entry_points(group=GROUP):
-        offered: Callable[..., None] = entry.load()
-        if not callable(offered) or entry.name in own:
-            found = "found a name that the bench has" if entry.name in own else f"found {offered!r}"
-            raise InputError(f"{GROUP}: {entry.value}", found, "allowed: a function under a name of its own")
-        if entry.name not in {known.name for known in app.registered_commands}:
-            app.command(entry.name)(guarded(offered))
+    for name, command in offered(GROUP, FunctionType, "a function"):
+        if name in own:
+            raise InputError(f"{GROUP}: {name}", "found a name that the bench has", "allowed: a name of its own")
+        if name not in {known.name for known in app.registered_commands}:
+            app.command(name)(guarded(command))
 
 
 def _fault(fault: Exception) -> str:

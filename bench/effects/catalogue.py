@@ -9,13 +9,13 @@ Another package offers effects as entry points of the group `servobench.effects`
 import importlib
 import pkgutil
 from functools import cache
-from importlib.metadata import entry_points
 from types import MappingProxyType
 
 import bench.effects
 from bench.effects.effect import Effect
 from bench.effects.signals import Scope
 from bench.errors import InputError
+from bench.offered import offered
 
 GROUP = "servobench.effects"
 
@@ -35,12 +35,9 @@ def catalogue() -> MappingProxyType[str, Effect]:
         if "EFFECT" in vars(module):
             effect = vars(module)["EFFECT"]
             found[effect.name] = effect
-    for offered in entry_points(group=GROUP):
-        effect = offered.load()
-        if not isinstance(effect, Effect):
-            raise InputError(f"{GROUP}: {offered.value}", f"found {effect!r}", "allowed: an effect of the bench")
+    for _, effect in offered(GROUP, Effect, "an effect of the bench"):
         if effect.name in found:
-            raise InputError(f"{GROUP}: {offered.value}", f"found '{effect.name}' again", "allowed: a name of its own")
+            raise InputError(f"{GROUP}: {effect!r}", f"found '{effect.name}' again", "allowed: a name of its own")
         found[effect.name] = effect
     return MappingProxyType(found)
 

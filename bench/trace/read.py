@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from bench.errors import InputError
+from bench.offered import offered
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions
 from bench.trace.joints import by_joints
@@ -76,13 +76,8 @@ def readers() -> tuple[Reader, ...]:
     Raises:
         InputError: what another package offers is no reader.
     """
-    offered = []
-    for entry in entry_points(group=GROUP):
-        reader = entry.load()
-        if not isinstance(reader, Reader):
-            raise InputError(f"{GROUP}: {entry.value}", f"found {reader!r}", "allowed: a reader of the bench")
-        offered.append(reader)
-    return (*OWN, *offered, TABLE)
+    others = (reader for _, reader in offered(GROUP, Reader, "a reader with format, endings, recognises and read"))
+    return (*OWN, *others, TABLE)
 
 
 def reader_of(source: Source) -> Reader:

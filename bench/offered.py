@@ -1,0 +1,35 @@
+"""What other packages offer the bench as entry points: effects, readers and commands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib.metadata import entry_points
+from typing import TypeVar
+
+from bench.errors import InputError
+from bench.names import short
+
+T = TypeVar("T")
+
+
+def offered(group: str, kind: type[T], what: str) -> Iterator[tuple[str, T]]:
+    """Everything of a group, under the name that it is offered by.
+
+    Args:
+        group: of the entry points.
+        kind: what each of them is.
+        what: kind in words.
+
+    Raises:
+        InputError: one of them cannot be imported, or is something else; names its package.
+    """
+    for entry in entry_points(group=group):
+        place = f"{group}: {entry.value}" + (f" of {entry.dist.name}" if entry.dist else "")
+        try:
+            found = entry.load()
+        except Exception as fault:  # whatever the code of others raises as it is imported
+            said = short(f"{type(fault).__name__}: {fault}")
+            raise InputError(place, f"cannot be imported ({said})", "mend that package, or uninstall it") from fault
+        if not isinstance(found, kind):
+            raise InputError(place, f"found {found!r}", f"allowed: {what}")
+        yield entry.name, found
