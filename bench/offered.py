@@ -4,12 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from importlib.metadata import entry_points
+from pathlib import Path
+from traceback import extract_tb
+from types import TracebackType
 from typing import TypeVar
 
 from bench.errors import InputError
 from bench.names import short
 
 T = TypeVar("T")
+GROUPS = EFFECTS_GROUP, READERS_GROUP, COMMANDS_GROUP = (
+    "servobench.effects",
+    "servobench.readers",
+    "servobench.commands",
+)
 
 
 def offered(group: str, kind: type[T], what: str) -> Iterator[tuple[str, T]]:
@@ -33,3 +41,10 @@ def offered(group: str, kind: type[T], what: str) -> Iterator[tuple[str, T]]:
         if not isinstance(found, kind):
             raise InputError(place, f"found {found!r}", f"allowed: {what}")
         yield entry.name, found
+
+
+def at_fault(trace: TracebackType | None) -> str:
+    """The package that offers what an exception passed through; empty if none of them does."""
+    passed = {name for frame in extract_tb(trace) for name in (*Path(frame.filename).parts, Path(frame.filename).stem)}
+    others = (entry for group in GROUPS for entry in entry_points(group=group))
+    return next((entry.dist.name for entry in others if entry.dist and entry.module.split(".")[0] in passed), "")

@@ -105,3 +105,16 @@ def test_the_page_keeps_to_what_is_there():
     assert found
     for path in found:
         assert (ROOT / path).exists(), path
+
+
+def test_a_fault_of_another_package_is_said_to_be_its(extras):
+    """A reader that raises what nobody foresaw is not taken for the bench."""
+    whole = (extras / "servobench_extras" / "drive_dump.py").read_text(encoding="utf-8")
+    spoiled = whole.replace("return source.content.startswith(MAGIC)", "raise TypeError('nobody foresaw this')")
+    (extras / "servobench_extras" / "drive_dump.py").write_text(spoiled, encoding="utf-8")
+    (extras / "what.bin").write_bytes(bytes(range(256)))
+    done = run(extras, "-m", "bench", "inspect", "what.bin")
+    (extras / "servobench_extras" / "drive_dump.py").write_text(whole, encoding="utf-8")
+    assert spoiled != whole
+    assert done.returncode == 70
+    assert "a fault of servobench-extras, not of your input (TypeError: nobody foresaw this" in done.stderr

@@ -33,7 +33,7 @@ from bench.cli.recording import diagnose, fleet, friction, identify, inspect, li
 from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate, validate
 from bench.errors import BenchError, InputError
 from bench.names import plain, short
-from bench.offered import offered
+from bench.offered import COMMANDS_GROUP, at_fault, offered
 
 app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
 
@@ -76,7 +76,6 @@ for command in COMMANDS:
     app.command(short_help=command.__doc__)(guarded(command))
 
 #: Group of entry points of other packages' commands.
-GROUP = "servobench.commands"
 
 #: Errors of writing where nobody named a file.
 UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
@@ -123,9 +122,11 @@ def _leave_output() -> None:
 def _add_offered() -> None:
     """Add the commands of other packages; InputError if one is no function, or has the name of one of the bench."""
     own = {command.__name__ for command in COMMANDS}
-    for name, command in offered(GROUP, FunctionType, "a function"):
+    for name, command in offered(COMMANDS_GROUP, FunctionType, "a function"):
         if name in own:
-            raise InputError(f"{GROUP}: {name}", "found a name that the bench has", "allowed: a name of its own")
+            raise InputError(
+                f"{COMMANDS_GROUP}: {name}", "found a name that the bench has", "allowed: a name of its own"
+            )
         if name not in {known.name for known in app.registered_commands}:
             app.command(name)(guarded(command))
 
@@ -137,8 +138,10 @@ def _fault(fault: Exception) -> str:
     last = traceback.extract_tb(fault.__traceback__)[-1]
     place = f"{Path(last.filename).name}:{last.lineno}"
     what = f"{type(fault).__name__}: {short(str(fault))}" if str(fault) else type(fault).__name__
+    whose = at_fault(fault.__traceback__) or "the bench itself"
+    told = " as SECURITY.md says" if whose == "the bench itself" else " there"
     again = "" if "--debug" in sys.argv else "; run it again with --debug, and"
-    return f"a fault of the bench itself, not of your input ({what}, at {place}){again} report it as SECURITY.md says"
+    return f"a fault of {whose}, not of your input ({what}, at {place}){again} report it{told}"
 
 
 def _failed(message: str, status: int) -> int:

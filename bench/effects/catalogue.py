@@ -15,9 +15,7 @@ import bench.effects
 from bench.effects.effect import Effect
 from bench.effects.signals import Scope
 from bench.errors import InputError
-from bench.offered import offered
-
-GROUP = "servobench.effects"
+from bench.offered import EFFECTS_GROUP, offered
 
 
 @cache
@@ -35,9 +33,11 @@ def catalogue() -> MappingProxyType[str, Effect]:
         if "EFFECT" in vars(module):
             effect = vars(module)["EFFECT"]
             found[effect.name] = effect
-    for _, effect in offered(GROUP, Effect, "an effect of the bench"):
+    for _, effect in offered(EFFECTS_GROUP, Effect, "an effect of the bench"):
         if effect.name in found:
-            raise InputError(f"{GROUP}: {effect!r}", f"found '{effect.name}' again", "allowed: a name of its own")
+            raise InputError(
+                f"{EFFECTS_GROUP}: {effect!r}", f"found '{effect.name}' again", "allowed: a name of its own"
+            )
         found[effect.name] = effect
     return MappingProxyType(found)
 

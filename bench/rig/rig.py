@@ -308,7 +308,8 @@ class Rig(RigTable):
         raise InputError(
             trace.origin,
             "holds no current, torque, force or voltage",
-            "identification needs one of them; map it in the rig's [trace.columns]",
+            "identification needs one of them; `bench inspect` tells which column may be it: map that in the rig's "
+            "[trace.columns]",
         )
 
     def net_effort(self, trace: Trace) -> tuple[Array, str]:

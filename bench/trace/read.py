@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from bench.errors import InputError
-from bench.offered import offered
+from bench.offered import READERS_GROUP, offered
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions
 from bench.trace.joints import by_joints
@@ -31,8 +31,6 @@ from bench.trace.readers.table import TABLE
 from bench.trace.readers.twincat import TWINCAT
 from bench.trace.source import Source, open_source
 from bench.trace.trace import Trace, assemble
-
-GROUP = "servobench.readers"
 
 
 @runtime_checkable
@@ -76,7 +74,9 @@ def readers() -> tuple[Reader, ...]:
     Raises:
         InputError: what another package offers is no reader.
     """
-    others = (reader for _, reader in offered(GROUP, Reader, "a reader with format, endings, recognises and read"))
+    others = (
+        reader for _, reader in offered(READERS_GROUP, Reader, "a reader with format, endings, recognises and read")
+    )
     return (*OWN, *others, TABLE)
 
 
