@@ -219,7 +219,7 @@ def test_what_may_act_on_a_load_is_a_torque_of_motion_and_time_alone(effect):
         varies = all(np.ptp(column) > 0.0 for column in raw(effect, RECORDED))
         torque = all([order for _, order in column] == [0] for column in effect.columns(RECORDED, shape_of(effect)))
         outer = alone and varies and torque and not any(slot.whole for slot in effect.shapes)
-    assert isinstance(effect, OuterTorque) == outer
+    assert isinstance(effect, OuterTorque) == outer, f"columns of {effect.name} {'are' if outer else 'are not'} such"
 
 
 @every
