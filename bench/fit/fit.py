@@ -35,7 +35,6 @@ from bench.fit.hypothesis import (
     Layout,
     Term,
     delays,
-    extrapolated,
     lay_out,
     not_reaching,
     seen_beside,
@@ -279,13 +278,10 @@ def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
     if missing:
         layout = lay_out(rows, hypothesis, missing)
     theta, held = _balanced(layout)
-    last = None
     for _ in range(ROUNDS):
-        found, missing, settled = updated(hypothesis, missing, layout, theta)
+        hypothesis, missing, settled = updated(hypothesis, missing, layout, theta)
         if settled:
-            hypothesis = found
             break
-        hypothesis, last = extrapolated(hypothesis, found, last), (hypothesis, found)
         layout = lay_out(rows, hypothesis, missing)
         theta, held = _balanced(layout)
     fitted = Fit(rows, hypothesis, layout, theta, held, np.ones(layout.effort.size, dtype=bool))
@@ -417,9 +413,11 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = Fa
     free = free_shapes(term, scope)
     if not free:
         return fit(rows, hypothesis)
-    # what follows behind a coupling is kept while the motion is corrected a little
-    rows_tried = rows.held if isinstance(term.effect, Distortion) and hypothesis.coupling is not None else rows
-    hypothesis = fit(rows_tried, hypothesis).hypothesis  # with the levels that others see of each other
+    if isinstance(term.effect, Distortion) and hypothesis.coupling is not None:
+        rows_tried = rows.held  # what follows behind the coupling is kept while the motion is corrected a little
+        fit(rows_tried, hypothesis)
+    else:
+        rows_tried = rows
 
     def at(offset: Array) -> Hypothesis:
         return hypothesis.reshaped(index, _moved(term, free, offset, scope))

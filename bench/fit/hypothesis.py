@@ -65,8 +65,6 @@ FREQUENCIES, REACH = 400, 4.0
 UNSEEN = 0.1
 #: Change of what copies of torque miss, as share of it, at which they are in line with what is found.
 IN_LINE = 0.01
-#: Steps back, of the last change of what was found, and ahead, when levels that creep are extrapolated.
-EXTRAPOLATED = (-3.0, 1.0)
 #: What the torque passes from its reading to the motion, by kinds of effects that copy it.
 STAGES = (MisreadEffort, TorqueLoss, ScalesTorque, FrictionLevel)
 
@@ -471,39 +469,11 @@ def _alike(found: Hypothesis, before: Hypothesis) -> bool:
     loaded = any(term.load is not None for term in found.terms) or found.of_kind(FollowsLoad)
     if not (scaled or carried or loaded):
         return True
-    now, then = _seen_of_each_other(found), _seen_of_each_other(before)
-    return now.size == then.size and np.allclose(now, then, rtol=1e-3, atol=1e-6)
-
-
-def _seen_of_each_other(hypothesis: Hypothesis) -> Array:
-    """All that terms see of each other's strengths (v,)."""
-    return np.array([value for term in hypothesis.terms for value in (*term.level, *(term.load or ()), *term.pull)])
-
-
-def extrapolated(asked: Hypothesis, found: Hypothesis, last: tuple[Hypothesis, Hypothesis] | None) -> Hypothesis:
-    """The next hypothesis to ask for after what one and the last one asked for found: where both would come together.
-
-    Levels of frictions that scale each other swing from fit to fit, or creep: a share between a warm-up and a direction
-    that was off by .03 was off by .02, by .01 on the other side, ... (D. G. Anderson, Journal of the ACM 12, 1965,
-    547-560, of depth 1).
-    """
-    now, then = (asked, found), last or (asked, found)
-    (x, g), (x_before, g_before) = ([_seen_of_each_other(each) for each in pair] for pair in (now, then))
-    if last is None or not x.size == g.size == x_before.size == g_before.size:
-        return found
-    scale = np.maximum(np.abs(g), np.finfo(float).tiny)
-    left, left_before = (g - x) / scale, (g_before - x_before) / scale
-    change = left - left_before
-    share = float(np.clip(left @ change / max(change @ change, np.finfo(float).tiny), *EXTRAPOLATED))
-    values = iter((g - share * (g - g_before)).tolist())
-
-    def taken(own: tuple[float, ...]) -> tuple[float, ...]:
-        return tuple(next(values) for _ in own)
-
-    return found.with_terms(
-        replace(term, level=taken(term.level), load=term.load and taken(term.load), pull=taken(term.pull))
-        for term in found.terms
+    now, then = (
+        [value for term in each.terms for value in (*term.level, *(term.load or ()), *term.pull)]
+        for each in (found, before)
     )
+    return len(now) == len(then) and np.allclose(now, then, rtol=1e-3, atol=1e-6)
 
 
 def outer_loads(hypothesis: Hypothesis) -> list[int]:
