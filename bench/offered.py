@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from importlib.metadata import entry_points
-from pathlib import Path
-from traceback import extract_tb
+from traceback import walk_tb
 from types import TracebackType
 from typing import TypeVar
 
@@ -13,6 +12,7 @@ from bench.errors import InputError
 from bench.names import short
 
 T = TypeVar("T")
+#: Groups of entry points.
 GROUPS = EFFECTS_GROUP, READERS_GROUP, COMMANDS_GROUP = (
     "servobench.effects",
     "servobench.readers",
@@ -45,6 +45,6 @@ def offered(group: str, kind: type[T], what: str) -> Iterator[tuple[str, T]]:
 
 def at_fault(trace: TracebackType | None) -> str:
     """The package that offers what an exception passed through; empty if none of them does."""
-    passed = {name for frame in extract_tb(trace) for name in (*Path(frame.filename).parts, Path(frame.filename).stem)}
+    passed = {str(frame.f_globals.get("__name__")).split(".")[0] for frame, _ in walk_tb(trace)}
     others = (entry for group in GROUPS for entry in entry_points(group=group))
     return next((entry.dist.name for entry in others if entry.dist and entry.module.split(".")[0] in passed), "")

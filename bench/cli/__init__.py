@@ -75,8 +75,6 @@ COMMANDS = (
 for command in COMMANDS:
     app.command(short_help=command.__doc__)(guarded(command))
 
-#: Group of entry points of other packages' commands.
-
 #: Errors of writing where nobody named a file.
 UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 #: Errors of a system that has no more to give, whatever it was asked for.
@@ -124,9 +122,7 @@ def _add_offered() -> None:
     own = {command.__name__ for command in COMMANDS}
     for name, command in offered(COMMANDS_GROUP, FunctionType, "a function"):
         if name in own:
-            raise InputError(
-                f"{COMMANDS_GROUP}: {name}", "found a name that the bench has", "allowed: a name of its own"
-            )
+            raise InputError(f"{COMMANDS_GROUP}: {name}", "found a name of the bench", "allowed: a name of its own")
         if name not in {known.name for known in app.registered_commands}:
             app.command(name)(guarded(command))
 

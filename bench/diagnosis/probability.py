@@ -14,10 +14,9 @@ gave, leaves of it beyond twice what the best one does. Then
 U, V - logarithms of E over that of the bare axis and over that of noise alone; numbers - fitted. What holds an effect
 from outside the catalogue weighs `outside` less and, together with a constant weight for what was not tried, makes up
 "none of the catalogue"; a name beside such an effect is there if without it at least twice as much is left, as that
-makes up for what is small. The weights, of
-`bench.diagnosis.policy`, are those under which recordings whose truth is known were likeliest (`python -m
-tests.studies.certainty`). The likelihood of the recording itself adds nothing to U and V: its weight beside them came
-out as zero.
+makes up for what is small. The weights, of `bench.diagnosis.policy`, are those under which recordings whose truth is
+known were likeliest (`python -m tests.studies.certainty`). The likelihood of the recording itself adds nothing to U and
+V: its weight beside them came out as zero.
 """
 
 from __future__ import annotations
@@ -313,10 +312,9 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
     beside: dict[str, float] = {}
     fits: dict[frozenset[str], Fit] = {}
     for each, share in ranked:
-        if each.outside:
-            held = standing(each.fitted, policy) if share * policy.odds > 1.0 else []
-        else:
-            held = [term.effect for term in each.fitted.terms]
+        if each.outside and share * policy.odds < 1.0:
+            continue
+        held = standing(each.fitted, policy) if each.outside else [term.effect for term in each.fitted.terms]
         names = frozenset(_called(effect, each.fitted.scope, called) for effect in held)
         if each.outside:
             beside |= {name: beside.get(name, 0.0) + share for name in names}

@@ -171,11 +171,10 @@ def markdown(cases: Sequence[Known], found: Mapping[str, float], command: str) -
     lines += ["| from | names | mean probability | true |", "|---|---|---|---|", *rows]
     shown = [case.true(name) for case in cases for name in case.detected if "withheld" not in case.group]
     lines += ["", f"Of {len(shown)} names that the signals show directly {sum(shown)} are true."]
-    for stand, which in ((True, "without which twice as much is left"), (False, "without which less is")):
+    for stand, left in ((True, "twice as much is left"), (False, "less is")):
         said, there = beside_outside(cases, shares, stand)
-        lines += [
-            f"Of names beside an effect from outside the catalogue {which}: {said:.1f} by probability, {there:.0%}."
-        ]
+        figures = f"{said:.1f} by probability, {there:.0%} are true."
+        lines += [f"Of names beside an effect from outside the catalogue without which {left}, {figures}"]
     return "\n".join(lines) + "\n"
 
 
