@@ -328,7 +328,7 @@ def refined(
     It is possible if effects were added, no unexplained remainder would bias the values, and the gap exceeds that of a
     complete model.
     """
-    effects, parameters = named(recordings, stage.fitted, stage.outside)
+    effects, parameters = named(recordings, stage.fitted, stage.outside, suspects.policy)
     plain = Refined(stage.model, effects, parameters, None)
     if stage.model is None or not effects or suspects.policy.remains(stage.fitted):
         return plain

@@ -14,13 +14,13 @@ import numpy as np
 
 from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.diagnosis.policy import Policy
+from bench.diagnosis.policy import POLICY, Policy, worth
 from bench.diagnosis.probability import Probabilities, neighbourhood, probabilities, scored
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, search
 from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detected, Effect, Occasional, Standout
+from bench.effects.effect import Detected, Effect, Occasional, Replacing, Standout
 from bench.effects.signals import Axis
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit, hint, shaped, unbiased
@@ -121,7 +121,7 @@ def _with_event(fitted: Fit, effect: Occasional, apart: Standout, policy: Policy
 
 
 def named(
-    recordings: Recordings, fitted: Fit, detected: Mapping[Effect, Detected]
+    recordings: Recordings, fitted: Fit, detected: Mapping[Effect, Detected], policy: Policy = POLICY
 ) -> tuple[list[NamedEffect], dict[str, Parameter]]:
     """Effects of a torque balance and outside of it with their quantities, and J, K_w, K_0 beside them."""
     numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)
@@ -143,11 +143,23 @@ def named(
             .reaching(by_noise[key])
             for key, value in numbers.quantities(index, partial(_unit, recordings)).items()
         }
-        effects.append(NamedEffect(term.effect, found, term.effect.ambiguous(fitted.scope), evidence))
+        effects.append(NamedEffect(term.effect, found, alike(fitted, index, policy), evidence))
     gain = _gain(effects, fitted)
     parameters = {name: found.reaching(found.value / gain) for name, found in parameters.items()}
     parameters |= load_inertia(parameters, recordings.rig)
     return [*effects, *(_read(recordings, effect, found) for effect, found in detected.items())], parameters
+
+
+def alike(fitted: Fit, index: int, policy: Policy) -> tuple[str, ...]:
+    """Names of effects that the recording cannot distinguish from a term's: none can, or a wider form fits as well."""
+    term, found = fitted.terms[index], []
+    for effect in catalogue().values():
+        wider = isinstance(effect, Replacing) and term.effect.name in effect.replaces
+        if wider and (shape := effect.unlike(fitted)) is not None:
+            other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, shape)))
+            if worth(other, fitted) < policy.by_chance(fitted, len(shape)) and policy.physical(other):
+                found.append(effect.name)
+    return (*term.effect.ambiguous(fitted.scope), *found)
 
 
 def _gain(effects: Sequence[NamedEffect], fitted: Fit) -> float:

@@ -49,6 +49,10 @@ class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
         closer = [(best * step**power,) for power in np.linspace(-1.0, 1.0, 25).tolist()]
         return max(fitted.tried(self, closer), key=lambda tried: tried.gain).shape
 
+    def unlike(self, fitted: Fitted) -> tuple[float, ...] | None:
+        """As much friction by the load's torque as by the motor's, if there is a load."""
+        return (1.0,) if fitted.places(LoadTorque).size else None
+
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         motor, ratio = strengths[0], shape[0]
         return {"motor_coefficient": motor, "load_ratio": ratio, "load_coefficient": motor * ratio}

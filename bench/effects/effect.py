@@ -398,3 +398,7 @@ class Replacing(Effect):
 
         `promises` says of the squares that a grid's shape takes whether a search from it is worth it.
         """
+
+    def unlike(self, fitted: Fitted) -> tuple[float, ...] | None:
+        """A shape with which it clearly differs from what it replaces, if that is a form of it; else None."""
+        return None

@@ -5,9 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.diagnosis.name import alike
+from bench.diagnosis.policy import POLICY
+from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.effects.catalogue import catalogue
 from bench.effects.present import Present
 from bench.effects.signals import Base
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Term
+from bench.rig.rig import load_rig
+from bench.validation.independent.effects import KINDS
+from bench.validation.independent.references import random_motion
+from bench.validation.independent.rig import Axis, write_rig
+from bench.validation.independent.sensors import Noise, Sensors
+from bench.validation.independent.simulate import simulate
 from tests.effects.axes import FREE, VALUES, moved, present, signals
 
 NAME = "directional_load_friction"
@@ -35,3 +46,19 @@ def test_without_a_load_it_is_load_dependent_friction():
 def test_the_coefficient_of_the_load_is_determined_beside_that_of_the_motor():
     found = catalogue()[NAME].report([0.2], (3.0,), Base(1.0, 0.0, 0.0))
     assert found == {"motor_coefficient": 0.2, "load_ratio": 3.0, "load_coefficient": pytest.approx(0.6)}
+
+
+@pytest.mark.parametrize(("amplitude", "also"), [(0.004, (NAME,)), (0.2, ())])
+def test_friction_by_the_motors_torque_may_be_by_the_loads_beside_a_small_load(amplitude, also, tmp_path):
+    """Of the independent integrator: no friction by the load's torque, which a small load does not tell."""
+    axis = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
+    write_rig(axis, tmp_path / "rig.toml")
+    hidden = KINDS["load_dependent_friction"](0.1), KINDS["unbalance"](amplitude, 0.4)
+    sensors = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
+    (run,) = simulate([axis], [random_motion(axis, np.random.default_rng(3), 6.0)], [hidden], [sensors], 3)
+    recordings = Recordings.of(run.trace, load_rig(tmp_path / "rig.toml"), None)
+    terms = Term(catalogue()["load_dependent_friction"]), Term(catalogue()["unbalance"])
+    bare = fit_bare(recordings.rows)
+    fitted = fit(bare.rows, bare.hypothesis.with_terms(terms))
+    assert fitted.strengths(0)[0] == pytest.approx(0.1, rel=0.05)
+    assert [alike(fitted, index, POLICY) for index in range(2)] == [also, ()]

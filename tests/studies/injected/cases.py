@@ -18,7 +18,7 @@ import bench
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.errors import BenchError
 from bench.trace.write import write
-from bench.validation.coverage import UNEXPLAINED, of_effects
+from bench.validation.coverage import of_effects
 from bench.validation.independent.effects import KINDS, Effect
 from bench.validation.injection import INJECTABLE, disturbance, drawn, injected
 from bench.validation.into import FLAGGED, Own, fate, own
@@ -107,7 +107,7 @@ class Row:
         seconds: of CPU that the diagnosis took - s.
         quantities: true value, value, and both ends of the interval of 95 %, by name.
         hidden: what is in the recording, too, as far as it is known or was named before.
-        held: whether the sets that hold the truth with 90 % do; None: it is refused.
+        sets: that hold the truth with 90 %, each of names, or None of the catalogue; empty if it is refused.
     """
 
     case: Case
@@ -119,7 +119,7 @@ class Row:
     seconds: float = 0.0
     quantities: dict[str, tuple[float, float, float, float]] = field(default_factory=dict)
     hidden: tuple[str, ...] = ()
-    held: bool | None = None
+    sets: tuple[tuple[str, ...] | None, ...] = ()
 
     @property
     def believed(self) -> float:
@@ -162,19 +162,8 @@ def judged(item: tuple[Case, Source, Known]) -> Row:
     scored = of_effects([effect], own.host.axis, found)
     quantities = {one.quantity: (one.true, one.parameter.value, *one.parameter.ci95) for one in scored}
     beliefs = believed(found, case.effect, own.names)
-    held = holds(found.probabilities.holding(0.9), case.effect, own, source.real)
-    return Row(case, became, new, found.verdict, "", beliefs, seconds, quantities, own.beside, held)
-
-
-def holds(sets: Sequence[frozenset[str] | None], effect: str, own: Known, real: bool) -> bool:
-    """Whether sets of names hold the truth: an effect and nothing that is not in the recording, too.
-
-    Where a real recording leaves a remainder as it is, it is that none of the catalogue is all that is missing.
-    """
-    if real and own.verdict == UNEXPLAINED:
-        return None in sets
-    true, beside = same([effect]), same(own.beside)
-    return any(names is not None and true <= same([*names]) <= true | beside for names in sets)
+    sets = tuple(None if names is None else (*sorted(names),) for names in found.probabilities.holding(0.9))
+    return Row(case, became, new, found.verdict, "", beliefs, seconds, quantities, own.beside, sets)
 
 
 def believed(found: Diagnosis, effect: str, own: Sequence[str]) -> dict[str, float]:
@@ -208,9 +197,9 @@ def kept(path: Path) -> Iterator[Row]:
             continue
         quantities = {key: tuple(values) for key, values in content.pop("quantities").items()}
         names, hidden = tuple(content.pop("names")), tuple(content.pop("hidden"))
-        row = Row(
-            **content | {"case": Case(**content["case"]), "names": names, "quantities": quantities, "hidden": hidden}
-        )
+        sets = tuple(None if one is None else tuple(one) for one in content.pop("sets"))
+        case = Case(**content.pop("case"))
+        row = Row(case, **content, names=names, quantities=quantities, hidden=hidden, sets=sets)
         if row.fate != FAILED:
             yield row
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
 
+from bench.effects.catalogue import catalogue
+from bench.validation.coverage import UNEXPLAINED
 from bench.validation.into import FATES, PART, RIGHT, WRONG, Own
 from tests.studies.blind.score import same, twins
 from tests.studies.injected.cases import FAILED, NONE, UNABLE, Row
@@ -30,7 +32,7 @@ def markdown(
     parts = [
         "# Known effects put into recordings",
         f"`{command}`",
-        headline(judged),
+        headline(judged, {name for name in real if name in owns and owns[name].verdict == UNEXPLAINED}),
         "## By recording and strength",
         grouped(judged, lambda row: ("real" if row.case.source in real else "simulated", f"{row.case.strength:g}")),
         "## How sure",
@@ -46,10 +48,11 @@ def markdown(
     return "\n\n".join(parts) + "\n"
 
 
-def headline(rows: Sequence[Row]) -> str:
-    """What it all comes to."""
+def headline(rows: Sequence[Row], remaining: Collection[str]) -> str:
+    """What it all comes to; `remaining`: real recordings that leave a remainder as they are."""
     inside = [low <= true <= high for row in rows for true, _, low, high in row.quantities.values()]
-    fates = Counter(row.fate for row in rows)
+    fates, answered = Counter(row.fate for row in rows), [row for row in rows if row.sets]
+    others = pairs(rows, hidden=False, every=True)
     strengths = sorted({row.case.strength for row in rows})
     named = {each: [row.fate in (RIGHT, PART) for row in rows if row.case.strength == each] for each in strengths}
     found = [
@@ -58,13 +61,26 @@ def headline(rows: Sequence[Row]) -> str:
         ("wrong", str(fates[WRONG])),
         ("a false name beside the true one", str(fates[PART])),
         ("mean probability of the true name", f"{sum(row.believed for row in rows) / max(len(rows), 1):.3f}"),
-        ("expected calibration error, of names", f"{calibration_error(pairs(rows)):.3f}"),
-        ("the same, but for what simulated axes hold besides", f"{calibration_error(pairs(rows, hidden=False)):.3f}"),
-        ("sets of 90 % that hold the truth", _share([row.held for row in rows if row.held is not None])),
+        ("expected calibration error, of all effects", f"{calibration_error(others):.3f}"),
+        ("of the true name and those that were considered", f"{calibration_error(pairs(rows, hidden=False)):.3f}"),
+        ("the same with what simulated axes hold besides", f"{calibration_error(pairs(rows)):.3f}"),
+        ("sets of 90 % that hold the names", _share([holds(row) for row in answered])),
+        ("the same, none where a real axis leaves a remainder", _share([strictly(row, remaining) for row in answered])),
         ("quantities within their interval of 95 %", _share(inside)),
         ("seconds of CPU of all diagnoses", f"{sum(row.seconds for row in rows):.0f}"),
     ]
     return _table(("what", "measured"), found)
+
+
+def holds(row: Row) -> bool:
+    """Whether one of its sets is the effect, and nothing beside it that is not in the recording, too."""
+    true, beside = same([row.case.effect]), same(row.hidden)
+    return any(names is not None and true <= same(names) <= true | beside for names in row.sets)
+
+
+def strictly(row: Row, remaining: Collection[str]) -> bool:
+    """The same, but in a recording of `remaining` it is right that none of the catalogue is all that is missing."""
+    return None in row.sets if row.case.source in remaining else holds(row)
 
 
 def _share(held: Sequence[bool]) -> str:
@@ -81,20 +97,23 @@ def grouped(rows: Sequence[Row], group: Callable[[Row], tuple[str, str]]) -> str
     return _table(("of", "cases", *FATES), lines)
 
 
-def pairs(rows: Iterable[Row], hidden: bool = True) -> list[tuple[float, bool]]:
-    """Probability of each new name, and whether it is there; what no catalogue holds never is.
+def pairs(rows: Iterable[Row], hidden: bool = True, every: bool = False) -> list[tuple[float, bool]]:
+    """Probability of each new name, and whether it is there; of two that no recording tells apart, of either.
 
     Args:
         rows: judged cases.
         hidden: whether names of what a recording holds beside the effect count, visible or not.
+        every: whether all effects of the catalogue count, those that were not considered with 0.
     """
-    there = [(row, same([row.case.effect]), same(row.hidden)) for row in rows]
-    return [
-        (p, twins(name) in true | beside)
-        for row, true, beside in there
-        for name, p in row.probabilities.items()
-        if name != NONE and (hidden or twins(name) not in beside - true)
-    ]
+    found = []
+    for row in rows:
+        true, beside = same([row.case.effect]), same(row.hidden)
+        stated = dict.fromkeys(same([*catalogue()]) if every else (), 0.0)
+        for name, p in row.probabilities.items():
+            stated[twins(name)] = stated.get(twins(name), 0.0) + p
+        stated.pop(twins(NONE), None)
+        found += [(p, name in true | beside) for name, p in stated.items() if hidden or name not in beside - true]
+    return found
 
 
 def calibration_error(stated: Sequence[tuple[float, bool]]) -> float:

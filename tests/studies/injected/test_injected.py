@@ -8,11 +8,12 @@ import pytest
 
 import bench
 from bench.diagnosis.probability import NameSet, Probabilities
+from bench.effects.catalogue import catalogue
 from bench.trace.trace import Trace
-from bench.validation.coverage import UNEXPLAINED
 from bench.validation.independent.effects import LoadDependentFriction, TorqueOffset
 from bench.validation.injection import INJECTABLE
 from tests.shared import needs_shared
+from tests.studies.blind.score import same
 from tests.studies.injected.cases import (
     FAILED,
     NONE,
@@ -22,7 +23,6 @@ from tests.studies.injected.cases import (
     Row,
     believed,
     draw,
-    holds,
     keep,
     kept,
     possible,
@@ -30,7 +30,7 @@ from tests.studies.injected.cases import (
 )
 from tests.studies.injected.sources import Source, real
 from tests.studies.injected.stability import HALVES, NOISE, WHOLE, Answer, compared, markdown, variants
-from tests.studies.injected.table import calibration_error, headline, pairs
+from tests.studies.injected.table import calibration_error, headline, holds, pairs, strictly
 from tests.studies.nuisance.realistic import one
 from tests.validation.test_into import OWN, found
 
@@ -38,7 +38,14 @@ LOADED = LoadDependentFriction(0.1)
 KNOWN = Known(**vars(OWN))
 CASE = Case("axis/r1", "cogging_torque", 2.0, 7)
 ROW = Row(
-    CASE, "right", ("cogging_torque",), "explained", "", {"cogging_torque": 0.9}, 1.5, {"amplitude": (1, 2, 0, 3)}
+    CASE,
+    "right",
+    ("cogging_torque",),
+    "explained",
+    probabilities={"cogging_torque": 0.9},
+    seconds=1.5,
+    quantities={"amplitude": (1, 2, 0, 3)},
+    sets=(("cogging_torque",), None),
 )
 
 
@@ -77,7 +84,7 @@ def test_calibration_error(told, error):
 def test_what_no_catalogue_holds_is_no_name():
     flagged = replace(ROW, probabilities={NONE: 1.0, "backlash": 0.2})
     assert pairs([ROW, flagged]) == [(0.9, True), (0.2, False)]
-    assert "| mean probability of the true name | 0.450 |" in headline([ROW, flagged])
+    assert "| mean probability of the true name | 0.450 |" in headline([ROW, flagged], ())
 
 
 def test_what_a_simulated_recording_holds_besides_is_no_false_name():
@@ -85,27 +92,28 @@ def test_what_a_simulated_recording_holds_besides_is_no_false_name():
     beside = replace(ROW, probabilities=said, hidden=("direction_dependent_friction",))  # the offset's twin
     assert pairs([beside]) == [(0.9, True), (0.6, True), (0.2, False)]
     assert pairs([beside], hidden=False) == [(0.9, True), (0.2, False)]
+    every = pairs([beside], hidden=False, every=True)
+    assert sorted(every)[-2:] == [(0.2, False), (0.9, True)]
+    assert len(every) == len(same([*catalogue()])) - 1  # friction by direction and an offset look alike
 
 
 @pytest.mark.parametrize(
-    ("sets", "real", "held"),
+    ("sets", "held"),
     [
-        ([{"cogging_torque"}], True, True),
-        ([{"backlash"}, {"cogging_torque", "unbalance"}], True, True),
-        ([{"cogging_torque", "backlash"}, {"unbalance"}, None], True, False),
-        ([{"cogging_torque"}], False, True),
+        ([{"cogging_torque"}], True),
+        ([{"backlash"}, {"cogging_torque", "unbalance"}], True),
+        ([{"cogging_torque", "backlash"}, {"unbalance"}, None], False),
     ],
 )
-def test_a_set_holds_the_effect_and_no_more_than_is_there(sets, real, held):
-    sets = [each if each is None else frozenset(each) for each in sets]
-    assert holds(sets, "cogging_torque", KNOWN, real) == held
+def test_a_set_holds_the_effect_and_no_more_than_is_there(sets, held):
+    sets = tuple(each if each is None else tuple(each) for each in sets)
+    assert holds(replace(ROW, sets=sets, hidden=KNOWN.beside)) == held
 
 
 def test_beside_a_remainder_of_a_real_axis_none_of_the_catalogue_is_the_truth():
-    left = replace(KNOWN, verdict=UNEXPLAINED)
-    assert not holds([frozenset({"cogging_torque"})], "cogging_torque", left, True)
-    assert holds([frozenset(), None], "cogging_torque", left, True)
-    assert holds([frozenset({"cogging_torque"})], "cogging_torque", left, False)
+    named, open_ = (replace(ROW, sets=sets) for sets in ((("cogging_torque",),), ((), None)))
+    assert holds(named) and strictly(named, {"axis/r2"}) and not strictly(named, {"axis/r1"})
+    assert strictly(open_, {"axis/r1"}) and not holds(open_)
 
 
 def test_names_are_compared_with_variants_and_other_rounds():
