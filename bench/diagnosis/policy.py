@@ -216,12 +216,14 @@ class Policy:
         """
         return self.physical(after) and self._saves(before, after, self.promising)
 
-    def replaces_by(self, before: Fit, after: Fit) -> bool:
+    def replaces_by(self, before: Fit, after: Fit, without: Fit) -> bool:
         """Whether `after`, with an effect in the place of others, leaves less by a share where it is determined.
 
-        Where it is not, no more than impacts at the wrong instants would; less by that share, too, if that is most.
+        Where it is not, no more than impacts at the wrong instants would, over what `without` these others is left;
+        less by that share, too, if that is most. A coupling takes part of the impacts that a backlash has at wrong
+        instants: beside an eccentric encoder .25, the backlash that was there left .55 (seed 1001, pair 9).
         """
-        left, after_left = (float(np.sum(each[~after.determined] ** 2)) for each in (before.residual, after.left))
+        left, after_left = (float(np.sum(each[~after.determined] ** 2)) for each in (without.residual, after.left))
         allowed = ERRS_TWICE if float(after.determined.mean()) > self.determined else 1.0 - self.replaces
         saves = self.physical(after) and self._saves(before, after, self.replaces)
         return saves and after_left <= allowed * left and not self.only_damps(before, after)

@@ -244,6 +244,8 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
     determined = np.logical_and.reduce([each.determined for each in physical])
     power = np.array([np.mean(each.left[determined] ** 2) for each in physical])
     white = np.array([each.noise.white**2 for each in physical])
+    outside = np.array([any(isinstance(term.effect, Outside) for term in each.terms) for each in physical])
+    white[outside] = np.minimum(white[outside], white[~outside].max())  # its inertia may be any, and noise with that
     nearest = physical[int(np.argmin(power / white))]
     floor = white * (nearest.floor / nearest.noise.white) ** 2
     excess = np.maximum(power - floor, 0.0)
@@ -252,8 +254,7 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
     left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: what damps it leaves no less for that
     over = np.log1p(excess / (BESIDE_NOISE * floor))
     numbers = [freedom(each) - freedom(tried[0]) for each in physical]
-    outside = [any(isinstance(term.effect, Outside) for term in each.terms) for each in physical]
-    columns = (left - left[0]).tolist(), over.tolist(), numbers, outside
+    columns = (left - left[0]).tolist(), over.tolist(), numbers, outside.tolist()
     return [Contender(*each) for each in zip(physical, *columns, strict=True)]
 
 

@@ -283,20 +283,22 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
     (backfitting: A. Buja, T. Hastie, R. Tibshirani, Annals of Statistics 17, 1989, 453-510).
     """
     last, earlier = found.last, found.steps[:-1] or found.steps
-    replaced, shape = None, None
     beside = [term for term in last.terms if term.effect.name not in effect.replaces]
+    others = without = fit(last.rows, last.hypothesis.with_terms(beside))
+    replaced, shape = None, None
     for _ in range(TURNS):
-        placed = in_place(fit(last.rows, last.hypothesis.with_terms(beside)), effect, shape, effects, policy)
-        if placed is None or not policy.leads(last, placed):
+        placed = in_place(others, effect, shape, effects, policy)
+        if placed is None or not policy.leads(others, placed):
             break
         replaced = selected(Searched((*earlier, Step(backward_elimination(placed, policy)))), effects, policy)
-        others = [term for term in replaced.last.terms if term.effect is not effect]
-        if Counter(term.effect for term in others) == Counter(term.effect for term in beside):
+        found_beside = [term for term in replaced.last.terms if term.effect is not effect]
+        if Counter(term.effect for term in found_beside) == Counter(term.effect for term in beside):
             break
-        beside = others
+        beside = found_beside
+        others = fit(last.rows, last.hypothesis.with_terms(beside))
         left = [] if policy.remains(replaced.last) else replaced.last.terms  # bent to what was hidden still
         shape = next((term.shape for term in left if term.effect is effect), None)
-    return replaced if replaced is not None and policy.replaces_by(last, replaced.last) else None
+    return replaced if replaced is not None and policy.replaces_by(last, replaced.last, without) else None
 
 
 def in_place(

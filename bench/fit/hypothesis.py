@@ -34,6 +34,7 @@ from bench.effects.acting import (
     ScalesFriction,
     ScalesTorque,
     TorqueLoss,
+    lagged,
 )
 from bench.effects.effect import (
     Columns,
@@ -287,6 +288,7 @@ def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, m
 
     def columns(s: Signals) -> list[Column]:
         between = np.interp(s.time + s.began, time, missing)
+        between = lagged(between, lag, s.sample_period) if lag else between
         low, high = (replace(s, torque=s.torque - between + more) for more in (0.0, step))
         return [*effect.columns(low, shape), *effect.columns(high, shape), [(between, 0)]]
 
@@ -399,9 +401,13 @@ def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, strengths: Call
     model leaves of it, and so explain it by itself: errors in the variables, for which the modelled torque is the
     instrument (W. A. Fuller, Measurement Error Models, 1987, 1.4).
     """
-    seen = seen_by(rows, hypothesis).with_signals(
-        lambda s: replace(s, torque=s.torque - np.interp(s.time + s.began, rows.time, left))
-    )
+    lag = delays(rows, hypothesis)[1]
+
+    def modelled(s: Signals) -> Signals:
+        between = np.interp(s.time + s.began, rows.time, left)
+        return replace(s, torque=s.torque - (lagged(between, lag, s.sample_period) if lag else between))
+
+    seen = seen_by(rows, hypothesis).with_signals(modelled)
     seen = with_friction(seen, hypothesis, len(hypothesis.terms))
     return with_load(seen, ((term, strengths(index)) for index, term in enumerate(hypothesis.terms)))
 

@@ -15,7 +15,7 @@ RULES: dict[str, Callable] = {
     "physical": lambda self, fitted: True,
     "needs": lambda self, fitted, less, index: True,
     "leads": lambda self, before, after: True,
-    "replaces_by": lambda self, before, after: True,
+    "replaces_by": lambda self, before, after, without: True,
     "remains": lambda self, fitted: False,
 }
 

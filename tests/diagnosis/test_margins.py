@@ -36,7 +36,7 @@ def no_longer_needed(fitted, less, index=0):
 
 
 def replaces(before, after):
-    return POLICY.replaces_by(before, after)
+    return POLICY.replaces_by(before, after, before)
 
 
 def remains(fitted):

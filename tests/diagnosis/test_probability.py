@@ -8,9 +8,15 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import NameSet, Probabilities
+from bench.diagnosis.probability import NameSet, Probabilities, neighbourhood, probabilities, scored
+from bench.diagnosis.recordings import fit_bare
+from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
+from bench.fit.rows import Rows
+from bench.rig.rig import load_rig
+from bench.validation.independent.rig import write_rig
+from tests.cases import record
 from tests.diagnosis.constructed import (
     SINES,
     moved,
@@ -22,6 +28,9 @@ from tests.diagnosis.constructed import (
     vibration,
     wave,
 )
+from tests.kept import kept
+from tests.studies.blind import draw
+from tests.studies.blind import record as recording
 
 POLICY = Policy()
 MOTION = moved(4.0)
@@ -151,3 +160,17 @@ def test_what_stands_in_every_likely_set_is_named_without_what_differs_between_t
 
 def test_of_names_that_were_never_tried_by_themselves_as_many_are_named_as_were():
     assert sets(("abd", 0.46), ("abc", 0.29), ("", 0.04), ("b", 0.0)).chosen.names == {"b"}
+
+
+def test_a_rival_is_not_excused_by_noise_that_its_own_inertia_makes(tmp_path):
+    """Beside a spring, an event and drag a memory of friction with ten times the inertia left three times as much as
+    the lag that was there, and called it noise of the motion."""
+    case = draw.one(1001, "crowd", 47, 8.0)
+    files = [path for module in (draw, recording) if (path := module.__file__)]
+    made = {"numbers": [case.number], "longest_step": recording.LONGEST_STEP}
+    run = kept(lambda: record([case.hidden], 1001, **made)[0][0].trace, __file__, *files)
+    write_rig(case.hidden.axis, tmp_path / "rig.toml")
+    searched = search(fit_bare(Rows.of(run, load_rig(tmp_path / "rig.toml"))), list(catalogue().values()), POLICY)
+    found = probabilities(scored([*neighbourhood(searched, frozenset(), POLICY)], None, POLICY), frozenset(), POLICY)
+    assert found.chosen.names == {effect.name for effect in case.hidden.effects}
+    assert found.chosen.probability > 0.8
