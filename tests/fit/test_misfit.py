@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
+from bench.effects.catalogue import catalogue
+from bench.fit import quantities
 from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis, lay_out
+from bench.fit.hypothesis import Hypothesis, Term, lay_out
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
-from bench.fit.solution import equations_of, solve
+from bench.fit.solution import NOISE_ALONE, equations_of, solve
 from tests.fit.motions import NAMES, RIG, recording
 
 UNITS = dict.fromkeys(NAMES, "")
@@ -40,3 +42,21 @@ def test_intervals_are_those_of_identify_where_more_than_noise_is_left():
 def test_noise_alone_widens_nothing(name):
     clean, least = base(spoiled(0, 0.0))[name], base(spoiled(0, 1e-12))[name]
     assert clean.std_error == pytest.approx(least.std_error, rel=1e-3)
+
+
+def test_beside_a_name_a_friction_too_weak_for_one_counts(monkeypatch):
+    """It leaves 1.07 floors. Without a name nothing counts below 1.12, as with `identify`."""
+    trace = spoiled(1, 4e-6)
+    velocity = trace["velocity"]
+    weak = 0.04 * np.sign(velocity) * np.exp(-((velocity / 15.0) ** 2))
+    rows = Rows.of(trace.with_signals({"current": trace["current"] + weak}, {"current": "A"}), RIG)
+    fitted = fit(rows, Hypothesis((Term(catalogue()["quadratic_drag"]),)))
+    assert 1.03 < fitted.chi < NOISE_ALONE
+
+    def halves(which):
+        found = uncertain(which)
+        return np.array([one.half_width for one in found.base(UNITS).values()])
+
+    counted = halves(fitted)
+    monkeypatch.setattr(quantities, "NOISE_ALONE", 1.0)
+    assert (counted > 1.05 * halves(fitted)).all()
