@@ -128,7 +128,7 @@ def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) 
     inverse[both] = solved(((jacobian.T * weight) @ jacobian)[both], numbers[shown], count.sum() * noise[both])[1]
     covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
     heavy = np.sqrt(weight)
-    # where one is named, from the floor on: what is too weak for a name beside it leaves 1.05 to 1.2 and bends its value
+    # beside a name from the floor on: what is too weak for one leaves 1.05 to 1.2 and bends the values
     least = fitted.floor / NOISE_ALONE if fitted.terms else fitted.floor
     left = misfit(jacobian[:, shown] * heavy[:, None], fitted.left * heavy, least)
     covariance[both] += np.diag((left / reach) ** 2)
