@@ -396,13 +396,15 @@ def by_hint(rows: Rows, hypothesis: Hypothesis) -> dict[str, float]:
     return {} if beside is None else {term: beside.value(term) - fitted.value(term) for term in terms}
 
 
+def fitted_shapes(term: Term, scope: Scope) -> list[int]:
+    """Places of the shape quantities that are numbers of a fit: none that is whole, or that follows from others."""
+    shapes = enumerate(term.effect.shapes)
+    return [k for k, shape in shapes if shape.step and (not shape.whole or is_pitch(shape, scope))]
+
+
 def free_shapes(term: Term, scope: Scope) -> list[int]:
-    """Places of the shape quantities that vary continuously and are searched so."""
-    return [
-        k
-        for k, shape in enumerate(term.effect.shapes)
-        if term.effect.reach(term.shape, k) and (not shape.whole or is_pitch(shape, scope))
-    ]
+    """Those of them that are searched step by step, and not in a way of their own."""
+    return [k for k in fitted_shapes(term, scope) if term.effect.reach(term.shape, k)]
 
 
 def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:
@@ -449,7 +451,7 @@ def together(fitted: Fit) -> Fit:
     from scipy.optimize import least_squares  # 0.2 s, which only several named effects have to pay
 
     scope, terms = fitted.scope, fitted.terms
-    free = [[k for k in free_shapes(term, scope) if term.effect.shapes[k].step] for term in terms]
+    free = [free_shapes(term, scope) for term in terms]
     ends = np.cumsum([len(places) for places in free])
     if not any(free):
         return fitted

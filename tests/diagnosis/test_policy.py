@@ -6,9 +6,13 @@ import pytest
 from bench.diagnosis import policy as rules
 from bench.diagnosis import search as searching
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.policy import Policy
+from bench.diagnosis.policy import Policy, freedom
+from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import LIMIT, candidates, search
 from bench.effects.catalogue import catalogue
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Term
+from bench.fit.rows import Rows
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import (
     INERTIA,
@@ -192,3 +196,12 @@ def test_many_small_effects_are_named_that_explain_it_together():
 def test_small_effects_beside_a_remainder_are_not_named():
     few = ("cogging_torque", "quadratic_drag", "stribeck_friction")
     assert sought(POLICY, recorded(MOTION, *SEVEN, vibration(0.05, 3.3)), few) == ()
+
+
+def test_shapes_count_as_numbers_however_they_were_searched():
+    """A gap of load, width, frequency and damping of the contact is no cheaper than a lag and a wave together."""
+    bare = fit_bare(Rows.of(recorded(MOTION), RIG))
+    gap, lag = Term(catalogue()["backlash"], (0.05, 400.0, 0.3, 0.0)), Term(catalogue()["current_loop_lag"], (0.004,))
+    wave_of_six = Term(catalogue()["cogging_torque"], (6.0,))
+    numbers = [freedom(fit(bare.rows, bare.hypothesis.plus(term))) - freedom(bare) for term in (gap, lag, wave_of_six)]
+    assert numbers == [4, 1, 2]
