@@ -78,7 +78,7 @@ class Policy:
             catalogue, and of what was not tried. Two more, of an effect more and of an event beside a remainder, made
             the right answers no likelier (`docs/certainty.md`).
         beside: residual over noise floor, as share of that without a name, up to which the name is there beside an
-            effect from outside the catalogue. By their probability 100 % of the names below .5 are there and 8 % of
+            effect from outside the catalogue. By their probability 99 % of the names below .5 are there and 17 % of
             the others, of the sets that the weights come from (the same page).
         most: effects at most; a family of harmonics is one of them.
         members: of a family at most: more waves or events draw anything.
@@ -103,10 +103,10 @@ class Policy:
     beside_event: float = 0.25
     periods: float = 10.0
     left: float = 4.0
-    over: float = 1.4
-    number: float = 1.4
-    outside: float = 2.2
-    none: float = -1.85
+    over: float = 1.65
+    number: float = 1.35
+    outside: float = 1.85
+    none: float = -2.45
     beside: float = 0.5
     most: int = 12
     members: int = 12
