@@ -34,7 +34,6 @@ from bench.effects.acting import (
     ScalesFriction,
     ScalesTorque,
     TorqueLoss,
-    lagged,
 )
 from bench.effects.effect import (
     Columns,
@@ -47,6 +46,7 @@ from bench.effects.effect import (
     MotionLag,
     OuterTorque,
     Repeatable,
+    lagged,
 )
 from bench.effects.signals import Signals
 from bench.fit.rows import Rows, effort_of, known_of
@@ -287,14 +287,19 @@ def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, m
     time, step = seen.time, 1e-3 * rms(seen.effort)
 
     def columns(s: Signals) -> list[Column]:
-        between = np.interp(s.time + s.began, time, missing)
-        between = lagged(between, lag, s.sample_period) if lag else between
+        between = _acting(s, time, missing, lag)
         low, high = (replace(s, torque=s.torque - between + more) for more in (0.0, step))
         return [*effect.columns(low, shape), *effect.columns(high, shape), [(between, 0)]]
 
     table = seen.table(columns, lag)
     low, high, twice = np.split(table, [table.shape[1] // 2, table.shape[1] - 1], axis=1)
     return low - (high - low) / step * (missing[:, None] - twice)
+
+
+def _acting(s: Signals, time: Array, reported: Array, lag: float) -> Array:
+    """At the samples (n,) what acts of a reported torque at rows (m,) behind a lag of the current loop - N*m (N)."""
+    between = np.interp(s.time + s.began, time, reported)
+    return lagged(between, lag, s.sample_period) if lag else between
 
 
 def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], moving: float) -> Array:
@@ -402,12 +407,9 @@ def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, strengths: Call
     instrument (W. A. Fuller, Measurement Error Models, 1987, 1.4).
     """
     lag = delays(rows, hypothesis)[1]
-
-    def modelled(s: Signals) -> Signals:
-        between = np.interp(s.time + s.began, rows.time, left)
-        return replace(s, torque=s.torque - (lagged(between, lag, s.sample_period) if lag else between))
-
-    seen = seen_by(rows, hypothesis).with_signals(modelled)
+    seen = seen_by(rows, hypothesis).with_signals(
+        lambda s: replace(s, torque=s.torque - _acting(s, rows.time, left, lag))
+    )
     seen = with_friction(seen, hypothesis, len(hypothesis.terms))
     return with_load(seen, ((term, strengths(index)) for index, term in enumerate(hypothesis.terms)))
 
