@@ -108,6 +108,13 @@ def test_the_laas_motor_cogs_as_its_holding_currents_say():
     assert any("forward only" in warning for warning in found.warnings)
 
 
+def test_a_motor_without_a_load_has_no_gap():
+    """A backlash was named at .93 while its gap and contact counted as no numbers of the fit."""
+    found = diagnose(read(DATA / "laas_anticogging/acc_current.txt", LAAS.trace), LAAS)
+    assert found.effects == []
+    assert found.probabilities.names.get("backlash", 0.0) < 0.5
+
+
 def test_the_pendulum_of_a_servo_is_named_by_its_weight():
     """0.49 kg at 0.1 m: 0.4805 N*m; m*l**2 and armature 6.7e-3 kg*m**2, which the interval holds."""
     found = diagnose(read(DATA / "bam_xl330/2026-01-15_10h29m37.json"), XL330)
