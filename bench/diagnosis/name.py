@@ -153,9 +153,9 @@ def named(
 def alike(fitted: Fit, index: int, policy: Policy) -> tuple[str, ...]:
     """Names of effects that the recording cannot distinguish from a term's: none can, or a wider form fits as well."""
     term, found = fitted.terms[index], []
-    for effect in catalogue().values():
-        wider = isinstance(effect, Replacing) and term.effect.name in effect.replaces
-        if wider and (shape := effect.unlike(fitted)) is not None:
+    for effect in (each for each in catalogue().values() if isinstance(each, Replacing)):
+        shape = effect.unlike(fitted) if term.effect.name in effect.replaces else None
+        if shape is not None:
             other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, shape)))
             if worth(other, fitted) < policy.by_chance(fitted, len(shape)) and policy.physical(other):
                 found.append(effect.name)
