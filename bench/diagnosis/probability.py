@@ -242,6 +242,8 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
             best[effects] = min(best.get(effects, each), each, key=lambda fitted: fitted.squares)
     physical = list(best.values())
     determined = np.logical_and.reduce([each.determined for each in physical])
+    if float(determined.mean()) <= policy.determined:  # the other rows have to speak for it, too
+        determined = np.ones_like(determined)
     power = np.array([np.mean(each.left[determined] ** 2) for each in physical])
     white = np.array([each.noise.white**2 for each in physical])
     outside = np.array([any(isinstance(term.effect, Outside) for term in each.terms) for each in physical])
