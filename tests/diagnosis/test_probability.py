@@ -8,15 +8,9 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import NameSet, Probabilities, neighbourhood, probabilities, scored
-from bench.diagnosis.recordings import fit_bare
-from bench.diagnosis.search import search
+from bench.diagnosis.probability import NameSet, Probabilities
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
-from bench.fit.rows import Rows
-from bench.rig.rig import load_rig
-from bench.validation.independent.rig import write_rig
-from tests.cases import record
 from tests.diagnosis.constructed import (
     SINES,
     moved,
@@ -28,9 +22,6 @@ from tests.diagnosis.constructed import (
     vibration,
     wave,
 )
-from tests.kept import kept
-from tests.studies.blind import draw
-from tests.studies.blind import record as recording
 
 POLICY = Policy()
 MOTION = moved(4.0)
@@ -160,45 +151,3 @@ def test_what_stands_in_every_likely_set_is_named_without_what_differs_between_t
 
 def test_of_names_that_were_never_tried_by_themselves_as_many_are_named_as_were():
     assert sets(("abd", 0.46), ("abc", 0.29), ("", 0.04), ("b", 0.0)).chosen.names == {"b"}
-
-
-@pytest.fixture(scope="module")
-def of_the_blind_set(tmp_path_factory):
-    """What is hidden in a case, and the bare axis, by seed, group and number."""
-    keys = [(1001, "crowd", 47), (1, "single", 116)]
-    cases = [draw.one(*key, 8.0) for key in keys]
-    files = [path for module in (draw, recording) if (path := module.__file__)]
-    made = {"longest_step": recording.LONGEST_STEP}
-
-    def recordings():
-        pairs = zip(keys, cases, strict=True)
-        return [record([one.hidden], key[0], numbers=[one.number], **made)[0][0].trace for key, one in pairs]
-
-    found = {}
-    for key, case, run in zip(keys, cases, kept(recordings, __file__, *files), strict=True):
-        path = tmp_path_factory.mktemp("rig") / "rig.toml"
-        write_rig(case.hidden.axis, path)
-        found[key] = {effect.name for effect in case.hidden.effects}, fit_bare(Rows.of(run, load_rig(path)))
-    return found
-
-
-def likely(bare, excluded):
-    """Probabilities without some effects."""
-    searched = search(bare, [effect for name, effect in catalogue().items() if name not in excluded], POLICY)
-    return probabilities(scored([*neighbourhood(searched, excluded, POLICY)], None, POLICY), frozenset(), POLICY)
-
-
-def test_a_rival_is_not_excused_by_noise_that_its_own_inertia_makes(of_the_blind_set):
-    """Beside a spring, an event and drag a memory of friction with ten times the inertia left three times as much as
-    the lag that was there, and called it noise of the motion."""
-    hidden, bare = of_the_blind_set[1001, "crowd", 47]
-    found = likely(bare, frozenset())
-    assert found.chosen.names == hidden
-    assert found.chosen.probability > 0.8
-
-
-def test_a_gap_is_not_judged_by_the_few_rows_that_no_impact_reaches(of_the_blind_set):
-    """In the place of a coupling that may not be named it left nothing of a sixth of the rows, and a quarter of all."""
-    hidden, bare = of_the_blind_set[1, "single", 116]
-    assert hidden == {"elastic_coupling"}
-    assert likely(bare, frozenset(hidden)).none > 0.5
