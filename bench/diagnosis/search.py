@@ -284,18 +284,18 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
     """
     last, earlier = found.last, found.steps[:-1] or found.steps
     beside = [term for term in last.terms if term.effect.name not in effect.replaces]
-    others = without = fit(last.rows, last.hypothesis.with_terms(beside))
+    current = without = fit(last.rows, last.hypothesis.with_terms(beside))
     replaced, shape = None, None
     for _ in range(TURNS):
-        placed = in_place(others, effect, shape, effects, policy)
-        if placed is None or not policy.leads(others, placed):
+        placed = in_place(current, effect, shape, effects, policy)
+        if placed is None or not policy.leads(current, placed):
             break
         replaced = selected(Searched((*earlier, Step(backward_elimination(placed, policy)))), effects, policy)
-        found_beside = [term for term in replaced.last.terms if term.effect is not effect]
-        if Counter(term.effect for term in found_beside) == Counter(term.effect for term in beside):
+        others = [term for term in replaced.last.terms if term.effect is not effect]
+        if Counter(term.effect for term in others) == Counter(term.effect for term in beside):
             break
-        beside = found_beside
-        others = fit(last.rows, last.hypothesis.with_terms(beside))
+        beside = others
+        current = fit(last.rows, last.hypothesis.with_terms(beside))
         left = [] if policy.remains(replaced.last) else replaced.last.terms  # bent to what was hidden still
         shape = next((term.shape for term in left if term.effect is effect), None)
     return replaced if replaced is not None and policy.replaces_by(last, replaced.last, without) else None
