@@ -28,7 +28,7 @@ class CurrentFilterLag(EffortLag, Distortion, FilteredSignal):
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """To first order, a shift of the torque beyond the one that a fit may take for how the drive latches."""
-        column = fitted.seen(lambda s: [[(-s.effort, 1)]], of_motion=False)
+        column = fitted.seen(lambda s: [[(-s.effort, 1)]], of_motion=False) * fitted.determined[:, None]
         gain = float(fitted.gains(column, 1)[0])
         beyond = column[:, 0] - fitted.span @ (fitted.span.T @ column[:, 0])
         late = float(beyond @ fitted.residual)

@@ -140,15 +140,11 @@ class Fit:
         """Coefficient of a term of the equation of motion - SI."""
         return float(self.theta[self.owners == term][0])
 
-    @property
-    def span(self) -> Array:
-        """Orthonormal basis of the columns that were free (m, p)."""
-        return self._basis
-
     @cached_property
-    def _basis(self) -> Array:
+    def span(self) -> Array:
+        """Orthonormal basis of the columns that were free (m, p), 0 at rows that are not determined."""
         free = np.delete(self.columns, self.held, 1) if self.held else self.columns
-        return np.linalg.qr(free)[0]
+        return np.linalg.qr(free if self.determined.all() else free * self.determined[:, None])[0]
 
     def strengths(self, index: int) -> list[float]:
         """Strengths of one term."""

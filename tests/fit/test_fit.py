@@ -1,5 +1,7 @@
 """One engine: identify and diagnose tell the same of the same rows, and the floor is the noise's, whatever moves."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
@@ -11,7 +13,7 @@ from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from bench.effects.shape import grid_of
-from bench.fit.fit import _own, _taken, fit
+from bench.fit.fit import _balanced, _own, _taken, fit
 from bench.fit.hypothesis import Hypothesis, Term, with_found_strengths
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
@@ -115,6 +117,22 @@ def test_what_shapes_would_take_is_the_same_without_filtering_them_again(name):
     targets = np.column_stack([wave_beside.span, wave_beside.residual])
     expected = _taken(_own(kept, kept.shape[1] // len(shapes)), columns.T @ targets, targets)
     assert again == pytest.approx(expected, rel=1e-8, abs=1e-9 * wave_beside.squares)
+
+
+def test_what_an_effect_would_take_is_what_it_takes_of_rows_that_are_determined():
+    rows, drag = Rows.of(recorded(moved()), RIG), catalogue()["quadratic_drag"]
+    whole = fit_bare(rows)
+    determined = rows.time % 1.0 > 0.4  # as beside impacts
+    theta, held = _balanced(whole.layout, determined)
+    fitted = replace(whole, theta=theta, held=held, determined=determined)
+    beside = np.delete(fitted.columns, held, axis=1)
+    more = np.column_stack([beside, fitted.seen(lambda signals: drag.columns(signals, ()), of_motion=False)])
+    effort = fitted.effort[determined]
+
+    def left(columns):
+        return np.linalg.lstsq(columns[determined], effort, rcond=None)[1].item()
+
+    assert fitted.worth([drag]) == [pytest.approx(left(beside) - left(more), rel=1e-3)]
 
 
 def test_others_see_strengths_of_dry_friction_as_share_of_coulombs():
