@@ -1,7 +1,7 @@
 """How likely each set of names is, and that none of the catalogue's is right.
 
 A hypothesis about an axis is a set of effects with their shapes, some of them of no catalogue. It is held by what it
-leaves beyond noise, on the rows whose torque every hypothesis determines, or on all where these are fewer than half,
+leaves beyond noise, on the rows whose torque every hypothesis determines, or on all where these are few,
 
     E = max(v - f**2, 0) + BESIDE_NOISE*f**2
 
@@ -11,7 +11,8 @@ gave, leaves of it beyond twice what the best one does. Then
 
     ln P = -left*max(U, LEAST) - over*min(V, MUCH) - number*numbers + constant
 
-U, V - logarithms of E over that of the bare axis and over that of noise alone; numbers - fitted. What holds an effect
+U, V - logarithms of E over that of the bare axis and over that of noise alone, V on all rows for a hypothesis that
+determines all: who claims no gap has to explain what is beside impacts, too; numbers - fitted. What holds an effect
 from outside the catalogue weighs `outside` less and, together with a constant weight for what was not tried, makes up
 "none of the catalogue"; a name beside such an effect is there if without it at least twice as much is left, as that
 makes up for what is small. The weights, of `bench.diagnosis.policy`, are those under which recordings whose truth is
@@ -241,20 +242,21 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
         if policy.physical(each) and credible:
             best[effects] = min(best.get(effects, each), each, key=lambda fitted: fitted.squares)
     physical = list(best.values())
-    determined = np.logical_and.reduce([each.determined for each in physical])
-    if float(determined.mean()) <= policy.determined:  # the other rows have to speak for it, too
-        determined = np.ones_like(determined)
-    power = np.array([np.mean(each.left[determined] ** 2) for each in physical])
+    common = np.logical_and.reduce([each.determined for each in physical])
+    if float(common.mean()) <= policy.determined:  # the other rows have to speak for it, too
+        common = np.ones_like(common)
+    power = np.array([np.mean(each.left[common] ** 2) for each in physical])
+    certain = [each.determined.all() for each in physical]
+    on_own = np.where(certain, [np.mean(each.left**2) for each in physical], power)
     white = np.array([each.noise.white**2 for each in physical])
     outside = np.array([any(isinstance(term.effect, Outside) for term in each.terms) for each in physical])
     white[outside] = np.minimum(white[outside], white[~outside].max())  # its inertia may be any, and noise with that
     nearest = physical[int(np.argmin(power / white))]
     floor = white * (nearest.floor / nearest.noise.white) ** 2
-    excess = np.maximum(power - floor, 0.0)
-    if holdout is not None:
-        excess += _on_holdout(physical, holdout, floor)
+    beyond = _on_holdout(physical, holdout, floor) if holdout is not None else 0.0
+    excess, on_own = (np.maximum(of - floor, 0.0) + beyond for of in (power, on_own))
     left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: what damps it leaves no less for that
-    over = np.log1p(excess / (BESIDE_NOISE * floor))
+    over = np.log1p(on_own / (BESIDE_NOISE * floor))
     numbers = [freedom(each) - freedom(tried[0]) for each in physical]
     columns = (left - left[0]).tolist(), over.tolist(), numbers, outside.tolist()
     return [Contender(*each) for each in zip(physical, *columns, strict=True)]

@@ -138,7 +138,8 @@ def _telling(fitted: Fitted) -> NDArray[np.bool_]:
     """
     speed, sign = fitted.seen(lambda signals: [[(signals.velocity, 0)], [(signals.sign, 0)]], of_motion=True).T
     moves = np.abs(speed) > CREEPS * fitted.scope.rms_speed
-    less = fitted.residual[moves] @ sign[moves] / max(float(sign[moves] @ sign[moves]), 1.0)
+    known = moves & fitted.determined
+    less = fitted.residual[known] @ sign[known] / max(float(sign[known] @ sign[known]), 1.0)
     beyond = np.abs(fitted.base.coulomb * sign + fitted.residual) > STATIC * abs(fitted.base.coulomb + less)
     return moves | beyond
 
