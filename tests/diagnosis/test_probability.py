@@ -8,7 +8,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import NameSet, Probabilities
+from bench.diagnosis.probability import NameSet, Probabilities, probabilities, scored
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from tests.diagnosis.constructed import (
@@ -22,6 +22,7 @@ from tests.diagnosis.constructed import (
     vibration,
     wave,
 )
+from tests.diagnosis.hand_made import made, term
 
 POLICY = Policy()
 MOTION = moved(4.0)
@@ -138,6 +139,18 @@ def test_of_names_beside_a_large_remainder_an_event_goes_first():
     kept, all_of_them = names(POLICY, trace, RIGID), sought(POLICY, trace, RIGID)
     assert "cogging_torque" in kept
     assert "load_torque_event" in set(all_of_them) - set(kept)
+
+
+@pytest.mark.parametrize(("few", "nothing", "backlash"), [(0.3, 0.0, 0.0), (0.6, 0.0, 0.0), (1.0, 1.0, 0.0)])
+def test_what_rings_beside_impacts_is_not_nothing(few, nothing, backlash):
+    """Where a gap determines rows there is noise alone, with it or without; elsewhere ten times as much, or noise."""
+    sure = np.arange(100) < 100 * few
+    left = np.where(sure, 1.0, 10.0)
+    gap = made(left, term("backlash", 0.01, 500.0, 0.4, 0.0), determined=list(sure))
+    found = probabilities(scored([made(left), gap], None, POLICY), frozenset(), POLICY)
+    assert found.nothing == pytest.approx(nothing, abs=0.15)
+    assert found.names.get("backlash", 0.0) == pytest.approx(backlash, abs=0.05)
+    assert found.none == pytest.approx(1.0 - nothing, abs=0.15)
 
 
 def sets(*pairs):
