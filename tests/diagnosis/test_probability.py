@@ -141,16 +141,18 @@ def test_of_names_beside_a_large_remainder_an_event_goes_first():
     assert "load_torque_event" in set(all_of_them) - set(kept)
 
 
-@pytest.mark.parametrize(("few", "nothing", "backlash"), [(0.3, 0.0, 0.0), (0.6, 0.0, 0.0), (1.0, 1.0, 0.0)])
-def test_what_rings_beside_impacts_is_not_nothing(few, nothing, backlash):
-    """Where a gap determines rows there is noise alone, with it or without; elsewhere ten times as much, or noise."""
-    sure = np.arange(100) < 100 * few
+@pytest.mark.parametrize(("determined", "nothing"), [(0.3, 0.01), (0.6, 0.01), (1.0, 0.86)])
+def test_what_rings_beside_impacts_is_not_nothing(determined, nothing):
+    """Rows that a gap determines leave noise with it and without, the others ten times as much, which it may excuse.
+
+    Nothing weighs 1 where all is noise, else e**(-over*MUCH); none of the catalogue e**none, the gap e**(-4*number).
+    """
+    sure = np.arange(100) < 100 * determined
     left = np.where(sure, 1.0, 10.0)
-    gap = made(left, term("backlash", 0.01, 500.0, 0.4, 0.0), determined=list(sure))
+    gap = made(left, term("backlash", 0.01, 500.0, 0.4, 0.0), determined=list(sure), strengths=(0.5,))
     found = probabilities(scored([made(left), gap], None, POLICY), frozenset(), POLICY)
-    assert found.nothing == pytest.approx(nothing, abs=0.15)
-    assert found.names.get("backlash", 0.0) == pytest.approx(backlash, abs=0.05)
-    assert found.none == pytest.approx(1.0 - nothing, abs=0.15)
+    assert found.nothing == pytest.approx(nothing, abs=0.05)
+    assert found.names.get("backlash", 0.0) < 0.05
 
 
 def sets(*pairs):
