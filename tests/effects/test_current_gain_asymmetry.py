@@ -5,7 +5,7 @@ import pytest
 
 from bench.effects.acting import Sensing
 from tests.effects.axes import FREE, VALUES, moved, present, signals
-from tests.effects.damaged import SINGLES, cut_off, diagnosed, inertia_holds, names, rounded, stale, uneven
+from tests.effects.damaged import HIDDEN, cut_off, diagnosed, inertia_holds, names, rounded, stale, uneven
 
 NAME = "current_gain_asymmetry"
 
@@ -17,7 +17,7 @@ def test_acceleration_differs_between_the_signs_by_its_value():
     assert ends[0] - ends[1] == pytest.approx(2.0 * mean, rel=1e-6)
 
 
-@pytest.mark.parametrize("single", [None, *SINGLES])
+@pytest.mark.parametrize("single", HIDDEN)
 def test_one_per_cent_gives_no_false_name(single):
     found = diagnosed(single or "null", uneven)
     assert names(found) - {NAME} == {single} - {None}
@@ -29,7 +29,7 @@ def test_one_per_cent_gives_no_false_name(single):
     assert inertia_holds(found)
 
 
-@pytest.mark.parametrize("single", [None, *SINGLES])
+@pytest.mark.parametrize("single", HIDDEN)
 @pytest.mark.parametrize("damage", [cut_off, rounded, stale])
 def test_coarse_and_stale_currents_give_no_false_name(single, damage):
     found = diagnosed(single or "null", damage)

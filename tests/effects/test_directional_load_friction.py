@@ -48,7 +48,7 @@ def test_the_coefficient_of_the_load_is_determined_beside_that_of_the_motor():
     assert found == {"motor_coefficient": 0.2, "load_ratio": 3.0, "load_coefficient": pytest.approx(0.6)}
 
 
-@pytest.mark.parametrize(("amplitude", "also"), [(0.004, (NAME,)), (0.2, ())])
+@pytest.mark.parametrize(("amplitude", "also"), [(0.004, (NAME,)), pytest.param(0.2, (), marks=pytest.mark.slow)])
 def test_friction_by_the_motors_torque_may_be_by_the_loads_beside_a_small_load(amplitude, also, tmp_path):
     """Of the independent integrator: no friction by the load's torque, which a small load does not tell."""
     axis = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
