@@ -65,9 +65,9 @@ class Policy:
             place of others, with what is found beside it. By itself it takes less: a backlash took .34 beside cogging
             (blind set, pair 47).
         determined: share of rows whose torque the recording determines beside such an effect; where it is less, the
-            other rows have to speak for it, too. Couplings that were withheld left .17 and .30 to the backlash that
-            they were taken for, true ones .48 and more beside others (blind sets, seeds 1 and 1001). The cleaner a
-            recording, the fewer there are: a quarter to a half of rows beside a backlash that was found within 1 %
+            other rows have to speak for it, too. Couplings that were withheld left .17, .30 and .47 of them to the
+            backlash that they were taken for (blind sets, seeds 1 and 1001). The cleaner a recording, the fewer there
+            are: a quarter to a half of rows beside a backlash that was found within 1 %
             (`tests/diagnosis/test_dead_zone.py`).
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
             the blind set's cases that are explained 2.5 at most, nine in ten 1.6.
@@ -101,7 +101,7 @@ class Policy:
     exchanges: int = 2
     undoubted: int = 2
     replaces: float = 0.5
-    determined: float = 0.4
+    determined: float = 0.5
     holdout_gap: float = 3.0
     beside_event: float = 0.25
     periods: float = 10.0

@@ -1,7 +1,7 @@
 """How likely each set of names is, and that none of the catalogue's is right.
 
 A hypothesis about an axis is a set of effects with their shapes, some of them of no catalogue. It is held by what it
-leaves beyond noise, on the rows whose torque every hypothesis determines, or on all where these are few,
+leaves beyond noise, on the rows whose torque every hypothesis determines, or on all where these are fewer than half,
 
     E = max(v - f**2, 0) + BESIDE_NOISE*f**2
 
