@@ -140,9 +140,13 @@ class Fit:
         """Coefficient of a term of the equation of motion - SI."""
         return float(self.theta[self.owners == term][0])
 
-    @cached_property
+    @property
     def span(self) -> Array:
         """Orthonormal basis of the columns that were free (m, p), 0 at rows that are not determined."""
+        return self._basis
+
+    @cached_property
+    def _basis(self) -> Array:
         free = np.delete(self.columns, self.held, 1) if self.held else self.columns
         return np.linalg.qr(free if self.determined.all() else free * self.determined[:, None])[0]
 
