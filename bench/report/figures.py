@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -42,8 +43,8 @@ WIDTH, TITLE = 11.0, 0.35
 ACROSS, ROW = 4, 2.4
 #: Height of a panel over time, of one of a stack, of a row of intervals and of one of a table - inch.
 TIME_PANEL, STACKED, SPAN, LINE = 1.5, 1.6, 0.3, 0.2
-#: Letters across a legend over its axes, and those that the sample of a line takes.
-LETTERS, OF_SAMPLE = 130, 8
+#: Letters across a legend over its axes, those that the sample of a line takes, and across a title.
+LETTERS, OF_SAMPLE, OF_TITLE = 130, 8, 110
 #: Entries in a row of a legend, and dots that are few enough to be larger.
 LEGEND, FEW = 4, 200
 #: How a series is drawn.
@@ -292,7 +293,8 @@ def quiet_about_glyphs() -> Iterator[None]:
 
 def title_figure(figure: Figure | SubFigure, title: str, **style: Any) -> None:  # noqa: ANN401
     """Title at the upper left, in which names are text: no formulas, and no characters that an SVG may not hold."""
-    figure.suptitle(plain(title), **{"x": 0.01, "ha": "left", "weight": "bold", "parse_math": False, **style})
+    style = {"x": 0.01, "ha": "left", "weight": "bold", "parse_math": False, **style}
+    figure.suptitle(textwrap.fill(plain(title), OF_TITLE), **style)
 
 
 def across(names: Sequence[str], most: int = LEGEND) -> int:
