@@ -54,7 +54,7 @@ def test_published_models_of_emps_have_their_published_errors():
 
 def test_friction_of_emps_differs_by_direction(emps_found):
     effects = {effect.name: effect.parameters for effect in emps_found.effects}
-    assert set(effects) == {"direction_dependent_friction"}
+    assert set(effects) - {"cogging_torque"} == {"direction_dependent_friction"}
     found = emps_found.parameters
     difference = effects["direction_dependent_friction"]["viscous_difference"]
     print(f"\nEMPS mass {found['moving_mass'].value:.4f} kg (published 95.1540), viscous difference", end=" ")
@@ -63,15 +63,17 @@ def test_friction_of_emps_differs_by_direction(emps_found):
     assert difference.ci95[0] < 166.7061 - 240.4236 < difference.ci95[1]
 
 
-def test_the_screw_of_emps_is_seen_and_too_little_for_a_name(emps_found):
-    """Of what friction by direction leaves it takes a fifth, with three numbers, beside much that nothing explains."""
+def test_the_search_finds_the_screw_of_emps():
     bare = fit_bare(Rows.of(emps("DATA_EMPS.mat"), EMPS))
     shapes = {term.effect.name: term.shape for term in search(bare, list(catalogue().values()), POLICY).last.terms}
     pitch = 2.0 * np.pi / shapes["cogging_torque"][0]
-    probability = emps_found.probabilities.names["cogging_torque"]
-    print(f"\nEMPS every {1e3 * pitch:.4f} mm, probability {probability:.2f}", end="")
+    print(f"\nEMPS every {1e3 * pitch:.4f} mm", end="")
     assert pitch == pytest.approx(2.5e-3, rel=2e-3)
-    assert probability < 0.5
+
+
+@pytest.mark.xfail(strict=True, reason="it takes a fifth of what is left, with three numbers: a probability of .04")
+def test_the_screw_of_emps_has_a_name(emps_found):
+    assert {effect.name for effect in emps_found.effects} == {"direction_dependent_friction", "cogging_torque"}
 
 
 def test_force_error_of_emps_lies_below_the_published_one(emps_found):
@@ -105,15 +107,30 @@ def test_emps_moves_alike_in_closed_loop(emps_found):
         assert error < published
 
 
-def test_the_laas_motor_cogs_as_its_holding_currents_say():
-    trace = read(DATA / "laas_anticogging/speed_test1.txt", LAAS.trace.columns)
-    found = diagnose(trace, LAAS)
+@pytest.fixture(scope="module")
+def laas_found():
+    return diagnose(read(DATA / "laas_anticogging/speed_test1.txt", LAAS.trace.columns), LAAS)
+
+
+def waves(found):
+    """Amplitudes of the cogging - A - by cycles a revolution."""
     named = [effect.parameters for effect in found.effects if effect.name == "cogging_torque"]
-    amplitudes = {round(p["harmonic"].value): p["amplitude"].value for p in named}
+    return {round(p["harmonic"].value): p["amplitude"].value for p in named}
+
+
+@pytest.mark.parametrize(
+    "harmonic", [72, 18, pytest.param(12, marks=pytest.mark.xfail(strict=True, reason="17 % more in motion")), 24, 36]
+)
+def test_the_laas_motor_cogs_as_much_as_at_rest(laas_found, harmonic):
+    amplitudes = waves(laas_found)
+    amplitude, held = amplitudes[harmonic], holding_currents(tuple(amplitudes))[harmonic]
+    print(f"\nLAAS {harmonic} a revolution: {amplitude:.4f} A in motion, {held:.4f} A at rest", end="")
+    assert amplitude == pytest.approx(held, rel=0.15)
+
+
+def test_the_laas_motor_cogs_where_its_holding_currents_say(laas_found):
+    found, amplitudes = laas_found, waves(laas_found)
     held = holding_currents(tuple(amplitudes))
-    for harmonic, amplitude in amplitudes.items():
-        print(f"\nLAAS {harmonic} a revolution: {amplitude:.4f} A in motion, {held[harmonic]:.4f} A at rest", end="")
-        assert amplitude == pytest.approx(held[harmonic], rel=0.17)
     # 72, 18, 12, 24 and 36 carry 84 % of the holding current by their owners' words; 48 stands as clearly in it
     usual = np.median(list(holding_currents(tuple(range(1, 101))).values()))
     assert {72, 18} <= set(amplitudes) <= {n for n, held_at in held.items() if held_at > STANDS_OUT * usual}
