@@ -14,7 +14,20 @@ from bench.files import write_text
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
 from tests.studies.injected import stability
-from tests.studies.injected.cases import FAILED, Case, Known, Row, draw, itself, judged, keep, kept, kept_in, write_case
+from tests.studies.injected.cases import (
+    FAILED,
+    UNABLE,
+    Case,
+    Known,
+    Row,
+    draw,
+    itself,
+    judged,
+    keep,
+    kept,
+    kept_in,
+    write_case,
+)
 from tests.studies.injected.sources import Source, real, simulated
 from tests.studies.injected.table import markdown
 
@@ -97,6 +110,16 @@ def answers_of(sources: Sequence[Source], seed: int, jobs: int) -> dict[str, dic
     return {source.name: said[source.name] for source in sources if source.name in said}
 
 
+def first(items: Sequence[tuple[Case, Source, Known]], count: int, path: Path, jobs: int) -> list[Row]:
+    """Rows of the first so many cases that their axes can have, in the order in which they are drawn."""
+    rows: list[Row] = []
+    while len(rows) < len(items) and (lacking := count - sum(row.fate != UNABLE for row in rows)):
+        more = items[len(rows) : len(rows) + lacking]
+        found = rows_of(more, path, jobs)
+        rows += [found[case.name] for case, *_ in more]
+    return rows
+
+
 def written(drawn: Sequence[Case], count: int, folder: Path, sources: dict[str, Source], owns: dict[str, Known]) -> int:
     """Write the first cases that their axes can have as folders; how many there are."""
     made = 0
@@ -110,31 +133,30 @@ def main(
     only: Annotated[str, typer.Option(help="Recordings whose name holds this.")] = "",
     effect: Annotated[list[str] | None, typer.Option(help="Effects instead of all. Repeatable.")] = None,
     realistic: Annotated[int, typer.Option(min=0, help="Simulated axes of four to six small effects beside.")] = 12,
-    one_in: Annotated[int, typer.Option(min=1, help="Every so many-th case.")] = 1,
     seed: int = 1,
     jobs: Annotated[int, typer.Option(min=1)] = 2,
     out: Annotated[Path | None, typer.Option(help="Folder for table.md, or names.md.")] = None,
     stable: Annotated[bool, typer.Option("--stability", help="Instead: do names stay?")] = False,
     write: Annotated[Path | None, typer.Option(help="Instead: write cases as folders into this one.")] = None,
-    cases: Annotated[int, typer.Option(min=1, help="With --write, so many.")] = 60,
+    cases: Annotated[int | None, typer.Option(min=1, help="First so many of those that their axes can have.")] = None,
 ) -> None:
     """Put every effect into every recording and see what the diagnosis makes of it."""
     sources = all_sources(only, realistic, seed, jobs)
     by_name = {source.name: source for source in sources}
     command = f"python -m tests.studies.injected --seed {seed} --realistic {realistic}" + f" --only {only}" * bool(only)
-    command += "".join(f" --effect {name}" for name in effect or ()) + f" --one-in {one_in}" * (one_in > 1)
+    command += "".join(f" --effect {name}" for name in effect or ()) + (f" --cases {cases}" if cases else "")
     if stable:
         told = stability.markdown(sources, answers_of(sources, seed, jobs), f"{command} --stability")
         publish(told, out, "names.md")
         return
     owns, refused = owns_of(sources, jobs)
-    chosen = draw(list(owns), effect or (), seed)[::one_in]
+    chosen = draw(list(owns), effect or (), seed)
     if write is not None:
-        typer.echo(f"{written(chosen, cases, write, by_name, owns)} cases in {write}")
+        typer.echo(f"{written(chosen, cases or len(chosen), write, by_name, owns)} cases in {write}")
         return
     items = [(case, by_name[case.source], owns[case.source]) for case in chosen]
-    rows = rows_of(items, kept_in(seed), jobs)
-    publish(markdown([rows[case.name] for case in chosen], by_name, owns, refused, command), out, "table.md")
+    rows = first(items, cases or len(items), kept_in(seed), jobs)
+    publish(markdown(rows, by_name, owns, refused, command), out, "table.md")
 
 
 def publish(told: str, out: Path | None, name: str) -> None:

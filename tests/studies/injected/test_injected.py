@@ -14,10 +14,12 @@ from bench.validation.independent.effects import LoadDependentFriction, TorqueOf
 from bench.validation.injection import INJECTABLE
 from tests.shared import needs_shared
 from tests.studies.blind.score import same
+from tests.studies.injected.__main__ import first
 from tests.studies.injected.cases import (
     FAILED,
     NONE,
     STRENGTHS,
+    UNABLE,
     Case,
     Known,
     Row,
@@ -71,6 +73,17 @@ def test_a_row_goes_on_after_one_that_was_cut_off(tmp_path):
     path.write_text('{"case": {"sour', encoding="utf-8")
     keep(path, ROW)
     assert list(kept(path)) == [ROW]
+
+
+def test_the_first_cases_that_axes_can_have_are_drawn_ones_up_to_the_last_of_them(tmp_path):
+    path, fates = tmp_path / "rows.jsonl", [UNABLE, "right", UNABLE, UNABLE, "missed", "wrong", UNABLE]
+    rows = [replace(ROW, case=replace(CASE, strength=float(k)), fate=fate) for k, fate in enumerate(fates)]
+    for row in rows:
+        keep(path, row)
+    items = [(row.case, None, KNOWN) for row in rows]
+    assert first(items, 1, path, 1) == rows[:2]
+    assert first(items, 2, path, 1) == rows[:5]
+    assert first(items, 9, path, 1) == rows
 
 
 @pytest.mark.parametrize(
