@@ -102,8 +102,12 @@ def turned(position: Array, numbers: Sequence[float]) -> Iterator[tuple[float, t
 
 
 def followed(signals: Signals, number: float) -> Array:
-    """1 where the samples follow a wave of such a wave number, else 0 - (n,)."""
-    return (number * np.abs(signals.velocity) < FOLLOWED * np.pi / signals.sample_period).astype(float)
+    """1 where the samples follow a wave of such a wave number, 0 where it is faster than two samples - (n,).
+
+    It falls smoothly between: a wave that breaks off has slow parts, which pass the filter that stops the wave.
+    """
+    of_nyquist = number * np.abs(signals.velocity) * signals.sample_period / np.pi
+    return 0.5 + 0.5 * np.cos(np.pi * np.clip((of_nyquist - FOLLOWED) / (1.0 - FOLLOWED), 0.0, 1.0))
 
 
 def wave(values: Values, amplitude: str, position: Number) -> Number:
