@@ -102,7 +102,7 @@ def turned(position: Array, numbers: Sequence[float]) -> Iterator[tuple[float, t
 
 
 def followed(signals: Signals, number: float) -> Array:
-    """1 where the samples follow a wave of such a wave number, 0 where it is faster than two samples - (n,).
+    """1 where the samples follow a wave of such a wave number, 0 where a cycle takes less than two samples - (n,).
 
     It falls smoothly between: a wave that breaks off has slow parts, which pass the filter that stops the wave.
     """
