@@ -102,9 +102,10 @@ def turned(position: Array, numbers: Sequence[float]) -> Iterator[tuple[float, t
 
 
 def followed(signals: Signals, number: float) -> Array:
-    """1 where the samples follow a wave of such a wave number, 0 where a cycle takes less than two samples - (n,).
+    """1 where the samples follow a wave of a number - rad/rad (rad/m) -, 0 where a cycle takes less than two - (n,).
 
-    It falls smoothly between: a wave that breaks off has slow parts, which pass the filter that stops the wave.
+    A cosine between: a wave that breaks off has slow parts, which pass the filter that stops the wave (F. J. Harris,
+    Proceedings of the IEEE 66, 1978, 51-83).
     """
     of_nyquist = number * np.abs(signals.velocity) * signals.sample_period / np.pi
     return 0.5 + 0.5 * np.cos(np.pi * np.clip((of_nyquist - FOLLOWED) / (1.0 - FOLLOWED), 0.0, 1.0))
