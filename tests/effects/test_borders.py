@@ -40,6 +40,11 @@ def effect(name):
             ((1.0, 1.00472), (1.0, 1.0047)),
         ),  # 2.355 widths
         ("load_torque_event", ([0.1], [0.1]), ((1.0, 5.79), (1.0, 5.81))),  # 0.6 of 8 s
+        (
+            "backlash",
+            ([1e-3], [1e-3]),
+            ((3.01e-5, 1e3, 0.2, 0.0), (2.99e-5, 1e3, 0.2, 0.0)),
+        ),  # 0.005 of what 6 N*m bend 1e3 N*m/rad
     ],
 )
 def test_plausible(name, strengths, shapes):
