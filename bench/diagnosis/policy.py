@@ -81,7 +81,7 @@ class Policy:
             loss, where fewest names are wrong if the truth is withheld. Two more, of an effect more and of an event
             beside a remainder, made the right answers no likelier (`docs/certainty.md`).
         beside: residual over noise floor, as share of that without a name, up to which the name is there beside an
-            effect from outside the catalogue. By their probability 99 % of the names below .5 are there and 14 % of
+            effect from outside the catalogue. By their probability 99 % of the names below .5 are there and 7 % of
             the others, of the sets that the weights come from (the same page).
         most: effects at most; a family of harmonics is one of them.
         members: of a family at most: more waves or events draw anything.

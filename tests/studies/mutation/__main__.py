@@ -31,6 +31,9 @@ PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cache
 USAGE = 4
 #: Tests of a second at most are shown first, whatever folder they are of.
 QUICK = 1.0
+#: What tests share is set up by the first of them, so the seconds of the others do not hold it: 120 s on a busy machine,
+#: behind which a limit of 60 s told of mutants that they do not end - s.
+SETTING_UP = 400.0
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,7 @@ def fate(mutant: Mutant, reach: Reach, copy: Path, most: float) -> Fate:
                 capture_output=True,
                 check=False,
                 text=True,
-                timeout=60.0 + 20.0 * seconds,
+                timeout=SETTING_UP + 20.0 * seconds,
             )
             shown, spent = shown + len(tests), spent + seconds
             assert done.returncode != USAGE, done.stderr
