@@ -120,7 +120,7 @@ class Backlash(Replacing, Coupling, Contact, Native):
         """The gap is more than a small part of what its contact yields to the peak torque."""
         return all(
             gap * load * frequency**2 > OF_YIELDING * scope.peak_effort
-            for (load,), (gap, frequency, *_) in zip(strengths, shapes, strict=True)
+            for (load,), (gap, frequency, *_) in zip(strengths, shapes, strict=False)
         )
 
     def open_torque(self, fitted: Fitted, shape: Sequence[float]) -> Array:
