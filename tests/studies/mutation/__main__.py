@@ -31,8 +31,8 @@ PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cache
 USAGE = 4
 #: Tests of a second at most are shown first, whatever folder they are of.
 QUICK = 1.0
-#: What tests share is set up by the first of them, so the seconds of the others do not hold it: 120 s on a busy machine,
-#: behind which a limit of 60 s told of mutants that they do not end - s.
+#: What tests share is set up by the first of them, and the seconds of the others do not hold it: 120 s on a busy
+#: machine, so that beyond a limit of 60 s mutants passed for endless - s.
 SETTING_UP = 400.0
 
 
