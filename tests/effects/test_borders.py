@@ -65,6 +65,7 @@ def test_plausible(name, strengths, shapes):
         ("friction_warmup", [1e-6, 0.0], [-1e-6, 0.0], (3.0,)),
         ("torque_constant_saturation", [0.333], [0.334], ()),  # torque rises with current up to the peak
         ("position_dependent_friction", [0.0749, 0.0], [0.0751, 0.0], ()),  # 1.5 of Coulomb friction
+        ("direction_dependent_friction", [0.0999, 0.0], [0.1001, 0.0], ()),  # of either direction: 0 to twice K_0
         ("position_dependent_inertia", [0.0, 0.999e-3], [0.0, 1.001e-3], (2.0,)),
     ],
 )

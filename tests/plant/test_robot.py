@@ -160,6 +160,18 @@ def test_a_finger_that_follows_another_needs_no_column(tmp_path):
             Robot.of(path, finger)
 
 
+def test_a_finger_follows_a_polynomial_of_the_way_from_where_both_are_at_rest(tmp_path):
+    """y - y0 = a0 + a1*(x - x0) + a2*(x - x0)**2, x0 and y0 where the joints of the MJCF are (MuJoCo's reference)."""
+    path, x = tmp_path / "gripper.xml", np.array([0.01, 0.03])
+    fingers = FINGERS.replace("0 1 0 0 0", ".002 1 3 0 0")
+    fingers = fingers.replace('name="left" type="slide"', 'name="left" type="slide" ref=".01"')
+    fingers = fingers.replace('name="right" type="slide"', 'name="right" type="slide" ref="-.02"')
+    path.write_text(MJCF.replace("</body></body></worldbody>", fingers))
+    found = Robot.of(path, "elbow").follows("right", {"left": (x, np.array([0.5, 0.5]))})
+    assert found is not None
+    np.testing.assert_allclose(found, [[-0.018, -0.02 + 0.002 + 0.02 + 3.0 * 0.02**2], [0.5, 0.5 * 1.12]], atol=1e-12)
+
+
 def test_what_floats_beside_the_arm_is_not_felt(tmp_path, arm):
     """A cube on the table has six coordinates of its own, and is none of the arm's."""
     beside = tmp_path / "table.xml"
