@@ -16,7 +16,7 @@ from mcap_ros2.decoder import DecoderFactory
 from bench.trace.choose import GivenOptions
 from bench.trace.read import read
 from bench.trace.trace import Trace
-from bench.trace.write import write
+from bench.trace.write import write, write_joint_states
 from tests.diagnosis.command import started
 from tests.fit.motions import UNITS, Truth, recording
 
@@ -152,6 +152,15 @@ def test_a_replay_is_joint_states_for_who_looks_at_them_elsewhere(bench, diagnos
         assert np.gradient(turned, 1e-3)[10:-10] == pytest.approx(found[10:-10, 0], abs=1.0)
     trace = read("replay.mcap", GivenOptions(axis="/measured/axis"))
     assert set(trace.signals) == {"position", "velocity", "torque"}
+
+
+@pytest.mark.parametrize(("first", "stamp"), [(5.0, 5.0), (0.0, 0.0), (-0.25, 0.0)])
+def test_stamps_of_joint_states_are_the_times_and_never_below_zero(tmp_path, first, stamp):
+    """A log from 5 s on stays there, so that others of the axis lie beside it."""
+    time = first + np.array([0.0, 0.5])
+    write_joint_states(tmp_path / "log.mcap", "axis", time, {"/one": {"velocity": np.array([1.0, 2.0])}})
+    logged = [at for _, at, _ in joint_states(tmp_path / "log.mcap", "/one")]
+    np.testing.assert_allclose(1e-9 * np.array(logged), [stamp, stamp + 0.5], atol=1e-9)
 
 
 def test_amperes_are_no_effort_of_a_joint_state(bench, diagnosed):

@@ -7,8 +7,10 @@ import pytest
 
 from bench.errors import InputError
 from bench.gate import effort
-from bench.gate.check import Seen
+from bench.gate.check import Seen, Sums, balanced
 from bench.gate.gate import passed
+from bench.trace.trace import Trace
+from tests.fit.motions import UNITS
 from tests.gate.damage import changed
 
 
@@ -82,3 +84,15 @@ def test_signs_are_opposite_where_inertia_friction_and_power_are_negative_and_no
     turned = replace(fitted, inertia=inertia, coulomb=coulomb, power=power)
     found = effort.judged(turned, "current")
     assert (found.status == "fail" and "opposite signs" in found.found) == (kept is None)
+
+
+@pytest.mark.parametrize("length", [20, 80])
+def test_means_over_windows_of_white_noise_stand_as_high_as_it_lets_them(length):
+    """Means over so many samples of white noise have its standard deviation over the root of their number."""
+    rng = np.random.default_rng(3)
+    torque, speed = rng.normal(scale=0.2, size=40_000), 1.0 + rng.normal(scale=0.01, size=40_000)
+    trace = Trace(1e-3 * np.arange(40_000), {"velocity": speed}, {"velocity": UNITS["velocity"]}, "noise")
+    found = balanced([Sums.of(trace, speed, torque, slice(0, 40_000))], length)
+    assert found is not None
+    assert found.effort_over_noise == pytest.approx(1.0, rel=0.1)
+    assert found.speed_over_noise == pytest.approx(1.0, rel=0.1)
