@@ -64,7 +64,7 @@ SCALE, REWEIGHTED = 3.0, 6
 TOGETHER = 4_000_000
 #: Factors e**x around a shape that are compared for its spread: of gap, frequency and damping.
 AROUND = (np.linspace(-0.12, 0.12, 7), np.linspace(-0.6, 0.6, 5), np.linspace(-0.5, 0.5, 3))
-#: Gap over what the contact yields to the peak torque, below which it is a damped spring and no gap. Gaps of drawn and
+#: Gap over what the contact yields to the peak torque - 1 -, below which it is a damped spring. Gaps of drawn and
 #: injected axes came to .04 and more (`tests.studies.blind --only backlash` and `tests.studies.injected --effect
 #: backlash`, seed 1001); what damps a motor without a load, taken for one, to .002 (`laas_anticogging/acc_current`).
 OF_YIELDING = 0.005
@@ -118,7 +118,7 @@ class Backlash(Replacing, Coupling, Contact, Native):
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         """The gap is more than a small part of what its contact yields to the peak torque."""
-        return all(
+        return all(  # of shapes whose strength is known
             gap * load * frequency**2 > OF_YIELDING * scope.peak_effort
             for (load,), (gap, frequency, *_) in zip(strengths, shapes, strict=False)
         )

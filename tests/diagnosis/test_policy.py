@@ -110,7 +110,7 @@ def coupled(share, antiresonance, damping):
 def test_a_coupling_beside_something_else_is_no_gap(monkeypatch):
     """Where the coupling leaves a remainder a dead zone is tried in its place, and explains less.
 
-    Nor has it more than a gap that its contact's yielding hides.
+    Its gap is far smaller than what its contact yields, too, which alone keeps it from being one.
     """
     trace, effects = recorded(MOTION, coupled(0.6, 100.0, 0.1), vibration(0.02, 11.0)), ["elastic_coupling", "backlash"]
     assert sought(without("replaces_by"), trace, effects) == ("elastic_coupling",)

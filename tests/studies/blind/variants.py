@@ -17,6 +17,7 @@ OF_EFFECTS = (
     ("bench.effects.effect:Effect", "needed", "share of what stands above the noise floor that an effect must explain"),
     ("bench.effects.effect", "PITCH_SHARE", "the same for a fine pitch of a linear axis"),
     ("bench.effects.effect", "MANY", "half cycles over the travel from which a pitch is fine"),
+    ("bench.effects.backlash", "OF_YIELDING", "gap over what its contact yields to the peak torque, at least"),
     ("bench.effects.load_torque_event:LoadTorqueEvent", "needed", "share that an event must explain"),
     ("bench.effects.load_torque_event", "RESOLVED", "filter widths that an event lasts at least"),
     ("bench.effects.load_torque_event", "LONGEST", "share of the recording that events last together at most"),
