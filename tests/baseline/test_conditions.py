@@ -29,6 +29,16 @@ def test_a_sines_conditions_are_those_of_its_formula():
     assert (found["sample_period"], found["cutoff"]) == (pytest.approx(1e-3), 80.0)
 
 
+def test_where_a_sample_takes_as_long_as_the_mean_of_some_its_speed_counts_as_it_is():
+    """Differences over two periods of T lessen the acceleration of a sine by sin(w*T)/(w*T), and nothing else does."""
+    period, omega = 0.03, 2.0 * np.pi * 2.0
+    time = period * np.arange(1000)
+    signals = {"velocity": SPEED * np.sin(omega * time), "current": np.ones(time.size)}
+    trace = Trace(time, signals, {"velocity": "rad/s", "current": "A"}, "a sine")
+    expected = SPEED / np.sqrt(2.0) * np.sin(omega * period) / period
+    assert conditions([trace], RIG, 80.0)["rms_acceleration"].value == pytest.approx(expected, rel=5e-3)
+
+
 def test_one_glitch_is_no_top_speed_and_several_recordings_count_alike():
     assert conditions([recorded(4.0, 1e3)], RIG, 80.0)["top_speed"].value == pytest.approx(SPEED, rel=1e-2)
     both = conditions([recorded(2.0), recorded(4.0)], RIG, 80.0)

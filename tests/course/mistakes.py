@@ -105,6 +105,12 @@ def columns_swapped(of, random):
         of.tables[name] = of.tables[name][:, [0, 2, 1]]
 
 
+def columns_swapped_in_the_units_of_the_course(of, random):
+    of.scale(NAMES, 1e3, 180.0 / np.pi, 1e3)
+    of.heads = dict.fromkeys(NAMES, "time [ms];velocity [deg/s];current [mA]")
+    columns_swapped(of, random)
+
+
 def glitch(of, random):
     name, column = str(random.choice(NAMES)), int(random.integers(1, 3))
     rows = of.tables[name].copy()
@@ -207,6 +213,7 @@ MISTAKES = {
     files_swapped: "files look exchanged",
     the_same_file_twice: "one and the same recording",
     columns_swapped: "columns of speed and current look exchanged",
+    columns_swapped_in_the_units_of_the_course: "columns of speed (deg/s) and current (mA) look exchanged",
     glitch: "a glitch",
     one_sample_at_zero: "a glitch",
     hole: "has a hole",

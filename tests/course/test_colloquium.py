@@ -65,6 +65,13 @@ def test_half_a_sample_is_explained_by_what_it_leaves(own):
     assert abs(own["project_J"]) < 0.002
 
 
+def test_the_torque_constant_falls_as_the_parabola_through_stall_and_peak_does(own, folder):
+    student = Student(folder)
+    at = {name: student.torque(1e3 * own[current]) / own[current] for name, current in (("", "I_rms"), ("2", "I_rms2"))}
+    assert own["ratio_rms"] == pytest.approx(student.stall[0] / student.stall[1] / at[""] - 1.0, abs=1e-9)
+    assert own["ratio_2"] == pytest.approx(np.sqrt(2.0) * at["2"] / at[""] - 1.0, abs=1e-9)
+
+
 def test_noise_of_the_speed_and_what_it_does_to_the_inertia(own):
     assert own["noise"] == pytest.approx(np.radians(1.5), rel=0.05)  # the lab rig's sensor
     assert own["attenuation"] == pytest.approx(-2.0 * (np.radians(1.5) / 1e-3 / own["alpha_rms"]) ** 2, rel=0.1)
@@ -132,6 +139,7 @@ def test_every_figure_of_a_text_is_there_and_each_text_is_asked(own, folder):
 def test_the_command_writes_answers_for_the_examiner_alone(folder, tmp_path):
     bad = folder.parent / "student-02"
     bad.mkdir()
+    (folder.parent / "list.txt").write_text("no folder, so no student")
     ended = bench("lab", "--questions", folder.parent, "--out", tmp_path)
     assert (ended.status, ended.err.count("\n")) == (1, 1)
     assert "student-02" in ended.err

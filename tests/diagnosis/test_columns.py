@@ -1,11 +1,14 @@
 """Columns of the hypotheses against closed forms: two masses, dead zone, lag, eccentric encoder."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import scipy.signal
 from scipy.interpolate import CubicSpline
 
-from bench.diagnosis.where import Coordinate, _account, _welch
+from bench.axis_kind import INERTIA, ROTARY
+from bench.diagnosis.where import Coordinate, _account, _welch, coordinates
 from bench.effects.backlash import load_positions
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import lagged
@@ -111,6 +114,15 @@ def test_a_gap_of_two_directions_belongs_to_direction():
     account = _account(Coordinate("direction", sign, "dimensionless"), 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000))
     assert account.centres == pytest.approx([-1.0, 1.0])
     assert account.share == pytest.approx(0.25 / 0.26, abs=0.01)
+
+
+def test_a_sine_has_turned_as_long_ago_as_its_last_crest():
+    time = np.arange(4000) * PERIOD
+    position, velocity = 3.0 - np.cos(4.0 * time), 4.0 * np.sin(4.0 * time + 1e-3)
+    rows = SimpleNamespace(time=time, values=lambda of: of(signals(position, velocity)))
+    fitted = SimpleNamespace(rows=rows, columns=np.ones((4000, 1)), owners=np.array([INERTIA]), effort=time)
+    since = {one.name: one.values for one in coordinates(fitted, ROTARY, "N*m")}["reversal"]
+    assert since == pytest.approx(np.mod(time + 0.25e-3, np.pi / 4.0), abs=1.1 * PERIOD)
 
 
 @pytest.mark.parametrize(("size", "length"), [(5000, 1024), (700, 700), (701, 701)])

@@ -178,6 +178,9 @@ def test_npz_npy_and_mat(tmp_path):
     holds(
         read(tmp_path / "run.npy", {"time": "column 1 [s]", "velocity": "column 2 [rad/s]", "current": "column 3 [A]"})
     )
+    fields = np.dtype([("t", float), ("w", float), ("i", float)])
+    np.save(tmp_path / "named.npy", np.array(list(zip(TIME, SPEED, AMPS, strict=True)), fields))
+    holds(read(tmp_path / "named.npy", columns))
     savemat(tmp_path / "run.mat", {"ans": np.vstack([TIME, SPEED, AMPS])})
     holds(read(tmp_path / "run.mat", {"time": "ans(1,:) [s]", "velocity": "ans(2,:) [rad/s]"}))
 

@@ -68,8 +68,8 @@ def numbered(folder):
 def numbered_from_one(folder):
     words = {"position": "pos_meas", "velocity": "vel_meas", "torque": "tau_meas"}
     names, columns = in_columns(lambda signal, k: f"{words[signal]}{k + 1}")
-    filtered, wanted = (f"pos_filt{k}" for k in (1, 2)), (f"tau_des{k}" for k in (1, 2))
-    return csv(folder / "run.csv", [*names, *filtered, *wanted], [*columns, *[np.ones(TIME.size)] * 4])
+    others = (f"{other}{k}" for other in ("pos", "pos_filt", "tau_des") for k in (1, 2))
+    return csv(folder / "run.csv", [*names, *others], [*columns, *[np.ones(TIME.size)] * 6])
 
 
 def microseconds(folder):

@@ -165,3 +165,12 @@ def test_why_interpolation_is_by_akima():
 
 def _speed(time):
     return 100.0 * np.sin(2 * np.pi * 3.0 * time) + 5.0 * np.sin(2 * np.pi * 40.0 * time)
+
+
+@pytest.mark.parametrize(("late", "apart"), [(0.3, True), (0.001, False)])
+def test_values_of_as_many_instants_between_the_leading_ones_are_not_theirs(late, apart):
+    """A ramp that a second clock takes later, by a share of a period or by no more than the last digit of the times."""
+    times, ramp = 1.001 * np.arange(400), np.arange(400.0)
+    found = regular({**one(times, 1e-3), "current": SampledSignal(clock(times + late, 1e-3), ramp)})
+    expected = ramp - late / 1.001 if apart else ramp
+    np.testing.assert_allclose(found.signals["current"][5:-5], expected[5:-5], atol=1e-6)
