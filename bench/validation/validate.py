@@ -27,9 +27,6 @@ from bench.validation.independent.sensors import NoiseStream, rounded
 from bench.validation.independent.simulate import simulate as integrate
 from bench.validation.plan import Case, Plan
 
-#: Of the independent integrator, as the blind set has it - s.
-LONGEST_STEP = 31.25e-6
-
 
 def record(cases: Sequence[Case], seed: int) -> list[Trace | BenchError]:
     """One recording a case, or why MuJoCo makes none.
@@ -44,7 +41,6 @@ def record(cases: Sequence[Case], seed: int) -> list[Trace | BenchError]:
         [case.sensors for case in beside],
         seed,
         numbers=[case.index for case in beside],
-        longest_step=LONGEST_STEP,
     )
     made: dict[int, Trace | BenchError] = {k.index: run.trace for k, run in zip(beside, integrated, strict=True)}
     for case in cases:

@@ -27,7 +27,6 @@ AXIS = Axis(
 )
 SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
 #: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
-STEP = 62.5e-6
 SPRING = Term(catalogue()["torsion_spring"])
 LAG = {catalogue()["velocity_filter_lag"]: Detected({"time_constant": 4e-3}, {"time_constant": 1e-5})}
 
@@ -38,7 +37,7 @@ def recorded(tmp_path_factory):
     spring = (KINDS["torsion_spring"].draw(AXIS, 0.6, np.random.default_rng(0), 4.0),)
     motions = [random_motion(AXIS, np.random.default_rng(k), 4.0) for k in range(2)]
     together = [AXIS] * 2, motions, [spring] * 2, [SENSORS] * 2
-    first, second = kept(lambda: [run.trace for run in simulate(*together, seed=6, longest_step=STEP)], __file__)
+    first, second = kept(lambda: [run.trace for run in simulate(*together, seed=6)], __file__)
     path = tmp_path_factory.mktemp("rig") / "rig.toml"
     write_rig(AXIS, path)
     return load_rig(path), first, second

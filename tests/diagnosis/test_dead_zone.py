@@ -23,7 +23,7 @@ from tests.studies.blind import record as recording
 
 AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
 SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
-SEED, STEP = 5, 62.5e-6
+SEED = 5
 #: A contact of 80 Hz against the load, of a fifth of critical damping.
 STIFFNESS, DAMPING = 6.5e-4 * (2.0 * np.pi * 80.0) ** 2, 0.2 * 2.0 * 6.5e-4 * 2.0 * np.pi * 80.0
 GAPS = (0.003, 0.012, 0.08, 0.25)
@@ -47,9 +47,7 @@ def recorded(tmp_path_factory):
     effects += [(Backlash(wide, STIFFNESS, DAMPING), other) for wide, other in BESIDE.items()]
     count = len(effects)
     together = [AXIS] * count, [motion] * count, effects, [SENSORS] * count
-    runs = kept(
-        lambda: [run.trace for run in simulate(*together, SEED, numbers=[0] * count, longest_step=STEP)], __file__
-    )
+    runs = kept(lambda: [run.trace for run in simulate(*together, SEED, numbers=[0] * count)], __file__)
     alone, beside = runs[: len(GAPS)], runs[len(GAPS) :]
     return load_rig(path), dict(zip(GAPS, alone, strict=True)), dict(zip(BESIDE, beside, strict=True))
 

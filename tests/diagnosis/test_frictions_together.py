@@ -44,7 +44,7 @@ def recorded(tmp_path_factory):
     write_rig(AXIS, path)
     count, motion = len(BESIDE), random_motion(AXIS, np.random.default_rng(5), 6.0)
     together = [AXIS] * count, [motion] * count, [(BRISTLES, *more) for more in BESIDE.values()], [SENSORS] * count
-    runs = kept(lambda: [run.trace for run in simulate(*together, 5, longest_step=62.5e-6)], __file__)
+    runs = kept(lambda: [run.trace for run in simulate(*together, 5)], __file__)
     return load_rig(path), dict(zip(BESIDE, runs, strict=True))
 
 

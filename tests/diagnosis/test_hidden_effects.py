@@ -24,7 +24,6 @@ AXIS = Axis(
 )
 SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
 #: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
-STEP = 62.5e-6
 NAMED = ("cogging_torque", "unbalance", "stribeck_friction")
 HIDDEN = ((), *((name,) for name in NAMED), ("vibration",))
 
@@ -43,7 +42,6 @@ def recordings():
             [effect for effect in effects for _ in range(2)],
             [SENSORS] * (2 * len(HIDDEN)),
             seed=4,
-            longest_step=STEP,
         )
         return [run.trace for run in runs]
 

@@ -21,7 +21,7 @@ from bench.validation.independent.simulate import simulate
 from tests.diagnosis.constructed import RIG, moved
 from tests.diagnosis.constructed import recorded as made_up
 from tests.diagnosis.hand_made import term
-from tests.diagnosis.test_add import AXIS, SENSORS, STEP, added
+from tests.diagnosis.test_add import AXIS, SENSORS, added
 from tests.kept import kept
 from tests.outside import SlowMemoryFriction
 
@@ -59,7 +59,7 @@ def recorded(tmp_path_factory):
         (KINDS["cogging_torque"](COGGING, HARMONIC, 0.4),),
     ]
     together = [AXIS] * 2, motions, effects, [SENSORS] * 2
-    traces = kept(lambda: [run.trace for run in simulate(*together, seed=3, longest_step=STEP)], __file__)
+    traces = kept(lambda: [run.trace for run in simulate(*together, seed=3)], __file__)
     path = tmp_path_factory.mktemp("rig") / "rig.toml"
     write_rig(AXIS, path)
     return load_rig(path), *traces

@@ -22,7 +22,6 @@ AXIS = Axis(
 )
 SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
 #: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
-STEP = 62.5e-6
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +40,7 @@ def recorded(cases, seed):
     effects, motions = zip(*cases.values(), strict=True)
     count = len(cases)
     together = [AXIS] * count, motions, effects, [SENSORS] * count
-    runs = simulate(*together, seed, numbers=[0] * count, longest_step=STEP)
+    runs = simulate(*together, seed, numbers=[0] * count)
     return {name: run.trace for name, run in zip(cases, runs, strict=True)}
 
 

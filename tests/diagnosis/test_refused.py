@@ -40,7 +40,7 @@ def recorded(tmp_path_factory):
     speeds = [6.0, 8.0, 4.0, 7.0, 5.0, 9.0]
     motion = Motion((slow_reversals(speeds, 0.25, 0.02), slow_reversals(speeds[::-1], 0.25, 0.02)))
     one = [AXIS], [motion], [(KINDS["torsion_spring"](STIFFNESS),)], [SENSORS]
-    trace = kept(lambda: simulate(*one, seed=3, longest_step=62.5e-6)[0].trace, __file__)
+    trace = kept(lambda: simulate(*one, seed=3)[0].trace, __file__)
     path = tmp_path_factory.mktemp("rig") / "rig.toml"
     write_rig(AXIS, path)
     return load_rig(path), trace

@@ -25,7 +25,6 @@ PERIOD = 1e-3
 AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
 SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
 #: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
-STEP = 62.5e-6
 
 
 COUPLING, BRISTLES = ElasticCoupling(14.0, 2.5e-3), PreslidingFriction(3.0, 8e-3)
@@ -39,7 +38,7 @@ def recorded(tmp_path_factory) -> tuple[Rig, dict[str, Trace]]:
     write_rig(AXIS, path)
     effects, motion = [(COUPLING,), (BRISTLES,), ()], random_motion(AXIS, np.random.default_rng(SEED), 6.0)
     together = [AXIS] * 3, [motion] * 3, effects, [SENSORS] * 3
-    runs = kept(lambda: [run.trace for run in simulate(*together, SEED, numbers=[0] * 3, longest_step=STEP)], __file__)
+    runs = kept(lambda: [run.trace for run in simulate(*together, SEED, numbers=[0] * 3)], __file__)
     names = [COUPLING.name, BRISTLES.name, RIGID]
     return load_rig(path), dict(zip(names, runs, strict=True))
 

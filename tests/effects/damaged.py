@@ -35,7 +35,7 @@ RIG = Rig.of(
     }
 )
 SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
-SECONDS, STEP = 6.0, 62.5e-6
+SECONDS = 6.0
 SINGLES = {
     "quadratic_drag": (2.5e-5,),
     "cogging_torque": (0.06, 6.0, 0.4),
@@ -53,7 +53,7 @@ def recordings() -> dict[str, Trace]:
     """One without an effect, under the name `null`, and one of each single."""
     cases = {"null": (), **{name: (KINDS[name](*values),) for name, values in SINGLES.items()}}
     count, motion = len(cases), random_motion(AXIS, np.random.default_rng(11), SECONDS)
-    runs = simulate([AXIS] * count, [motion] * count, list(cases.values()), [SENSORS] * count, 11, longest_step=STEP)
+    runs = simulate([AXIS] * count, [motion] * count, list(cases.values()), [SENSORS] * count, 11)
     return dict(zip(cases, (run.trace for run in runs), strict=True))
 
 

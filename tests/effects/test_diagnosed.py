@@ -24,7 +24,7 @@ AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
 )
 SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
-SEED, SEVERITY, SECONDS, STEP = 3, 0.6, 6.0, 62.5e-6
+SEED, SEVERITY, SECONDS = 3, 0.6, 6.0
 DIAGNOSED = list(catalogue())
 #: What is drawn beside its strength: without a viscous part, a difference of friction is a torque offset.
 BESIDE = {"direction_dependent_friction": {"viscous_share": 1.0}}
@@ -62,7 +62,6 @@ def diagnosed(hidden, tmp_path_factory):
             [SENSORS] * count,
             SEED,
             numbers=[number(name) for name in hidden],
-            longest_step=STEP,
         )
         return dict(zip(hidden, (run.trace for run in runs), strict=True))
 

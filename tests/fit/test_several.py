@@ -19,7 +19,7 @@ from bench.validation.independent.sensors import Noise, Sensors
 from bench.validation.independent.simulate import simulate as integrate
 from tests.diagnosis.command import started
 from tests.fit.motions import NAMES, RIG, UNITS, Truth, recording
-from tests.fit.test_recovery import AXES, STEP
+from tests.fit.test_recovery import AXES
 
 #: About what is chosen for these motions, which takes a fifth of the time where it is given - Hz.
 CUTOFF = 66.0
@@ -57,7 +57,7 @@ def test_runs_of_one_direction_determine_together_what_neither_does_alone(tmp_pa
     axes = [axis for axis in AXES for _ in range(2)]
     motions = [one_way(axis, rng, side) for axis in AXES for side in (1.0, -1.0)]
     effects = [(TorqueOffset(offset),) for offset in offsets for _ in range(2)]
-    recorded = integrate(axes, motions, effects, [sensors] * len(axes), seed=4, longest_step=STEP)
+    recorded = integrate(axes, motions, effects, [sensors] * len(axes), seed=4)
     for k, (axis, offset) in enumerate(zip(AXES, offsets, strict=True)):
         write_rig(axis, tmp_path / "rig.toml")
         rig = load_rig(tmp_path / "rig.toml").model_copy(update={"offset": True})

@@ -41,7 +41,8 @@ class Rows:
         self.memory = np.zeros_like(self.velocity)
 
     def __getattr__(self, name: str) -> np.ndarray:
-        return getattr(self.plant if hasattr(self.plant, name) else self.plant.axes, name)[self.index]
+        state = vars(self.plant)
+        return (state[name] if name in state else getattr(self.plant.axes, name))[self.index]
 
     @property
     def time(self) -> float:

@@ -13,7 +13,7 @@ from tests.cases import record, write_case
 from tests.kept import INTEGRATOR
 from tests.studies.blind.draw import Drawn, noise_of, strength_of
 
-#: Half of the shortest control period: coarser than the integrator's own choice, in two thirds of its time - s.
+#: Half of the shortest control period; the integrator's own step is all of it - s.
 LONGEST_STEP = 31.25e-6
 #: Cases simulated together at most: more cost no less each.
 TOGETHER = 120

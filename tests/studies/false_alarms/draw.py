@@ -19,7 +19,7 @@ from bench.validation.independent.simulate import simulate
 from tests.cases import residual_ratio
 
 #: Tick of all drives, so that many run side by side, and step of the integration - s.
-TICK, LONGEST_STEP = 250e-6, 62.5e-6
+TICK = 250e-6
 #: Of a recording, about - s.
 DURATION = 4.0
 #: What recordings tell of J, K_w and K_0 is off by, relative: `within`, by which spreads between them are measured.
@@ -147,7 +147,6 @@ def recorded(wanted: Sequence[Again], seed: int, first: int = 0) -> list[Recordi
         [one.sensors for one in wanted],
         seed,
         numbers=range(first, first + len(wanted)),
-        longest_step=LONGEST_STEP,
     )
     return [Recording(run.trace, residual_ratio(run) if run.effects else 1.0) for run in runs]
 

@@ -20,7 +20,7 @@ from tests.shared import SHARED
 from tests.studies.blind.__main__ import workers
 from tests.studies.blind.draw import Drawn
 from tests.studies.nuisance import realistic
-from tests.studies.nuisance.record import LONGEST_STEP, home
+from tests.studies.nuisance.record import home
 
 DATA = SHARED / "data"
 #: The pendulum servo at each of its gains.
@@ -67,7 +67,7 @@ class Source:
         if self.drawn is None:
             return injected(host, effect)
         hidden = replace(self.drawn.hidden, effects=(*self.drawn.hidden.effects, effect))
-        ((first, _),) = record([hidden], self.seed, numbers=[self.drawn.number], longest_step=LONGEST_STEP)
+        ((first, _),) = record([hidden], self.seed, numbers=[self.drawn.number])
         return first.trace
 
 

@@ -27,7 +27,7 @@ from tests.studies.blind.__main__ import workers
 from tests.studies.blind.draw import Drawn
 from tests.studies.blind.score import same, twins
 from tests.studies.nuisance.answer import Answer, ask
-from tests.studies.nuisance.record import LONGEST_STEP, TOGETHER
+from tests.studies.nuisance.record import TOGETHER
 
 #: Severity of each effect, and how many there are.
 SEVERITY, MANY = (0.15, 0.4), (4, 6)
@@ -112,7 +112,7 @@ def _kept(truth: Path, case: Drawn) -> bool:
 
 def _record(folder: Path, drawn: Sequence[Drawn], seed: int) -> int:
     cases, numbers = [case.hidden for case in drawn], [case.number for case in drawn]
-    runs = record(cases, seed, numbers=numbers, longest_step=LONGEST_STEP)
+    runs = record(cases, seed, numbers=numbers)
     for case, pair in zip(cases, runs, strict=True):
         entry = write_case(folder, case, pair) | {"drawn": repr(case)}
         # last, since it says that the case is complete

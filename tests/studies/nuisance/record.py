@@ -20,8 +20,6 @@ from tests.kept import INTEGRATOR
 from tests.studies.nuisance.draw import Case
 from tests.studies.nuisance.signals import FINE, Signals, noisy, write_csv
 
-#: Of the integrator; `test_record` holds it against shorter ones - s.
-LONGEST_STEP = FINE / 4.0
 #: Cases simulated together at most: more cost no less each.
 TOGETHER = 60
 #: Electronics without a fault, as often as the drive itself samples.
@@ -29,8 +27,8 @@ IDEAL = Sensors(sample_period=FINE, encoder_resolution=0.0)
 
 
 def home() -> Path:
-    """Folder of exact recordings; another one as soon as the integrator or its step is changed."""
-    digest = hashlib.sha256(repr((FINE, LONGEST_STEP)).encode())
+    """Folder of exact recordings; another one as soon as the integrator is changed."""
+    digest = hashlib.sha256(repr(FINE).encode())
     for path in INTEGRATOR:
         digest.update(path.read_bytes())
     return Path(tempfile.gettempdir()) / f"nuisance-{digest.hexdigest()[:10]}"
@@ -56,7 +54,7 @@ def recorded(folder: Path, cases: Sequence[Case], pool: Executor) -> Iterator[in
 def _simulate(folder: Path, cases: Sequence[Case]) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     axes, motions = [case.axis for case in cases], [case.motion for case in cases]
-    runs = simulate(axes, motions, [case.effects for case in cases], [IDEAL] * len(cases), longest_step=LONGEST_STEP)
+    runs = simulate(axes, motions, [case.effects for case in cases], [IDEAL] * len(cases))
     for case, run in zip(cases, runs, strict=True):
         path = exact_file(folder, case)
         part = path.with_suffix(f".{os.getpid()}.npz")
