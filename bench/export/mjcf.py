@@ -38,7 +38,7 @@ from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_
 from bench.plant.mjcf_file import read_mjcf
 from bench.plant.model_file import StoredModel
 from bench.plant.robot import AddedBody, add_body, link_about_centre
-from bench.plant.run import silenced
+from bench.plant.silenced import silenced
 from bench.structured import json_text, parse_json
 
 #: The body of a file that holds the joint alone.

@@ -18,7 +18,7 @@ import numpy as np
 from bench.errors import InputError
 from bench.files import read_bytes, read_text
 from bench.jobs.process import Failure, Limits, WorkerProcess, watched
-from bench.plant.run import silenced
+from bench.plant.silenced import silenced
 
 #: Within which a robot compiles; one of a hundred meshes takes seconds.
 LIMITS = Limits(deadline=60.0)

@@ -27,7 +27,7 @@ from bench.errors import InputError
 from bench.names import nearest
 from bench.plant.axis_model import NO_MASS
 from bench.plant.mjcf_file import read_mjcf
-from bench.plant.run import silenced
+from bench.plant.silenced import silenced
 from bench.rig.rig import JointNotes, Load, Rig
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import GivenOptions, axes_of

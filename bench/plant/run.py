@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 
 import mujoco
 import numpy as np
@@ -21,6 +19,7 @@ from bench.effects.signals import Number
 from bench.errors import InputError, SimulationError
 from bench.plant.drive import TORQUE, CascadeDrive, FollowReferences, References
 from bench.plant.plant import DIVERGED, ClosedLoop, Plant, States
+from bench.plant.silenced import silenced
 from bench.plant.stepped_effects import Joints, SteppedEffects, per_axis
 
 Progress = Callable[[float], None]
@@ -81,19 +80,6 @@ def run_loops(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> 
             for column, k in enumerate(group):
                 found[k] = together.axis(column, -(-loops[k].ticks // loops[k].every))
     return [found[k] for k in range(len(loops))]
-
-
-@contextmanager
-def silenced() -> Iterator[None]:
-    """Keep MuJoCo from printing warnings and from leaving a MUJOCO_LOG.TXT behind, within the block."""
-    before, silent = mujoco.MjLogConfig.get(), mujoco.MjLogConfig.get()
-    silent.logto_console = silent.logto_file = False
-    silent.set()
-    try:
-        with warnings.catch_warnings(action="ignore", category=UserWarning):  # a compiler's, of a singular inertia
-            yield
-    finally:
-        before.set()
 
 
 def run_native(loop: ClosedLoop) -> States:

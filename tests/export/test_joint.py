@@ -21,7 +21,7 @@ from bench.export.mjcf import (
 )
 from bench.plant.mjcf_file import read_mjcf
 from bench.plant.model_file import model_xml
-from bench.plant.run import silenced
+from bench.plant.silenced import silenced
 from tests.export.arms import ARM, PARAMETERS, stored
 from tests.export.two_links import C2, I2, M2, MJCF
 

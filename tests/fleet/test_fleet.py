@@ -134,6 +134,7 @@ def test_only_what_is_missing_is_done_and_the_table_is_the_same_to_the_byte(made
     assert (out / "fleet.parquet").read_bytes() == table
 
 
+@pytest.mark.slow  # `tests/jobs` has Dask beside each run of the tests
 def test_on_dask_the_table_is_the_same_to_the_byte(made, found, cluster):
     out = made.parent / "on_dask"
     assert fleet(made, out, storages=STORAGES, limits=LIMITS, scheduler=cluster.scheduler_address).evaluated == 24
