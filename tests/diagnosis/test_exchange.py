@@ -93,3 +93,13 @@ def test_what_was_as_good_as_an_earlier_name_is_weighed_with_what_it_needs_besid
     tried = [sorted(each.hypothesis.names) for each in neighbourhood(ended, frozenset(), Policy())]
     assert ["cogging_torque", "cogging_torque"] in tried
     assert ["cogging_torque"] in tried
+
+
+def test_a_result_is_weighed_against_itself_without_each_of_its_names():
+    """Of those that come later a search has not tried it without the first."""
+    trace = recorded(moved(), wave(0.03, 3.0), drag)
+    searched = search(bare(trace), [catalogue()[name] for name in ("cogging_torque", "quadratic_drag")], Policy())
+    tried = [sorted(each.hypothesis.names) for each in neighbourhood(searched, frozenset(), Policy())]
+    assert sorted(searched.last.hypothesis.names) == ["cogging_torque", "quadratic_drag"]
+    assert ["cogging_torque"] in tried
+    assert ["quadratic_drag"] in tried

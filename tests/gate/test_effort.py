@@ -26,6 +26,14 @@ def test_another_axis_current_is_refused(sound, rig):
     assert "another axis" in found.advice
 
 
+@pytest.mark.parametrize(("least", "status"), [(0.5, "pass"), (0.0, "fail")])
+def test_an_effort_of_one_sign_has_lost_it_only_if_it_is_zero_in_motion(sound, rig, least, status):
+    """What presses on an axis is of one sign, too, and never zero."""
+    rectified = least + np.abs(np.sin(2.0 * np.pi * 1.7 * sound.time))
+    rectified[rectified < least + 0.2] = least
+    assert effort.has_sign(Seen(changed(sound, current=rectified), rig)).status == status
+
+
 def test_that_an_axis_stands_is_reported_first(sound, rig):
     rng = np.random.default_rng(3)
     still = {"velocity": 1e-3 * rng.normal(size=len(sound)), "position": 1e-6 * rng.normal(size=len(sound))}

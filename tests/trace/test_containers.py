@@ -4,10 +4,13 @@ import os
 import signal
 import sys
 import zipfile
+from decimal import Decimal
 from io import BytesIO
 
 import h5py
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from asammdf import MDF, Signal
 from mcap_ros2.writer import Writer as Ros2Writer
@@ -183,6 +186,13 @@ def test_npz_npy_and_mat(tmp_path):
     holds(read(tmp_path / "named.npy", columns))
     savemat(tmp_path / "run.mat", {"ans": np.vstack([TIME, SPEED, AMPS])})
     holds(read(tmp_path / "run.mat", {"time": "ans(1,:) [s]", "velocity": "ans(2,:) [rad/s]"}))
+
+
+def test_decimals_of_a_parquet_table_are_numbers(tmp_path):
+    exact = {name: pa.array([Decimal(f"{one:.9f}") for one in values]) for name, values in (("t", TIME), ("w", SPEED))}
+    pq.write_table(pa.table({**exact, "i": AMPS}), tmp_path / "run.parquet")
+    trace = read(tmp_path / "run.parquet", {"time": "t [s]", "velocity": "w [rad/s]", "current": "i [A]"})
+    holds(trace, np.round(SPEED, 9))
 
 
 WRITTEN = {

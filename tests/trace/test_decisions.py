@@ -99,6 +99,12 @@ def test_a_sample_index_counts_by_its_usual_step_whatever_is_lost():
     assert trace.time_base.holes == (pytest.approx((0.039, 0.021)),)
 
 
+def test_a_sample_index_that_stands_is_refused_where_it_does():
+    index = np.array([0.0, 1.0, 2.0, 2.0, 3.0])
+    with pytest.raises(InputError, match=r"sample 3.*does not increase"):
+        assemble(recording(sample=index, velocity__rad_s=index), GivenOptions(sample_period=1e-3))
+
+
 @pytest.mark.parametrize(("lost", "refused"), [(2, False), (3, True)])
 def test_times_may_be_empty_in_one_of_twenty_rows(lost, refused):
     time = np.arange(40.0)
