@@ -1,9 +1,11 @@
 """What a recording was made under, against closed forms; and from where on another motion is one."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from bench.baseline.observe import conditions, motion_ratio, unlike
+from bench.baseline.observe import _torque_gap, conditions, motion_ratio, unlike
 from bench.comparison.difference import Measured
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -68,3 +70,10 @@ def test_motions_differ_by_the_largest_of_their_ratios():
 @pytest.mark.parametrize("name", ["rms_effort", "cutoff"])
 def test_what_follows_from_the_axis_and_the_noise_is_no_other_motion(name):
     assert unlike({name: Measured(1.0, "Hz", 0.0)}, {name: Measured(9.0, "Hz", 0.0)}) == []
+
+
+def test_a_gap_is_known_as_the_root_of_a_mean_square_of_so_many_independent_rows_is():
+    """Their number is that of the rows over how many of them the filter makes alike: 400 of 1200."""
+    drawn = 0.3 * np.random.default_rng(4).normal(size=(20_000, 400))
+    fitted = SimpleNamespace(count=1200, rms=0.3, rows=SimpleNamespace(correlation=3.0))
+    assert _torque_gap(fitted, "N*m").std_error == pytest.approx(np.sqrt((drawn**2).mean(axis=1)).std(), rel=0.02)

@@ -21,7 +21,7 @@ def test_the_variance_between_recordings_is_that_of_the_method_of_moments():
     assert found.variance == pytest.approx(np.var(values, ddof=1) - error**2)
     assert found.degrees == 3
     assert excess([numbers([1.0, 1.1], 0.5)]).variance == 0.0
-    assert excess([numbers([1.0], 0.5), numbers([7.0], 0.5)]).degrees == 0
+    assert excess([numbers([1.0], 0.5), numbers([7.0], 0.5)]) == Excess(0.0, 0, 1.0)
     grouped = excess([numbers([1.0, 2.0], error), numbers([11.0, 12.0], error)])
     assert (grouped.variance, grouped.degrees) == (pytest.approx(0.5 - error**2), 2)
 

@@ -27,7 +27,7 @@ from tests.studies.mutation.reach import REACH
 
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
 PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--tb=no", "--no-header"]
-#: What pytest returns where it cannot begin: no test has failed.
+#: What pytest returns where it cannot begin: no test has failed, unless a file that it was to run cannot be imported.
 USAGE = 4
 #: Tests of a second at most are shown first, whatever folder they are of.
 QUICK = 1.0
@@ -123,9 +123,9 @@ def fate(mutant: Mutant, reach: Reach, copy: Path, most: float) -> Fate:
                 timeout=SETTING_UP + 20.0 * seconds,
             )
             shown, spent = shown + len(tests), spent + seconds
-            assert done.returncode != USAGE, done.stderr
+            failed = [line.split()[1] for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+            assert done.returncode != USAGE or failed, done.stderr
             if done.returncode not in (0, 5):  # 5: nothing to run
-                failed = [line.split()[1] for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
                 killed_by = failed[0] if failed else "the tests do not start"
                 break
     except subprocess.TimeoutExpired:
