@@ -11,6 +11,7 @@ from bench.assets import asset
 from bench.course.axis import Sources, lab_rig
 from bench.course.flights import read_flights
 from bench.course.recordings import LabRecordings
+from bench.errors import InputError
 from bench.trace.read import read
 from tests.command import bench
 from tests.course.conftest import SLOW
@@ -285,3 +286,13 @@ def test_every_value_tells_its_source(tmp_path):
     assert own("motor", "rotor_inertia") == "rig file"
     assert own("motor", "peak_torque") == "datasheet"
     assert own("load", "outer_diameter") == "embedded rig"
+
+
+@pytest.mark.parametrize(("head", "refused"), [("y [m];z", True), ("y [m];z [mm]", False)])
+def test_lengths_beyond_a_throw_need_a_unit_in_both_columns(tmp_path, head, refused):
+    (tmp_path / "one.csv").write_text(f"{head}\n0;100\n1;900\n2;1000\n3;400\n")
+    if refused:
+        with pytest.raises(InputError, match="found lengths that span 900 without a unit"):
+            read_flights(tmp_path)
+    else:
+        np.testing.assert_allclose(read_flights(tmp_path).points[0][:, 1], [0.1, 0.9, 1.0, 0.4])
