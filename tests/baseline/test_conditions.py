@@ -31,7 +31,7 @@ def test_a_sines_conditions_are_those_of_its_formula():
     assert (found["sample_period"], found["cutoff"]) == (pytest.approx(1e-3), 80.0)
 
 
-def test_where_a_sample_takes_as_long_as_the_mean_of_some_its_speed_counts_as_it_is():
+def test_a_speed_that_is_sampled_more_slowly_than_it_would_be_smoothed_is_not():
     """Differences over two periods of T lessen the acceleration of a sine by sin(w*T)/(w*T), and nothing else does."""
     period, omega = 0.03, 2.0 * np.pi * 2.0
     time = period * np.arange(1000)
@@ -72,7 +72,7 @@ def test_what_follows_from_the_axis_and_the_noise_is_no_other_motion(name):
     assert unlike({name: Measured(1.0, "Hz", 0.0)}, {name: Measured(9.0, "Hz", 0.0)}) == []
 
 
-def test_a_gap_is_known_as_the_root_of_a_mean_square_of_so_many_independent_rows_is():
+def test_the_error_of_a_gap_is_that_of_the_root_mean_square_of_its_independent_rows():
     """Their number is that of the rows over how many of them the filter makes alike: 400 of 1200."""
     drawn = 0.3 * np.random.default_rng(4).normal(size=(20_000, 400))
     fitted = SimpleNamespace(count=1200, rms=0.3, rows=SimpleNamespace(correlation=3.0))

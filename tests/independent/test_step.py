@@ -27,9 +27,10 @@ def runs():
     return {name: pair for name, *pair in zip(effects, at(LONGEST_STEP), at(LONGEST_STEP / 4.0), strict=True)}
 
 
-@pytest.mark.parametrize(("signal", "largest"), [("velocity", PLAIN.top_speed), ("current", PLAIN.peak_current)])
-def test_a_shorter_step_changes_a_hundred_thousandth_at_most(runs, signal, largest):
+@pytest.mark.parametrize(
+    ("signal", "largest", "allowed"), [("velocity", PLAIN.top_speed, 5e-6), ("current", PLAIN.peak_current, 2e-5)]
+)
+def test_a_shorter_step_changes_nothing_that_noise_would_not_hide(runs, signal, largest, allowed):
     apart = {name: np.std(own[signal] - short[signal]) / largest for name, (own, short) in runs.items()}
     print({name: f"{share:.1e}" for name, share in apart.items()})  # pytest -s
-    assert max(share for name, share in apart.items() if name != "load_torque_event") < 1e-5
-    assert apart["load_torque_event"] < 5e-5  # its edges lie within a step
+    assert max(apart.values()) < allowed

@@ -22,18 +22,20 @@ def speed_weight(rate: Array, time: Array) -> Array:
     """phi(t) = (1 - exp(-k*t))/k - s; t for k = 0. rate k = K_w/J - 1/s."""
     x = rate * time
     series = time * (1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0))))
-    if (x < 1e-3).all():
+    small = x < 1e-3
+    if small.all():  # as of nearly every step
         return series
-    return np.where(x < 1e-3, series, -np.expm1(-x) / np.where(rate > 0.0, rate, 1.0))
+    return np.where(small, series, -np.expm1(-x) / np.where(rate > 0.0, rate, 1.0))
 
 
 def distance_weight(rate: Array, time: Array) -> Array:
     """psi(t) = (t - phi(t))/k, the integral of phi - s**2; t**2/2 for k = 0."""
     x = rate * time
     series = time**2 / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0))))
-    if (x < 1e-3).all():
+    small = x < 1e-3
+    if small.all():  # as of nearly every step
         return series
-    return np.where(x < 1e-3, series, (time - speed_weight(rate, time)) / np.where(rate > 0.0, rate, 1.0))
+    return np.where(small, series, (time - speed_weight(rate, time)) / np.where(rate > 0.0, rate, 1.0))
 
 
 def stopping_time(rate: Array, speed: Array, acceleration: Array) -> Array:
