@@ -51,7 +51,7 @@ from bench.effects.effect import (
 from bench.effects.signals import Signals
 from bench.fit.rows import Rows, effort_of, known_of
 from bench.trace.filter import Column
-from bench.trace.motion import SIGN_REACH
+from bench.trace.motion import SIGN_REACH, Conditioning
 
 #: Name of a column: a term of the equation of motion, what a recording has beside, or the index of an effect's term.
 Name = str | int
@@ -284,14 +284,11 @@ def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, m
 
     That has passed the filter, which takes the fastest of it once more: the slope of the columns makes it good.
     """
-    time, step = seen.time, 1e-3 * rms(seen.effort)
-
-    def columns(s: Signals) -> list[Column]:
-        between = _acting(s, time, missing, lag)
-        low, high = (replace(s, torque=s.torque - between + more) for more in (0.0, step))
-        return [*effect.columns(low, shape), *effect.columns(high, shape), [(between, 0)]]
-
-    table = seen.table(columns, lag)
+    step, joined = 1e-3 * rms(seen.effort), seen.joined
+    between = seen.laid(lambda signals: _acting(signals, seen.time, missing, lag))
+    low, high = (replace(joined, torque=joined.torque - between + more) for more in (0.0, step))
+    columns = [*effect.columns(low, shape), *effect.columns(high, shape), [(between, 0)]]
+    table = seen.table([columns], lag)
     low, high, twice = np.split(table, [table.shape[1] // 2, table.shape[1] - 1], axis=1)
     return low - (high - low) / step * (missing[:, None] - twice)
 
@@ -303,29 +300,37 @@ def _acting(s: Signals, time: Array, reported: Array, lag: float) -> Array:
 
 
 def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], moving: float) -> Array:
-    """Covariance (p, p) of what the sensors' white noise makes of the columns.
+    """Covariance (p, p) of what the sensors' white noise makes of the columns."""
+    smooth, effort_noise = rows.conditioning.filter, rows.conditioning.effort_noise
+    gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
+    noise = np.zeros((owners.size, owners.size))
+    noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = effort_noise**2 * gain
+    couplings = tuple((each.effect, each.shape) for each in hypothesis.terms if isinstance(each.effect, Coupling))
+    behind = [int(np.flatnonzero(owners == index)[0]) for index in hypothesis.of_kind(Coupling)]
+    places = [BASE.index(INERTIA), BASE.index(VISCOUS), *behind]
+    made_of = _noise_of_motion, moving, couplings
+    of_motion = rows.memory.get(made_of, lambda: _noise_of_motion(rows.conditioning, moving, couplings))
+    noise[np.ix_(places, places)] = of_motion
+    return noise
+
+
+def _noise_of_motion(
+    conditioning: Conditioning, moving: float, couplings: Iterable[tuple[Coupling, tuple[float, ...]]]
+) -> Array:
+    """That of acceleration, speed and what follows the motion behind couplings (2 + couplings, 2 + couplings).
 
     A smoothed signal and its derivative are uncorrelated, as G is even and omega*G odd; what follows the motion behind
     a coupling is not uncorrelated with the motor's acceleration: its transfer says how much of that noise it has.
     """
-    conditioning = rows.conditioning
-    smooth, order = conditioning.filter, conditioning.order
-    noise = np.zeros((owners.size, owners.size))
-    gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
-    noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = conditioning.effort_noise**2 * gain
+    smooth = conditioning.filter
     omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
     # all of them less the speed's own factor, (1j * omega) ** order * (1.0 + 1j * omega * moving)
     s = np.asarray(1j * omega, dtype=np.complex128)
-    transfers = {BASE.index(INERTIA): s, BASE.index(VISCOUS): np.ones_like(s)}
-    for index, term in enumerate(hypothesis.terms):
-        if isinstance(term.effect, Coupling):
-            place = int(np.flatnonzero(owners == index)[0])
-            transfers[place] = s * term.effect.noise_of_motion(term.shape, omega)
-    places, spectra = list(transfers), np.stack(list(transfers.values()))
+    behind = (s * effect.noise_of_motion(shape, omega) for effect, shape in couplings)
+    spectra = np.stack([s, np.ones_like(s), *behind])
     weight = conditioning.source_power(omega) * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
-    weight *= omega ** (2 * order) * (1.0 + (omega * moving) ** 2)
-    noise[np.ix_(places, places)] = (omega[1] - omega[0]) * ((spectra * weight) @ spectra.conj().T).real
-    return noise
+    weight *= omega ** (2 * conditioning.order) * (1.0 + (omega * moving) ** 2)
+    return (omega[1] - omega[0]) * ((spectra * weight) @ spectra.conj().T).real
 
 
 def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:

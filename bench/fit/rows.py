@@ -6,6 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
+from operator import attrgetter
 from typing import Any, TypeVar
 
 import numpy as np
@@ -32,6 +33,8 @@ ONE_WAY = 0.02
 #: Bytes of columns kept: on a recording of 8 s at 1 kHz some hundred, of 600 s what one hypothesis needs. With 96 MB
 #: less than that was kept there, and 600 s took 2.8 times as long as 300 s; with 160 MB 2.0 times.
 KEPT = 160 * 2**20
+#: Of a stretch, one value for each sample, or one for all.
+SAMPLES = ("time", "position", "velocity", "sign", "effort", "torque", "friction", "load")
 #: A lag of all columns, or of each - s.
 Lag = float | tuple[float, ...]
 Made = TypeVar("Made", Array, Sequence[Sequence[Column]])
@@ -289,6 +292,21 @@ class Rows:
                     whole_term[begin : begin + values.size] += values
             whole.append([(values, order) for order, values in joined.items()])
         return whole
+
+    def laid(self, pick: Callable[[Signals], Array | float]) -> Array:
+        """Values of the samples of all stretches, laid as columns are that are filtered at once; zeros between (n,)."""
+        if len(self.stretches) == 1:
+            return np.asarray(pick(self.stretches[0].signals))
+        laid = np.zeros(self._begins[-1])
+        for begin, part in zip(self._begins, self.stretches, strict=False):
+            laid[begin : begin + part.signals.time.size] = pick(part.signals)
+        return laid
+
+    @cached_property
+    def joined(self) -> Signals:
+        """All stretches as one, for columns that are made of each sample alone; none is known to act beside."""
+        samples = {name: self.laid(attrgetter(name)) for name in SAMPLES}
+        return replace(self.stretches[0].signals, **samples, known=())
 
     def against(self, targets: Array, lag: float = 0.0) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
         """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself."""
