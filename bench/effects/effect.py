@@ -211,7 +211,10 @@ class Columns(Effect):
 
 
 class CopiesTorque(Columns):
-    """Columns computed from the torque that reaches it and its noise, see `bench.fit.hypothesis.not_reaching`."""
+    """Columns made of the torque that reaches it and its noise, see `bench.fit.hypothesis.not_reaching`.
+
+    Each value of the sample in its place alone: those of a recording with holes are made at once.
+    """
 
 
 class OfSpeed(Columns):
