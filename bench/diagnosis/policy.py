@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.effects.effect import Contact, Effect, Occasional, Replacing
-from bench.fit.fit import Fit, explained, fitted_shapes
+from bench.fit.fit import Fit, explained
 from bench.fit.solution import NOISE_ALONE
 
 #: Squares of impacts at wrong instants, or waves out of phase, over their own: they err where they are and are not.
@@ -20,7 +20,7 @@ ERRS_TWICE = 2.0
 
 def freedom(fitted: Fit) -> int:
     """Numbers that were fitted: strengths and continuous shapes, in whatever way these were searched."""
-    return fitted.theta.size + sum(len(fitted_shapes(term, fitted.scope)) for term in fitted.terms)
+    return fitted.theta.size + sum(len(term.fitted(fitted.scope)) for term in fitted.terms)
 
 
 def worth(without: Fit, having: Fit) -> float:

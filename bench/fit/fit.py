@@ -28,7 +28,6 @@ from bench.effects.effect import (
     FiltersMotion,
     Proposal,
 )
-from bench.effects.shape import is_pitch
 from bench.effects.signals import Base, Scope, Signals
 from bench.fit.hypothesis import (
     Hypothesis,
@@ -396,23 +395,12 @@ def by_hint(rows: Rows, hypothesis: Hypothesis) -> dict[str, float]:
     return {} if beside is None else {term: beside.value(term) - fitted.value(term) for term in terms}
 
 
-def fitted_shapes(term: Term, scope: Scope) -> list[int]:
-    """Places of the shape quantities that are numbers of a fit: none that is whole, or that follows from others."""
-    shapes = enumerate(term.effect.shapes)
-    return [k for k, shape in shapes if shape.step and (not shape.whole or is_pitch(shape, scope))]
-
-
-def free_shapes(term: Term, scope: Scope) -> list[int]:
-    """Those of them that are searched step by step, and not in a way of their own."""
-    return [k for k in fitted_shapes(term, scope) if term.effect.reach(term.shape, k)]
-
-
 def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:
     """Search one term's shape for the least residual, the others held; `over_noise`: the least over its noise."""
     from scipy.optimize import fminbound, minimize  # 0.2 s, which only a named effect has to pay
 
     term, scope = hypothesis.terms[index], rows.scope
-    free = free_shapes(term, scope)
+    free = term.searched(scope)
     if not free:
         return fit(rows, hypothesis)
     if isinstance(term.effect, Distortion) and hypothesis.coupling is not None:
@@ -422,7 +410,7 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = Fa
         rows_tried = rows
 
     def at(offset: Array) -> Hypothesis:
-        return hypothesis.reshaped(index, _moved(term, free, offset, scope))
+        return hypothesis.with_term(index, term.moved(offset, scope))
 
     def misfit(offset: Array) -> float:
         tried = fit(rows_tried, at(offset))
@@ -451,16 +439,15 @@ def together(fitted: Fit) -> Fit:
     from scipy.optimize import least_squares  # 0.2 s, which only several named effects have to pay
 
     scope, terms = fitted.scope, fitted.terms
-    free = [free_shapes(term, scope) for term in terms]
-    ends = np.cumsum([len(places) for places in free])
-    if not any(free):
+    ends = np.cumsum([len(term.searched(scope)) for term in terms])
+    if not ends.any():
         return fitted
 
     def at(offset: Array) -> Fit:
         moved = fitted.hypothesis
         steps = np.split(np.clip(offset, -FURTHEST, FURTHEST), ends[:-1])
-        for index, (term, places, own) in enumerate(zip(terms, free, steps, strict=True)):
-            moved = moved.reshaped(index, _moved(term, places, own, scope))
+        for index, (term, own) in enumerate(zip(terms, steps, strict=True)):
+            moved = moved.with_term(index, term.moved(own, scope))
         return fit(fitted.rows, moved)
 
     best = least_squares(
@@ -486,17 +473,3 @@ def unbiased(fitted: Fit) -> Fit:
         if isinstance(term.effect, FiltersMotion):
             fitted = shaped(fitted.rows, fitted.hypothesis, index, over_noise=True)
     return fitted
-
-
-def _moved(term: Term, free: list[int], offset: Array, scope: Scope) -> tuple[float, ...]:
-    """The shape an offset away, in units of how far a search goes."""
-    shape = list(term.shape)
-    for k, step in zip(free, offset.tolist(), strict=True):
-        slot = term.effect.shapes[k]
-        if is_pitch(slot, scope):
-            shape[k] += step * scope.spacing
-        elif slot.additive:
-            shape[k] += step * term.effect.reach(term.shape, k)
-        else:
-            shape[k] *= float(np.exp(step * term.effect.reach(term.shape, k)))
-    return tuple(shape)

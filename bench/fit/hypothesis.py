@@ -48,7 +48,8 @@ from bench.effects.effect import (
     Repeatable,
     lagged,
 )
-from bench.effects.signals import Signals
+from bench.effects.shape import is_pitch
+from bench.effects.signals import Scope, Signals
 from bench.fit.rows import Rows, effort_of, known_of
 from bench.trace.filter import Column
 from bench.trace.motion import SIGN_REACH, Conditioning
@@ -95,6 +96,28 @@ class Term:
     def key(self) -> tuple[str, tuple[float, ...]]:
         """What tells its columns from those of other terms."""
         return self.effect.name, self.shape
+
+    def fitted(self, scope: Scope) -> list[int]:
+        """Places of the shape quantities that are numbers of a fit: none that is whole, or that follows from others."""
+        shapes = enumerate(self.effect.shapes)
+        return [k for k, shape in shapes if shape.step and (not shape.whole or is_pitch(shape, scope))]
+
+    def searched(self, scope: Scope) -> list[int]:
+        """Those of them that are searched step by step, and not in a way of their own."""
+        return [k for k in self.fitted(scope) if self.effect.reach(self.shape, k)]
+
+    def moved(self, offset: Array, scope: Scope) -> Term:
+        """With the quantities that are searched an offset away, in units of how far a search goes."""
+        shape = list(self.shape)
+        for k, step in zip(self.searched(scope), offset.tolist(), strict=True):
+            slot = self.effect.shapes[k]
+            if is_pitch(slot, scope):
+                shape[k] += step * scope.spacing
+            elif slot.additive:
+                shape[k] += step * self.effect.reach(self.shape, k)
+            else:
+                shape[k] *= float(np.exp(step * self.effect.reach(self.shape, k)))
+        return replace(self, shape=tuple(shape))
 
     def same(self, other: Term) -> bool:
         """Whether it is the same effect of the same shape."""

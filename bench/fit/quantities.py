@@ -16,7 +16,7 @@ from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Contact, Effect, FiltersMotion
 from bench.effects.signals import Base, Signals
-from bench.fit.fit import Fit, fitted_shapes, least_squares
+from bench.fit.fit import Fit, least_squares
 from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.solution import NOISE_ALONE, block_edges, estimated, misfit, solved
@@ -158,7 +158,7 @@ def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
 
 def _free_shapes(fitted: Fit) -> tuple[tuple[int, int], ...]:
     """(Term, place in its shape) of what is a free number of the fit."""
-    return tuple((index, k) for index, term in enumerate(fitted.terms) for k in fitted_shapes(term, fitted.scope))
+    return tuple((index, k) for index, term in enumerate(fitted.terms) for k in term.fitted(fitted.scope))
 
 
 def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
