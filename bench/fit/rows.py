@@ -33,7 +33,7 @@ ONE_WAY = 0.02
 #: Bytes of columns kept: on a recording of 8 s at 1 kHz some hundred, of 600 s what one hypothesis needs. With 96 MB
 #: less than that was kept there, and 600 s took 2.8 times as long as 300 s; with 160 MB 2.0 times.
 KEPT = 160 * 2**20
-#: Of a stretch, one value for each sample, or one for all.
+#: Signals of which a stretch has a value for each sample; a load may be one number for all.
 SAMPLES = ("time", "position", "velocity", "sign", "effort", "torque", "friction", "load")
 #: A lag of all columns, or of each - s.
 Lag = float | tuple[float, ...]
@@ -304,7 +304,7 @@ class Rows:
 
     @cached_property
     def joined(self) -> Signals:
-        """All stretches as one, for columns that are made of each sample alone; none is known to act beside."""
+        """All stretches as one, for columns that are made of each sample alone; without torque known to act beside."""
         samples = {name: self.laid(attrgetter(name)) for name in SAMPLES}
         return replace(self.stretches[0].signals, **samples, known=())
 
