@@ -340,7 +340,7 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
 def _noise_of_motion(
     conditioning: Conditioning, moving: float, couplings: Iterable[tuple[Coupling, tuple[float, ...]]]
 ) -> Array:
-    """That of acceleration, speed, undone a lag `moving` - s -, and what follows them behind c couplings (2 + c, 2 + c).
+    """That of acceleration, speed, of which a lag `moving` - s - is undone, and what follows them (2 + c, 2 + c).
 
     A smoothed signal and its derivative are uncorrelated, as G is even and omega*G odd; what follows the motion behind
     a coupling is not uncorrelated with the motor's acceleration: its transfer says how much of that noise it has.
