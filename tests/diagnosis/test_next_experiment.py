@@ -3,12 +3,16 @@
 Truth comes from the independent integrator.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.next_experiment import LONG_ENOUGH, motions, one_direction
+from bench.diagnosis.next_experiment import LONG_ENOUGH, motions, one_direction, separation
 from bench.diagnosis.recordings import Recordings
+from bench.effects.present import Present
+from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.drive import References
 from bench.rig.rig import load_rig
 from bench.validation.independent.effects import KINDS
@@ -107,6 +111,18 @@ def test_what_may_be_friction_in_one_direction_acts_against_that(rig, recordings
     assert friction.parameters.coulomb_friction == AXIS.coulomb
     assert instead.parameters.coulomb_friction == 0.0
     assert dict(instead.effects[-1].values) == {"torque": direction * AXIS.coulomb}
+
+
+def test_what_a_model_misses_is_the_torque_of_the_effect_that_the_other_has(tmp_path, recordings):
+    """Whatever a weak drive makes of it: an unbalance over many turns has an RMS of its amplitude over a root of 2."""
+    weak = replace(AXIS, viscous=5e-3, velocity_gain=0.01, integral_gain=0.02)
+    write_rig(weak, tmp_path / "rig.toml")
+    weakly = Recordings.of(recordings["reversals, nothing"], load_rig(tmp_path / "rig.toml"), None)
+    plain = AxisModel(AxisParameters(weak.inertia, weak.viscous, weak.coulomb))
+    unbalanced = plain.with_effects([Present.of("unbalance", {"amplitude": 0.05, "phase": 0.3})])
+    turning = dict(motions(weakly, plain))["speed_staircase"]
+    missed = separation(weakly, (plain, unbalanced), turning, width=2e-3)
+    assert missed == pytest.approx(0.05 / np.sqrt(2.0), rel=0.02)
 
 
 def test_names_that_no_motion_parts_have_no_experiment(rig, recordings):
