@@ -36,6 +36,14 @@ def test_beyond_the_limit_current_tends_to_what_is_left():
     assert flowing(-2.0, 0.0, 50.0)[1] == pytest.approx(-2.0)
 
 
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_at_rest_all_of_the_voltage_drives_what_it_can(direction):
+    """12 A through 4 ohm take more than 40 V: 10 A in the end."""
+    tau = AXIS.inductance / AXIS.resistance
+    end = 10.0 * (1.0 - np.exp(-STEP / tau))
+    assert flowing(12.0 * direction, 0.0, 0.0)[1] == pytest.approx(end * direction)
+
+
 def test_enough_voltage_changes_nothing_but_the_rise():
     assert flowing(2.0, 2.0, 10.0) == pytest.approx((2.0, 2.0))
 
