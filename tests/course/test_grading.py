@@ -209,3 +209,8 @@ def test_a_mistake_that_gives_zero_explains_no_answer_but_zero():
     """Nothing is a share of zero away from it."""
     _, found = graded_answers({"J": 20.0}, {"J": 30.0}, mistakes=[([MISTAKE], {"J": 0.0})])
     assert (found["J"].verdict, found["J"].mistake) == ("wrong", "")
+
+
+def test_an_answer_of_zero_is_wrong_and_of_no_known_mistake():
+    _, found = graded_answers({"J": 20.0}, {"J": 0.0}, mistakes=[([MISTAKE], {"J": 30.0})])
+    assert (found["J"].verdict, found["J"].mistake) == ("wrong", "")

@@ -101,3 +101,12 @@ def test_intervals_of_95_percent_hold_what_is_true(hidden, diagnosed):
     ]
     assert len(held) > len(hidden)
     assert held.count(False) <= binom.ppf(1.0 - CHANCE, len(held), 0.05)
+
+
+def test_beside_a_contact_the_torque_gap_says_by_which_rows_it_is_judged(diagnosed):
+    """Right after an impact the torque is not determined: what is left there is in the gap, and not in that."""
+    assert diagnosed("cogging_torque").torque.judged is None
+    gap = diagnosed("backlash").torque
+    share, after = gap.judged
+    assert 0.0 < share < 1.0
+    assert after < gap.identify[1]

@@ -65,6 +65,15 @@ def test_twincat_full_time_stamps_and_cells_left_empty_by_a_slower_channel(tmp_p
     np.testing.assert_allclose(trace["current"], np.arange(46), atol=1e-9)
 
 
+def test_twincat_rows_begin_where_a_faster_channel_has_not_begun(tmp_path):
+    rows = ["\t\t0\t1.5", *(f"{k}\t{k}\t{k}\t1.5" for k in range(1, 20))]
+    head = "Name\tproject\nStarttime of export\t0\n\nName\tvelocity\tName\tcurrent\nUnit\trad/s\tUnit\tA\n\n"
+    (tmp_path / "run.csv").write_text(head + "\n".join(rows))
+    channels = {channel.name: channel for channel in read_recording(tmp_path / "run.csv").channels}
+    assert channels["current"].values.size == 20
+    assert channels["velocity"].values.size == 19
+
+
 def test_twincat_with_commas_and_a_truncated_end(tmp_path):
     text = "Name,project\nStarttime of export,132959733843760000\n\nName,velocity,torque\nUnit,rad/s,Nm\n\n"
     text += "0,1.5,2\n1,2.5,3\n2,3.5,4\n"
