@@ -111,9 +111,10 @@ def test_two_mistakes_are_told_both_where_none_is_twenty_times_likelier():
 
 
 def test_how_much_likelier_is_said_beside_it():
-    """2 deviations off the next is e**2 = 7.4; with 5 the next is the mistake with a slip that changes nothing here."""
+    """z deviations off the next is exp(z**2/2); at 5 the next is the mistake with a slip that changes nothing here."""
     slipped = f"{MISTAKE} and J_motor not subtracted"  # 1 in 10000, and the mistake 1 in 100
-    for apart, words in ((2.0, f"7.4 times likelier than {OTHER}"), (5.0, f"100 times likelier than {slipped}")):
+    told_apart = ((2.0, f"7.4 times likelier than {OTHER}"), (2.12, f"9.5 times likelier than {OTHER}"))
+    for apart, words in (*told_apart, (5.0, f"100 times likelier than {slipped}")):
         ways = [([MISTAKE], {"J": 30.0}), ([OTHER], {"J": 30.0 * math.exp(apart * DEVIATION)})]
         _, found = graded_answers({"J": 20.0}, {"J": 30.0}, mistakes=ways)
         assert found["J"].explained.likelier == words

@@ -5,6 +5,7 @@ import pytest
 
 from bench.errors import InputError
 from bench.fit.identify import identify
+from bench.gate.check import LONGEST, MOST, Seen
 from bench.gate.gate import STEADY, gate, joined, warnings_of
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping
@@ -77,3 +78,10 @@ def test_a_steady_speed_has_checks_of_its_own():
         "steady",
     )
     assert "fail" not in {check.status for check in gate(steady, None, STEADY).checks}
+
+
+def test_of_a_long_recording_whole_stretches_are_asked_not_what_lies_between_holes():
+    lengths = [LONGEST, 100] * (2 * MOST)
+    time = 1e-3 * np.concatenate([np.arange(length) + 10_000 * k for k, length in enumerate(lengths)])
+    seen = Seen(Trace(time, {"velocity": np.zeros(time.size)}, {"velocity": "rad/s"}, "holes"))
+    assert [piece.stop - piece.start for piece in seen.stretches(50)] == [LONGEST] * MOST
