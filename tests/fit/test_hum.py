@@ -9,6 +9,7 @@ from bench.diagnosis.policy import Policy
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
+from bench.fit.hum import mains
 from bench.fit.hypothesis import Hypothesis, Term
 from tests.diagnosis.constructed import CONSTANT, RIG, bare, moved, recorded, wave
 
@@ -47,3 +48,11 @@ def test_steps_credit_an_effect_only_with_what_the_humming_axis_leaves(humming):
     with_hum = fit(humming.rows, Hypothesis()).rms
     assert with_hum == pytest.approx(np.hypot(before.rms, CONSTANT * HUM * passed / np.sqrt(2.0)), rel=0.05)
     assert with_hum > 1.3 * before.rms
+
+
+@pytest.mark.parametrize("line", [50.0, 60.0, 100.0, 120.0, 150.0])
+def test_lines_of_the_mains_and_their_multiples_are_found(humming, line):
+    """A hundredth of a hertz off, as grids are."""
+    rows, rng = humming.rows, np.random.default_rng(4)
+    residual = np.sin(2.0 * np.pi * (line + 0.01) * rows.time) + 0.1 * rng.standard_normal(rows.time.size)
+    assert mains(rows, residual) == pytest.approx((line,), abs=0.1)

@@ -132,16 +132,17 @@ def test_a_zip_of_mdf_that_lies_is_damaged(tmp_path):
         read_recording(path)
 
 
-def test_a_formula_in_a_measurement_is_not_evaluated(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("version", "blocks"), [("4.10", "v4_blocks"), ("3.30", "v2_v3_blocks")])
+def test_a_formula_in_a_measurement_is_not_evaluated(tmp_path, monkeypatch, version, blocks):
     """asammdf would hand it to numexpr and, where that refuses, to sympy, which runs any Python in it."""
 
     def runs(*_, **__):
         raise SystemExit("the formula ran")
 
     for name in ("evaluate", "lambdify", "symbols"):
-        monkeypatch.setattr(asammdf.blocks.v4_blocks, name, runs)
-    path = tmp_path / "run.mf4"
-    with MDF(version="4.10") as file:
+        monkeypatch.setattr(getattr(asammdf.blocks, blocks), name, runs)
+    path = tmp_path / ("run.mf4" if version >= "4" else "run.mdf")
+    with MDF(version=version) as file:
         bad = Signal(TIME.astype("i4"), TIME, name="bad", unit="V", conversion={"formula": "__import__('os').abort()"})
         file.append([bad, Signal(np.sin(TIME), TIME, name="w", unit="rad/s")])
         file.save(path, overwrite=True)
