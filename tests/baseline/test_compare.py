@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import norm
 
 from bench.baseline.check import Allowed, compare
+from bench.baseline.state import VELOCITY_GAP
 from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError
@@ -231,6 +232,13 @@ def test_a_name_is_sure_at_the_rate_of_the_family_and_not_at_that_of_one(torque,
     assert bool(chance <= 0.01 / found.family) is sure
     assert chance < 0.01
     assert results(found)["coulomb_friction_torque"] == ("changed" if sure else "undecided")
+
+
+@pytest.mark.parametrize("effects", [(), (named("cogging_torque", 0.03, **COGGING),)])
+def test_velocity_gaps_are_held_against_each_other_where_both_models_have_the_same_effects(effects):
+    simulated = {VELOCITY_GAP: Measured(0.01, "rad/s", 1e-4)}
+    before, now = (replace(each, quantities=each.quantities | simulated) for each in (state(), state(None, effects)))
+    assert (VELOCITY_GAP in results(checked(before, now))) is not bool(effects)
 
 
 def test_the_family_is_all_that_could_have_alarmed():

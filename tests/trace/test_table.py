@@ -57,6 +57,13 @@ def test_parquet_unit_in_the_field_metadata(tmp_path):
     np.testing.assert_allclose(trace["velocity"], np.deg2rad(speed.astype(float)), rtol=1e-15)
 
 
+def test_a_moment_that_is_not_known_is_no_number(tmp_path):
+    moments = pa.array([1_700_000_000_000_000, None, 1_700_000_000_002_000], pa.timestamp("us"))
+    pq.write_table(pa.table({"time": moments, "velocity [rad/s]": np.arange(3.0)}), tmp_path / "run.parquet")
+    time = read_recording(tmp_path / "run.parquet").channels[0]
+    np.testing.assert_array_equal(time.values, [0.0, np.nan, 2000.0])
+
+
 def test_parquet_moments_are_times_from_the_first(tmp_path):
     moments = pa.array((1_700_000_000_000_000 + np.arange(500) * 1000).tolist(), pa.timestamp("us"))
     pq.write_table(pa.table({"time": moments, "velocity [rad/s]": velocity(TIME)}), tmp_path / "run.parquet")
