@@ -65,7 +65,7 @@ def test_twincat_full_time_stamps_and_cells_left_empty_by_a_slower_channel(tmp_p
     np.testing.assert_allclose(trace["current"], np.arange(46), atol=1e-9)
 
 
-def test_twincat_rows_begin_where_a_faster_channel_has_not_begun(tmp_path):
+def test_twincat_rows_begin_where_the_first_channel_has_no_sample_yet(tmp_path):
     rows = ["\t\t0\t1.5", *(f"{k}\t{k}\t{k}\t1.5" for k in range(1, 20))]
     head = "Name\tproject\nStarttime of export\t0\n\nName\tvelocity\tName\tcurrent\nUnit\trad/s\tUnit\tA\n\n"
     (tmp_path / "run.csv").write_text(head + "\n".join(rows))
