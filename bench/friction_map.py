@@ -26,6 +26,7 @@ from bench.gate.check import Check
 from bench.gate.gate import STEADY as STEADY_CHECKS
 from bench.gate.gate import joined, passed
 from bench.rig.rig import Rig
+from bench.trace.motion import measured_velocity
 from bench.trace.trace import Trace
 
 #: Chance that a map without an effect gets a name, for all shapes of all effects tried together.
@@ -166,11 +167,11 @@ def _points(recordings: Sequence[Trace], rig: Rig) -> tuple[Array, Array, str]:
 
 
 def _steady_speed(trace: Trace) -> float:
-    velocity = trace["velocity"]
+    velocity = measured_velocity(trace)
     parts = [float(part.mean()) for part in np.array_split(velocity, min(PARTS, velocity.size))]
     mean = float(velocity.mean())
     if not max(parts) - min(parts) < STEADY * abs(mean):
-        unit = trace.units["velocity"]
+        unit = trace.axis_kind.speed_unit
         found = f"keeps no speed: parts of it have means from {min(parts):.3g} to {max(parts):.3g} {unit}"
         raise InputError(trace.origin, found, "allowed: one steady speed, cut from where the axis speeds up")
     return mean

@@ -238,25 +238,27 @@ def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) 
 
 def friction(
     traces: Annotated[list[Path], Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
-    rig: common.RigOption,
+    rig: common.BesideRigOption = None,
     json: common.JsonOption = None,
     out: Annotated[Path | None, Option(help="Figure to write: .png, .pdf or .svg.")] = None,
     axis_name: common.AxisOption = None,
     report: common.ReportOption = None,
+    draft: common.DraftOption = None,
 ) -> None:
     """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
     from bench.friction_map import friction_map
     from bench.report.friction import SCHEMA, friction_json
     from bench.report.friction import friction as document_of
 
-    axis = bench.load_rig(rig).on_axis(axis_name)
+    of = common.subject(rig, axis_name, None, None, None, traces[0], draft)
+    axis = of.rig
     with common.refusal_as_json(json, SCHEMA):
-        found = friction_map([bench.read(trace, axis.trace) for trace in traces], axis)
+        found = friction_map([of.read(trace) for trace in traces], axis)
     document = document_of(found, axis.name)
     common.write_picture(out, document.pictures[0])
     common.write_page(report, document)
     common.write_json(json, lambda: friction_json(found))
-    common.tell(document, [out, report], json)
+    common.tell(document, [out, report, draft], json)
 
 
 def limits(
