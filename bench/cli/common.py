@@ -245,6 +245,7 @@ class Subject:
     Attributes:
         files: of the rig and of the robot, where they are given.
         read: how its recordings are read whole.
+        reported: a recording, after a warning for each of its notes that none had before.
         along: the robot along a log.
         options: of the command that say which joint it is.
     """
@@ -252,6 +253,7 @@ class Subject:
     rig: bench.Rig
     files: tuple[Path | None, Path | None]
     read: Callable[[Path], bench.Trace]
+    reported: Callable[[bench.Trace], bench.Trace]
     joint: str | None = None
     along: Callable[[Path], RobotAlong] | None = None
     options: dict[str, object] = field(default_factory=dict)
@@ -284,6 +286,13 @@ def subject(
         every = " ".join(f"--joint {name}" for name in named)
         allowed = f"allowed: one here; several together: bench robot LOG --mjcf ROBOT {every} --out DIR"
         raise InputError("--joint", f"found {', '.join(named)}", allowed)
+    warned: set[str] = set()
+
+    def reported(trace: bench.Trace) -> bench.Trace:
+        warn(note for note in trace.notes if note not in warned)
+        warned.update(trace.notes)
+        return trace
+
     joint = next(iter(named), None)
     if mjcf is None:
         if joint is not None or at:
@@ -291,19 +300,15 @@ def subject(
         if rig is not None and draft is not None:
             raise InputError("--draft", "found with --rig", "allowed: without, for the rig that is drafted then")
         known = _drafted(trace, axis, draft) if rig is None else bench.load_rig(rig).on_axis(axis)
-        return Subject(known, (rig, None), lambda path: bench.read(path, known.trace))
+        return Subject(known, (rig, None), lambda path: reported(bench.read(path, known.trace)), reported)
     from bench.plant.robot import Robot, joint_rig, poses_along, read_log
 
     robot = Robot.of(mjcf, joint)
     within = joint_rig(None if rig is None else bench.load_rig(rig).on_axis(axis), robot)
     stands = positions(at or (), robot.units)
-    warned: set[str] = set()
 
     def read(path: Path) -> bench.Trace:
-        trace = read_log(path, within, robot, stands)
-        warn(note for note in trace.notes if note not in warned)
-        warned.update(trace.notes)
-        return trace
+        return reported(read_log(path, within, robot, stands))
 
     def along(path: Path) -> RobotAlong:
         from bench.view.side_by_side import RobotAlong
@@ -311,7 +316,7 @@ def subject(
         ratio = within.load.gear_ratio if within.load is not None else 1.0
         return RobotAlong(mjcf, robot.joint, ratio, *poses_along(path, within, robot, stands))
 
-    return Subject(within, (rig, mjcf), read, joint, along, {"joint": joint, "at": at or []})
+    return Subject(within, (rig, mjcf), read, reported, joint, along, {"joint": joint, "at": at or []})
 
 
 def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.Rig:

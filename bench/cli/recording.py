@@ -126,7 +126,9 @@ def _estimate(
 
     with progress(f"identifying {', '.join(each.name for each in traces)}") as done:
         if not refine:
-            parts = [stream(each, rig.trace) if of.joint is None else of.read(each) for each in traces]
+            parts = [
+                map(of.reported, stream(each, rig.trace)) if of.joint is None else of.read(each) for each in traces
+            ]
             return bench.identify(parts, rig, cutoff), None
         from bench.fit.refine import refine as polish  # MuJoCo: 0.1 s
 

@@ -178,6 +178,7 @@ def _signal(
     stated = unit_of(unit or channel.unit)
     usual = recording.usual_units.get(signal) if stated is None and not channel.moments else None
     scale = _scale(signal, channel, stated or usual)
+    notes += [f"{signal}: {scale.note}"] if scale.note else []
     contrary = own is not None and scale_or_none(own, wanted_units(signal)) != scale
     if named is not None and unit is not None and not channel.moments and contrary:
         notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")

@@ -74,9 +74,11 @@ _KINDS = {
 }
 #: What pint raises on names that are no unit, beside errors of its own.
 _NO_UNIT = (AttributeError, LookupError, TypeError, ValueError, AssertionError, ArithmeticError)
-#: Efforts and accelerations given by the mass that weighs so much: N*m in kg*cm, m/s**2 in g. ISO 80000-3: g_n.
-_MASS = {"N*m": "kg*m", "N": "kg"}
+#: A mass that stands for the force it weighs, as in kg*cm for N*m: its powers. ISO 80000-3: g_n.
+_MASS = ((1,), (1, 0, 0))
 _STANDARD_GRAVITY = 9.80665
+#: What may also be written over a speed or an acceleration, without an angle in SI: V/(rad/s), N*m/(rad/s**2), W*s/rad.
+_PER_TURN = ("N*m", "kg*m**2", "N*m/A", "N*m/V")
 
 
 @cache
@@ -183,11 +185,12 @@ def convert(values: Array, unit: str, to: str) -> Array:
 
 @dataclass(frozen=True)
 class UnitScale:
-    """How numbers in a unit become SI: `value = number*factor + offset`, in `unit`."""
+    """How numbers in a unit become SI: `value = number*factor + offset`, in `unit`; `note`: what was assumed."""
 
     unit: str
     factor: float
     offset: float = 0.0
+    note: str = ""
 
 
 @cache
@@ -203,30 +206,49 @@ def scale_of(text: str, wanted: tuple[str, ...]) -> UnitScale:
     """
     unit = parse_unit(text, wanted)
     try:
-        powers, kinds = powers_of(unit), {named_unit(name).kind for name in unit.powers}
+        known = {name: named_unit(name) for name in unit.powers}
     except ValueError as error:
         raise UnitError(f"found '{text}', which is not a unit", allowed(wanted)) from error
+    kinds = {one.kind for one in known.values()}
+    angle = sum(power for name, power in unit.powers.items() if known[name].kind == "angle")
     for si in wanted:
-        turning = "rad" in si and si.count("/") <= 1
-        if powers_of(parse_unit(si)) == powers and not (turning and kinds & {"share", "count"}):
-            factor, offset = to_si(unit)
-            if len(unit.powers) + (unit.factor != 1.0) > 1 and any(named_unit(name).offset for name in unit.powers):
-                raise UnitError(f"found '{unit.factor:g} {unit}'", f"allowed: {unit} without a factor, or {si}")
-            if not math.isfinite(factor):
-                break  # a logarithm, which has no factor
-            if turning and "angle" not in kinds:
-                if "min" not in unit.powers:
-                    turns = si.replace("rad", "rev")
-                    which = f"allowed: '{si}' where it is radians, '{turns}' where it is revolutions"
-                    raise UnitError(f"found '{text}', which may mean {si} or {turns}", which)
-                factor *= 2.0 * math.pi  # per minute it means revolutions
-            return UnitScale(si, factor, offset)
-        if si in _MASS and powers_of(parse_unit(_MASS[si])) == powers:
-            return UnitScale(si, to_si(unit)[0] * _STANDARD_GRAVITY)
-    lower = scale_or_none(text.lower(), wanted) if text != text.lower() else None
-    if lower is not None:
-        return lower
+        weight, turns = _weight(unit, si), parse_unit(si).powers.get("rad", 0.0)
+        if weight is None or (turns and kinds & {"share", "count"}) or (angle and si == "dimensionless"):
+            continue
+        factor, offset = to_si(unit)
+        if len(unit.powers) + (unit.factor != 1.0) > 1 and any(one.offset for one in known.values()):
+            raise UnitError(f"found '{unit.factor:g} {unit}'", f"allowed: {unit} without a factor, or {si}")
+        if not math.isfinite(factor):
+            break  # a logarithm, which has no factor
+        if si in _PER_TURN and (angle or {"min", "Hz"} & set(unit.powers)):
+            if angle and not any(_measures_time(one) for one in known.values()):
+                continue  # a stiffness
+            turns = -1.0
+        if turns and not angle:
+            if unit.powers.get("min", 0.0) * turns >= 0.0:
+                other = si.replace("rad", "rev")
+                which = (si, other) if other != si else (f"{text}/rad", f"{text}/rev")
+                advice = f"allowed: '{which[0]}' where it is radians, '{which[1]}' where it is revolutions"
+                raise UnitError(f"found '{text}', which may mean {' or '.join(which)}", advice)
+            factor *= (2.0 * math.pi) ** turns  # per minute means revolutions
+        elif turns != angle and turns:
+            continue
+        return UnitScale(si, factor * weight, offset, unit.note)
     raise UnitError(f"found unit '{text}'", allowed(wanted))
+
+
+def _weight(unit: UnitProduct, si: str) -> float | None:
+    """1 where a unit has the dimension of `si`; g where its mass means the force that it weighs; else None."""
+    powers, aim = powers_of(unit), powers_of(parse_unit(si))
+    if powers == aim:
+        return 1.0
+    masses = [name for name, power in unit.powers.items() if power == 1 and named_unit(name).powers[:3] in _MASS]
+    weighs = masses and (si[0] == "N" or si == "kg*m**2") and powers == (aim[0], aim[1] - 1, aim[2] + 2, *aim[3:])
+    return _STANDARD_GRAVITY if weighs else None
+
+
+def _measures_time(unit: NamedUnit) -> bool:
+    return any(unit.powers) and not any(unit.powers[:2]) and not any(unit.powers[3:])
 
 
 def scale_or_none(text: str, wanted: tuple[str, ...]) -> UnitScale | None:

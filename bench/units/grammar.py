@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 #: Signs replaced before anything is read, and after them texts, in this order.
 _SIGNS = str.maketrans("µμº˚·⋅∙•×−–\u00a0\u202f", "uu°°*****--  ")
@@ -36,7 +36,7 @@ _WHOLE = {
     "deg/s^2": "deg/ss",
     "mm/s^2": "mm/ss",
     "m/s^2": "m/ss",
-    "permille": "1/1000 permil permill promille perthousand partsperthousand",
+    "permille": "1/1000 permil permill promille perthousand /thousand parts/thousand",
     "percent": "percent prozent",
 }
 
@@ -49,11 +49,11 @@ _ALIASES = {
     "deg": "deg degs degree degrees Grad ° grados gradi",
     "grade": "gon gradian gradians",
     "rad": "rad rads radian radians",
-    "s": "s S sec secs second seconds sek sekunde sekunden seg",
-    "ms": "ms mS msec msecs millisec millisecond milliseconds millis",
+    "s": "s S sec secs second seconds sek sekunde sekunden seg segundo segundos seconde secondes secondo secondi",
+    "ms": "ms mS msec msecs millisec millisecond milliseconds millis millisekunden millisecondes",
     "us": "us uS usec usecs microsec microsecond microseconds micros",
     "ns": "ns nsec nanosec nanosecond nanoseconds nanos",
-    "min": "min mins minute minutes minuten",
+    "min": "min mins minute minutes minuten mn minuto minuti minutos",
     "hour": "h hr hrs std",
     "A": "A a amp amps ampere amperes",
     "V": "V v volt volts vdc",
@@ -100,6 +100,9 @@ _ELECTRICAL = "erpm eradians erad edeg el elec electrical elektrisch"
 
 WHOLE = {name: meaning for meaning, names in _WHOLE.items() for name in names.split()}
 ALIASES = {name: meaning for meaning, names in _ALIASES.items() for name in names.split()}
+_BASES = "A V W N H K g m s rad deg rpm Arms Nm"
+_CAPITALS = {f"{prefix}{base}".upper(): f"{prefix}{base}" for prefix in "muk" for base in _BASES.split()}
+_CAPITALS |= {name.upper(): name for name in ("cm", "Ncm", "Nmm", "Arms")}
 COUNTS, ELECTRICAL = frozenset(_COUNTS.split()), frozenset(_ELECTRICAL.split())
 
 
@@ -121,7 +124,8 @@ _RAISED = re.compile("[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 #: An effective current, however it is written.
 EFFECTIVE = re.compile(r"(?<![^\W_])([munk]?A|[mk]?Amps?)[\s_.-]*\(?(rms|eff|effektiv|effective)\)?(?![^\W_])", re.I)
 _PEAK = re.compile(r"(?<![^\W_])([munk]?A)[\s_.-]*\(?(0-pk|pk|peak|p)\)?(?![^\W_])", re.I)
-_NEWTON_METRES = re.compile(r"(da|[unmcdkM]?)N([cmk]?m)")
+_RUN_TOGETHER = re.compile(r"(da|[unmcdkM]?)([NVW])(?!$)([cmk]?m)?(s|min)?")
+_MASS_BY_AREA = re.compile(r"(kg|g|mg|lb|oz)([mc]?m|in|ft)", re.I)
 _PEAK_TO_PEAK = re.compile(r"(?<![^\W_])([munk]?A)[\s_.-]*\(?(pp|pk-pk|p-p|pkpk)\)?(?![^\W_])", re.I)
 _COMMENT = re.compile(r"(?<=[^\s*/])\s*\((?!.*(?:eff|rms|peak|pk|el))[^()\d]{3,}\)\s*$", re.I)
 
@@ -141,11 +145,13 @@ class UnitProduct:
     Attributes:
         factor: of it.
         powers: exponent by name, in the order of their appearance.
+        note: what was assumed of a name.
         sign: +1, or -1 behind a `/`: of the exponent of what comes next.
     """
 
     factor: float = 1.0
     powers: dict[str, float] = field(default_factory=dict)
+    note: str = ""
     sign: int = 1
 
     def take(self, other: UnitProduct, exponent: float) -> None:
@@ -156,6 +162,7 @@ class UnitProduct:
             ValueError: a power that no unit has.
         """
         exponent *= self.sign
+        self.note = self.note or other.note
         self.factor, self.sign = self.factor * other.factor**exponent, 1
         for name, power in other.powers.items():
             raised = self.powers.pop(name, 0.0) + power * exponent
@@ -233,7 +240,10 @@ def _add(match: re.Match[str], groups: list[UnitProduct], text: str, wanted: tup
         taken = UnitProduct(float(match["number"].replace(",", ".")))
     above, _, below = (match["power"] or match["exponent"] or "1").strip("()").partition("/")
     exponent = float(above) / float(below or 1)
-    if match["name"] and len(taken.powers) > 1 and abs(exponent) > 1:
+    area = _MASS_BY_AREA.fullmatch(match["name"] or "") if exponent == 2.0 else None
+    if area:
+        taken, exponent = parse_unit(f"{area[1].lower()}*{area[2].lower()}**2"), 1.0
+    elif match["name"] and len(taken.powers) > 1 and abs(exponent) > 1:
         raise ValueError(f"of which of {', '.join(taken.powers)} it is the power")
     if match["number"] and (abs(exponent) > _LARGEST_POWER or taken.factor == 0.0):
         raise ValueError("a number that is none")
@@ -250,9 +260,18 @@ def _named(name: str, text: str, wanted: tuple[str, ...]) -> UnitProduct:
     if name.lower() in ELECTRICAL:
         mechanical = "allowed: the mechanical one, e.g. 'rpm/7' for 7 pairs of poles"
         raise UnitError(f"found '{text}', which is electrical", mechanical)
-    match = _NEWTON_METRES.fullmatch(name)
+    capitals = _CAPITALS.get(name.upper()) if name.isupper() or name.startswith("M") else None
+    if capitals and name[1:] == capitals[1:] and name[0] == "M":
+        if not wanted or {"N*m/rad", "N/m"} & set(wanted):
+            return UnitProduct(1e9, parse_unit(capitals).powers)
+        if name == "MN":
+            raise UnitError(f"found '{text}', which may mean mN or millions of N", "allowed: 'mN', or '1000 kN'")
+        return replace(parse_unit(capitals), note=f"{name} taken as {capitals}: no axis has millions of {name[1:]}")
+    if capitals:
+        return parse_unit(capitals)
+    match = _RUN_TOGETHER.fullmatch(name)
     if match:
-        return UnitProduct(1.0, {f"{match[1]}N": 1, match[2]: 1})
+        return UnitProduct(1.0, {part: 1 for part in (match[1] + match[2], match[3], match[4]) if part})
     if name == "peak_to_peak":
         raise UnitError(f"found '{text}', peak to peak", "allowed: A (peak) or Arms (effective)")
     if name == "grad":
@@ -268,10 +287,11 @@ def _normalised(text: str) -> str:
     for written, meant in TRANSLATED.items():
         plain = plain.replace(written, meant)
     plain = _PEAK_TO_PEAK.sub(lambda match: f"{match[1]}*peak_to_peak", plain)
-    plain = EFFECTIVE.sub(lambda match: f"{match[1][0] if match[1][0] in 'munk' else ''}Arms", plain)
+    plain = EFFECTIVE.sub(lambda match: f"{match[1][: match[1].upper().index('A')]}Arms", plain)
     plain = _COMMENT.sub("", _PEAK.sub(lambda match: match[1], plain))
     plain = re.sub(r"(?<=[^\W\d])\.(?=\s*(?:[/*]|$))", "", plain)  # of an abbreviation
-    plain = re.sub(r"\bper\b", "/", plain)
+    plain = re.sub(r"\b(per|pro|par|por|al)\b", "/", plain, flags=re.I)
+    plain = re.sub(r"(?<=[^\W\d])\s*/\s*(\d+)\s*(?=rpm)", r"/\1/", plain, flags=re.I)  # V/1000 rpm
     plain = re.sub(r"(?<![^\W\d/])[xX](?=\s*\d)|(?<=\d)\s*[xX](?=\s)", "*", plain).strip().lstrip("*").strip()
     if plain.startswith("(") and plain.endswith(")") and plain.count("(") == 1:
         plain = plain[1:-1]

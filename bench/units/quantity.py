@@ -76,8 +76,10 @@ def parse(text: object, unit: str, where: object) -> float:
     except UnitError as error:
         raise InputError(where, f"found {text!r}", error.allowed if "may mean" in error.found else allowed) from error
     value = float(number) * scale.factor + scale.offset
-    if not math.isfinite(value):
-        raise InputError(where, f"found {text!r}", allowed)
+    if scale.note or not math.isfinite(value):
+        raise InputError(
+            where, f"found {text!r}", f"{allowed}; a leading m means thousandths" if scale.note else allowed
+        )
     return value
 
 
