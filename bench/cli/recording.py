@@ -207,7 +207,7 @@ def robot(
         if first.failed:
             raise InputError("none of the joints could be answered", f"{first.name}: {first.failed}", "see the table")
         reason = f"{first.name}: {next(iter(first.refused.values()))}"
-        raise UndeterminedError("any joint", reason, first.record)
+        raise UndeterminedError("any joint", reason, first.record or "what the table advises for each joint")
 
 
 def _carried(text: str | None) -> AddedBody | str | None:

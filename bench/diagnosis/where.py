@@ -12,7 +12,7 @@ from bench.arrays import Array, hann, spectra
 from bench.axis_kind import INERTIA, AxisKind
 from bench.fit.fit import Fit
 
-#: Number of bins of a coordinate, and least number of rows in a bin.
+#: Number of bins of a coordinate, and rows that a bin contains: fewer bins of a short recording.
 BINS, LEAST = 48, 12
 
 
@@ -108,8 +108,9 @@ def coordinates(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | 
 def bins_of(values: Array) -> NDArray[np.int64]:
     """Bin of each row (m,): of equal count, or of one value each where there are few."""
     distinct, index = np.unique(values, return_inverse=True)
-    if distinct.size > BINS:
-        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
+    most = int(np.clip(values.size // LEAST, 1, BINS))
+    if distinct.size > most:
+        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, most + 1)))
         index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
     return np.asarray(index, dtype=np.int64)
 

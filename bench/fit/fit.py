@@ -244,7 +244,7 @@ class Fit:
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
             columns = rows.memory.get((*known, moving, rows.motion), lambda: self.beside.table(made, moving))
             worth = self.gains(columns, 1) * (self.residual @ columns > 0.0)  # none without a load behind it
-        elif isinstance(effect, Friction) or not self.determined.all():
+        elif isinstance(effect, Friction | CopiesTorque) or not self.determined.all():
             columns = self.seen(made, False)
             worth = self.gains(columns, columns.shape[1] // len(shapes))
         else:  # their products with each other are kept, those with what is fitted need none of them filtered
@@ -255,8 +255,7 @@ class Fit:
                 return _own(tables[0], tables[0].shape[1] // len(shapes))
 
             grams = rows.memory.get((*known, resting, rows.made_by), own)
-            copied = isinstance(effect, CopiesTorque)
-            products = tables[0].T @ self._targets if tables and not copied else self._against(made)
+            products = tables[0].T @ self._targets if tables else self._against(made)
             worth = _taken(grams, products, self._targets)
         return [Proposal(shape, float(gain)) for shape, gain in zip(shapes, worth, strict=True)]
 

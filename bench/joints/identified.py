@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
-from bench.axis_kind import ARMATURE, COULOMB, INERTIA, VISCOUS
+from bench.arrays import rms
+from bench.axis_kind import ARMATURE, COULOMB, INERTIA, VISCOUS, AxisKind
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
@@ -145,7 +146,7 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
         return _without_effects(asked.joint, traces, rig, refusal, left_out)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
-    refused = {**found.refused, **_behind(rig)}
+    refused = {**found.refused, **_behind(rig), **_any_friction(found, rig.axis_kind)}
     motion = joint_motion(found, traces[0], rig, poses_along(next(iter(used)), rig, robot, asked.stated))
     return IdentifiedJoint(asked.joint, rig, found, refused=refused, left_out=left_out, motion=motion)
 
@@ -165,6 +166,17 @@ def _behind(rig: Rig) -> dict[str, str]:
     """Why there is no armature, where the torque is the joint's."""
     behind = rig.load is not None and rig.load.behind_rotor
     return {ARMATURE: "the torque is measured on the joint's side, where the rotor is not in it"} if behind else {}
+
+
+def _any_friction(found: Diagnosis, kind: AxisKind) -> dict[str, str]:
+    """Why a friction is not determined: its interval contains zero and allows more than the measured torque."""
+    fitted, refused = found.courses[0], {}
+    for term, reach in ((VISCOUS, rms(fitted.velocity)), (COULOMB, 1.0)):
+        one = found.parameters.get(kind.parameter(term))
+        if one is not None and one.half_width > abs(one.value) and one.half_width * reach > rms(fitted.torque):
+            between = f"{one.ci95[0]:.3g} to {one.ci95[1]:.3g} {one.unit}"
+            refused[kind.parameter(term)] = f"its interval, {between}, allows more than the measured {kind.effort}"
+    return refused
 
 
 def _moving(asked: JointLogs, logs: Sequence[Path], rig: Rig, robot: Robot) -> tuple[dict[Path, Trace], dict[str, str]]:

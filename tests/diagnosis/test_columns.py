@@ -8,7 +8,7 @@ import scipy.signal
 from scipy.interpolate import CubicSpline
 
 from bench.axis_kind import INERTIA, ROTARY
-from bench.diagnosis.where import Coordinate, _account, _welch, coordinates
+from bench.diagnosis.where import BINS, LEAST, Coordinate, _account, _welch, bins_of, coordinates
 from bench.effects.backlash import load_positions
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import lagged
@@ -132,3 +132,10 @@ def test_the_gap_s_spectrum_is_welch_s(size, length):
         _welch(values, 40.0, length), scipy.signal.welch(values, 40.0, nperseg=length), strict=True
     ):
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-15)
+
+
+@pytest.mark.parametrize("rows", [LEAST, 100, 570, 5000])
+def test_every_bin_of_a_short_recording_contains_enough_rows(rows):
+    index = bins_of(np.random.default_rng(1).normal(size=rows))
+    assert np.bincount(index).min() >= LEAST - 1
+    assert 1 <= np.unique(index).size <= BINS

@@ -11,7 +11,7 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Coupling
+from bench.effects.effect import CopiesTorque, Coupling
 from bench.effects.shape import grid_of
 from bench.fit.fit import _balanced, _own, _taken, fit
 from bench.fit.hypothesis import Hypothesis, Term, with_found_strengths
@@ -112,11 +112,12 @@ def test_what_shapes_would_take_is_the_same_without_filtering_them_again(name):
     def made(signals):
         return [one for shape in shapes for one in effect.columns(signals, shape)]
 
-    columns, kept = wave_beside.seen(made, of_motion=False), rows.table(made)
-    # products with each other are kept: those of the measured torque, where they are made of torque
+    columns = wave_beside.seen(made, of_motion=False)
+    kept = columns if isinstance(effect, CopiesTorque) else rows.table(made)
     targets = np.column_stack([wave_beside.span, wave_beside.residual])
     expected = _taken(_own(kept, kept.shape[1] // len(shapes)), columns.T @ targets, targets)
     assert again == pytest.approx(expected, rel=1e-8, abs=1e-9 * wave_beside.squares)
+    assert max(again) <= wave_beside.squares * (1.0 + 1e-9)
 
 
 def test_what_an_effect_would_take_is_what_it_takes_of_rows_that_are_determined():
