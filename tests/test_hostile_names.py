@@ -51,7 +51,7 @@ def identified():
     trace = Trace.from_arrays(dict(zip(("time [s]", "velocity [rad/s]", "current [A]"), columns(), strict=True)))
     rig = Rig.of({"name": "x", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A"}})
     effort, _ = rig.net_effort(trace)
-    return rig, identify(trace, rig), motion(trace, effort, condition(trace, effort, None))
+    return rig, identify(trace, rig), motion(trace, effort, effort, condition(trace, effort, None))
 
 
 @pytest.mark.parametrize("name", NAMES, ids=ascii)

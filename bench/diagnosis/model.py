@@ -95,10 +95,12 @@ def present_of(effect: Effect, values: Mapping[str, float]) -> Present:
 
 def tracking(stored: StoredModel, trace: Trace, rig: Rig, events: bool, inertia: float | None = None) -> SoftTracking:
     """A model and what drives it along a recording, in which its events occur or not; `inertia`: see `SoftTracking`."""
-    model, effort = stored.model, rig.own_effort(trace)[0]
+    model, own, driven = stored.model, rig.own_effort(trace)[0], rig.driven(trace)
+    # the signal is late, the motion is not
+    effort = driven - np.interp(trace.time - stored.misalignment, trace.time, driven - own)
     if not events:
         model = model.with_effects([each for each in model.effects if not isinstance(each.effect, Occasional)])
-    return SoftTracking(model, trace, effort, stored.misalignment, inertia, effort - less_known(trace, effort))
+    return SoftTracking(model, trace, effort, stored.misalignment, inertia, own - less_known(trace, own))
 
 
 def holding_bandwidth(model: AxisModel, top_speed: float) -> float:

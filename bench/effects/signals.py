@@ -42,6 +42,8 @@ class Signals:
         load: torque of the load as named effects make it - N*m (N).
         began: the recording, since the start of the first of several that are joined - s.
         known: torque that is known to act beside - N*m (N) -, as a column; () where none is.
+        of_motion: what the motion takes from the effort before it is `effort` - N*m (N) -: induced voltage, a known
+            weight. A shift of the effort's signal against the motion does not move it.
     """
 
     time: Array
@@ -57,6 +59,7 @@ class Signals:
     load: Array | float = 0.0
     began: float = 0.0
     known: Column = ()
+    of_motion: Array | float = 0.0
 
     @cached_property
     def course(self) -> Array:

@@ -246,7 +246,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | N
 def _axis(signals: Signals) -> list[Column]:
     """Those of BASE."""
     source, order = (signals.position, 1) if signals.source == "position" else (signals.velocity, 0)
-    return [[(source, order + 1)], [(source, order)], [(signals.sign, 0)], [(-signals.effort, 1)]]
+    return [[(source, order + 1)], [(source, order)], [(signals.sign, 0)], [(-(signals.effort + signals.of_motion), 1)]]
 
 
 def _cut_off(signals: Signals) -> list[Column]:

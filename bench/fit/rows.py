@@ -34,7 +34,7 @@ ONE_WAY = 0.02
 #: less than that was kept there, and 600 s took 2.8 times as long as 300 s; with 160 MB 2.0 times.
 KEPT = 160 * 2**20
 #: Signals of which a stretch has a value for each sample; a load may be one number for all.
-SAMPLES = ("time", "position", "velocity", "sign", "effort", "torque", "friction", "load")
+SAMPLES = ("time", "position", "velocity", "sign", "effort", "torque", "friction", "load", "of_motion")
 #: A lag of all columns, or of each - s.
 Lag = float | tuple[float, ...]
 Made = TypeVar("Made", Array, Sequence[Sequence[Column]])
@@ -148,7 +148,7 @@ class Rows:
             InputError: a signal is missing, or rig and recording do not fit together.
             UndeterminedError: the recording is too short, or never moves clearly.
         """
-        effort, _ = rig.own_effort(trace)
+        effort, driven = rig.own_effort(trace)[0], rig.driven(trace)
         if conditioning is None:
             found = condition(trace, effort, cutoff)
             width = width or (found.filter.width if cutoff else min(WIDEST, found.filter.width))
@@ -159,7 +159,7 @@ class Rows:
         peak_effort = float(constant.torque(np.asarray(peak))) if constant and peak else peak_effort or largest
         begins = float(trace.time[0]) if begins is None else begins
         parts = [
-            (_signals(trace, effort, part, conditioning, peak_effort, begins), part.start)
+            (_signals(trace, effort, driven, part, conditioning, peak_effort, begins), part.start)
             for part in trace.segments
             if part.stop - part.start > 4 * conditioning.filter.margin
         ]
@@ -355,7 +355,13 @@ def known_of(signals: Signals) -> list[Column]:
 
 
 def _signals(
-    trace: Trace, effort: Array, part: slice, conditioning: Conditioning, peak_effort: float, begins: float
+    trace: Trace,
+    effort: Array,
+    driven: Array,
+    part: slice,
+    conditioning: Conditioning,
+    peak_effort: float,
+    begins: float,
 ) -> Signals:
     """Raw signals of a stretch; a position that is not recorded from speed."""
     period, source = trace.sample_period, trace[conditioning.source][part]
@@ -375,6 +381,7 @@ def _signals(
         sample_period=period,
         source=conditioning.source,
         known=known_column(trace, part),
+        of_motion=(driven - effort)[part],
     )
 
 

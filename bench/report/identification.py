@@ -113,7 +113,7 @@ def moved(
     for index, trace in enumerate(traces):
         first = gate(read(trace) if read is not None else next(stream(trace, rig.trace)), rig).trace
         (effort, _), (own, _) = rig.net_effort(first), rig.own_effort(first)
-        filtered = motion(first, effort, condition(first, own, cutoff))
+        filtered = motion(first, effort, rig.driven(first), condition(first, own, cutoff))
         own_shift = estimate.recordings[index].parameters.get(shift) if estimate.recordings else None
         parameters = {**estimate.parameters, **({shift: own_shift} if own_shift is not None else {})}
         found.append(Moved(readable(trace.name), rig.axis_kind, filtered, replace(estimate, parameters=parameters)))

@@ -329,6 +329,11 @@ class Rig(RigTable):
             raise InputError(f"{self.source}: load.eccentric_mass", f"found an effort in {unit}", "allowed: N*m")
         return effort - self.load.gravity_torque(trace["position"]), unit
 
+    def driven(self, trace: Trace) -> Array:
+        """Effort by the recorded signal alone: with what a motion induces or weighs, it is `own_effort` (n,)."""
+        still = {"velocity": np.zeros(len(trace))} if "velocity" in trace and self.needs_speed(trace) else {}
+        return self.effort(trace.with_signals(still, {}))[0]
+
     def needs_speed(self, trace: Trace) -> bool:
         """Whether the effort in a trace is made of a voltage less what the speed induces, kT*(U - Ke*w)/R."""
         if {self.axis_kind.effort, "current"} & set(trace.signals):

@@ -251,7 +251,7 @@ class Motion:
         velocity: omega - rad/s (m/s).
         acceleration: alpha - rad/s**2 (m/s**2).
         effort: motor torque M - N*m (force - N, or what the rig allows).
-        effort_rate: dM/dt - effort's unit per s.
+        effort_rate: dM/dt of what the recorded signal gives - effort's unit per s.
         direction: filtered sgn(omega), within ONE_SIGN of +-1; 0 where the filter's reach holds both signs or none.
         conditioning: how it was filtered.
     """
@@ -268,8 +268,11 @@ class Motion:
         return self.time.size
 
 
-def motion(trace: Trace, effort: Array, conditioning: Conditioning) -> Motion:
-    """Filter a recording; stretches shorter than the filter's two margins are left out."""
+def motion(trace: Trace, effort: Array, driven: Array, conditioning: Conditioning) -> Motion:
+    """Filter a recording; stretches shorter than the filter's two margins are left out.
+
+    `driven`: what of the effort the recorded signal gives, the motion aside, whose rate it is (n,).
+    """
     smooth, order = conditioning.filter, conditioning.order
     parts = []
     for part in trace.segments:
@@ -277,7 +280,7 @@ def motion(trace: Trace, effort: Array, conditioning: Conditioning) -> Motion:
         if source.size > 2 * smooth.margin:
             speed = raw_speed(source, conditioning.source, trace.sample_period)
             sign = known_sign(speed, conditioning.sign_threshold)
-            made = ((source, order), (source, order + 1), (torque, 0), (torque, 1), (sign, 0))
+            made = ((source, order), (source, order + 1), (torque, 0), (driven[part], 1), (sign, 0))
             rows = smooth.columns([[term] for term in made])
             rows[-1][np.abs(rows[-1]) < 1.0 - ONE_SIGN] = 0.0
             parts.append((trace.time[part][smooth.margin : source.size - smooth.margin : smooth.stride], *rows))

@@ -53,7 +53,8 @@ def test_emps_gives_the_published_values():
 def test_pulses_are_explained_by_the_parameters_of_emps():
     found = identify(read(SHARED / "data/emps/DATA_EMPS.mat", EMPS.trace.columns), EMPS)
     trace = read(SHARED / "data/emps/DATA_EMPS_PULSES.mat", EMPS.trace.columns)
-    moved = motion(trace, EMPS.effort(trace)[0], condition(trace, EMPS.effort(trace)[0]))
+    force = EMPS.effort(trace)[0]
+    moved = motion(trace, force, force, condition(trace, force))
     modelled = modelled_effort(moved, found, EMPS.axis_kind)
     used = np.isfinite(modelled)
     relative = np.linalg.norm((moved.effort - modelled)[used]) / np.linalg.norm(moved.effort[used])
