@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, all_finite
 from bench.errors import InputError
+from bench.names import short
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, missing
 from bench.trace.signals import SI_UNITS, scale_in
@@ -99,6 +100,11 @@ def in_si(
             allowed = f"allowed: {clock.time.size}, as its time has"
             raise InputError(channel.place(), f"found {values.size} values", allowed)
         signals[name] = _known_samples(name, SampledSignal(clock, values), channel, notes)
+    samples = {0, *(clock.time.size for clock in clocks.values())}  # none: what is no column of numbers
+    odd = [one for one in recording.channels if one.time is None and one.values.size not in samples]
+    if odd:
+        shown = ", ".join(f"{short(one.name)} ({one.values.size})" for one in odd[:12])
+        notes.append(f"left out, as the length differs from the time's: {shown}{' ...' if odd[12:] else ''}")
     for name in ("position", "position_reference"):
         if name in signals:
             unwrapping = (wrapping if wrapping is not None else {}).setdefault(name, Unwrapping(how.position_period))

@@ -97,15 +97,20 @@ def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, s
     return replace(channel, values=values, moments=pa.types.is_timestamp(kind))
 
 
-def channels_of_table(table: pa.Table, path: str, known: Mapping[str, Sequence[str]] | None = None) -> list[Channel]:
+def channels_of_table(
+    table: pa.Table,
+    path: str,
+    known: Mapping[str, Sequence[str]] | None = None,
+    lists: Mapping[int, Sequence[str]] | None = None,
+) -> list[Channel]:
     """Channels of columns; of lists one for each place in them, called as those of a column are `known` to be.
 
-    A column of lists of names tells those of the same length.
+    A column of lists of names tells those of the same length, as does `lists` by the length.
     """
     while any(pa.types.is_struct(kind) for kind in table.schema.types):
         table = table.flatten()  # a column for each field, `parent.field`
     named = [one for one in table.columns if pa.types.is_list(one.type) and pa.types.is_string(one.type.value_type)]
-    lists = {len(first): first for one in named if (first := one[0].as_py())}
+    lists = {**(lists or {}), **{len(first): first for one in named if (first := one[0].as_py())}}
     found: list[Channel] = []
     for field, column in zip(table.schema, table.columns, strict=True):
         if _is_list(field.type):

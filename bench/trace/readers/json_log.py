@@ -49,17 +49,31 @@ def _read(source: Source) -> Recording:
     with reading(source.path, JSON_LOG.format, DAMAGE):
         if _has_lines(source):
             options = pyarrow.json.ReadOptions(block_size=min(len(source.content) + 1, 2**31 - 1))
-            table = pyarrow.json.read_json(pa.py_buffer(source.content), read_options=options)
+            tables = [pyarrow.json.read_json(pa.py_buffer(source.content), read_options=options)]
+            names = {}
         else:
             content = parse_json(source.text(), source.path)
-            if isinstance(content, dict):
-                lists = {name: value for name, value in content.items() if isinstance(value, list) and len(value) > 1}
-                content = [dict(zip(lists, row, strict=True)) for row in zip(*lists.values(), strict=False)]
-            if not isinstance(content, list) or not content or not all(isinstance(row, dict) for row in content):
+            if isinstance(content, list) and all(isinstance(row, dict) for row in content):
+                keys = dict.fromkeys(key for row in content for key in row)
+                content = {key: [row.get(key) for row in content] for key in keys}
+            lists = content.items() if isinstance(content, dict) else ()
+            columns = {name: values for name, values in lists if isinstance(values, list) and len(values) > 1}
+            if not columns:
                 raise InputError(source.path, "found no samples", allowed)
-            table = pa.Table.from_pylist(content)
-    require_expansion(source.path, table.nbytes, len(source.content) * WIDTH)
-    return Recording(tuple(channels_of_table(table, source.path)), JSON_LOG.format, source.path)
+            tables = [pa.table({name: _column(values)}) for name, values in columns.items()]  # each of its own length
+            texts = (values for values in columns.values() if all(isinstance(one, str) for one in values))
+            names = {len(values): values for values in texts}
+    require_expansion(source.path, sum(table.nbytes for table in tables), len(source.content) * WIDTH)
+    channels = (channel for table in tables for channel in channels_of_table(table, source.path, lists=names))
+    return Recording(tuple(channels), JSON_LOG.format, source.path)
+
+
+def _column(values: list) -> pa.Array:
+    """A column of JSON; of texts where Arrow has no type for the values."""
+    try:
+        return pa.array(values)
+    except (pa.ArrowException, OverflowError):
+        return pa.array([str(value) for value in values])
 
 
 JSON_LOG = FileFormat("JSON log", (".jsonl", ".ndjson", ".json"), _recognises, _read)
