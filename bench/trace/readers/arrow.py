@@ -198,8 +198,7 @@ def speaks_of_moment(text: str) -> bool:
 def seconds(texts: pa.ChunkedArray | pa.Array) -> Array | None:
     """Seconds from the first moment - (n,), nan where a cell is empty; None where one is no moment.
 
-    Dates are compared, not read: they count days in the order in which they appear, so that it does not matter which
-    of their numbers is the month. A clock without a date that falls back by most of a day has passed midnight.
+    A clock without a date that falls back by most of a day has passed midnight.
     """
     pc = compute()
     column = _in_one(texts)
@@ -215,12 +214,38 @@ def seconds(texts: pa.ChunkedArray | pa.Array) -> Array | None:
     clock = clock + 3600.0 * hour - np.where(_words(part["zone"]) == "-", -ahead, ahead)
     dates = _words(part["date"])[known]
     if (dates != "").all():
-        _, first, which = np.unique(dates, return_index=True, return_inverse=True)
-        clock[known] += _DAY * np.argsort(np.argsort(first))[which]
+        days = _days(dates)
+        if days is None:
+            return None
+        clock[known] += _DAY * days
     else:
         clock[known] += _DAY * np.concatenate([[0.0], np.cumsum(np.diff(clock[known]) < -0.5 * _DAY)])
     clock[~known] = np.nan
     return clock - clock[known][0]
+
+
+def _days(dates: np.ndarray) -> Array | None:
+    """Days of dates (n,) from the first one; None where they are none.
+
+    Of the orders in which all of them are dates, one without a step back is taken, and the one of the shortest span:
+    03/01/2024 to 03/05/2024 are four days. Between points the day comes first.
+    """
+    texts, which = np.unique(dates, return_inverse=True)
+    parts = [re.split("[-./]", text) for text in texts.tolist()]
+    first, second, third = np.array(parts, dtype=np.int64).T
+    lengths = {(len(one), len(other)) for one, _, other in parts}
+    orders = [(first, second, third)] if all(after < 3 for _, after in lengths) else []
+    if all(before < 3 for before, _ in lengths):
+        orders += [(third, second, first)] if "." in texts[0] else [(third, second, first), (third, first, second)]
+    found = []
+    for year, month, day in orders:
+        whole = year + np.where(year >= 100, 0, np.where(year < 70, 2000, 1900))
+        months = (12 * (whole - 1970) + month - 1).astype("M8[M]")
+        days = months.astype("M8[D]") + (day - 1)
+        if ((month > 0) & (month <= 12) & (day > 0) & (days.astype("M8[M]") == months)).all():
+            passed = days.astype(np.int64)[which]
+            found.append((passed - passed[0]).astype(np.float64))
+    return min(found, key=lambda days: ((np.diff(days) < 0).any(), np.ptp(days)), default=None)
 
 
 def _number(digits: pa.Array, before: str = "0", after: str = "") -> Array:
