@@ -7,7 +7,6 @@ others' words (`bench.effects.acting.FrictionLaw`).
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -56,9 +55,15 @@ class SimulatedJoint:
         return self.stored.model.parameters.coulomb_friction * self.ratio
 
     @property
-    def limit(self) -> float:
-        """Largest torque of the motor - N*m (N); infinite where unknown."""
-        return self.stored.model.peak_effort * self.ratio
+    def limit(self) -> float | None:
+        """Largest torque (force) that the rig or the robot's MJCF states - N*m (N); None where neither does."""
+        return self.stored.mounting.effort_limit
+
+    @property
+    def unlimited(self) -> list[str]:
+        """That no limit of the torque is known, and how to state one."""
+        remedy = "set forcerange at its actuator in the MJCF, or motor.peak_torque in the rig, and identify it again"
+        return [] if self.limit is not None else [f"no effort_limit: neither MJCF nor rig states one; {remedy}"]
 
     def native(self) -> Iterator[tuple[str, mujoco.MjSpec]]:
         """The axis with each effect alone that MuJoCo makes by itself, behind the effect's name."""
@@ -116,7 +121,7 @@ def _mjlab(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
     """`BuiltinDcMotorActuatorCfg` of mjlab 1.6, which has one wave of cogging, and LuGre's bristles."""
     entries, lines = [], []
     for joint in joints:
-        effort = {"effort_limit": joint.limit / joint.ratio} if math.isfinite(joint.limit) else {}
+        effort = {} if joint.limit is None else {"effort_limit": joint.limit / joint.ratio}
         found: dict[str, Any] = {"cogging": None, "lugre": None}
         carried = []
         for name, motor in sorted(joint.passive(), key=lambda each: -abs(each[1].biasprm[0])):  # the largest wave
@@ -126,7 +131,8 @@ def _mjlab(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
                 found[kind] = tuple(values)
                 carried.append(name)
         steps = [f"its bristles are laid out for steps of {TIMESTEP:g} s"] if found["lugre"] else []
-        lines += joint.summary(carried, "its input is torque of the motor, before the gear, in N*m", *steps)
+        notes = "its input is torque of the motor, before the gear, in N*m", *steps, *joint.unlimited
+        lines += joint.summary(carried, *notes)
         values = {"armature": joint.armature, "frictionloss": 0.0 if found["lugre"] else joint.coulomb}
         entries.append(
             {"target_names_expr": (re.escape(joint.name),), "gear": joint.ratio, **effort, **values}
@@ -204,10 +210,10 @@ def _newton(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
     for joint in joints:
         springs = {name: float(spec.joint(AXIS).stiffness[0]) for name, spec in joint.native()}
         carried = [name for name, stiffness in springs.items() if stiffness]
-        lines += joint.summary(carried)
+        lines += joint.summary(carried, *joint.unlimited)
         values = {"armature": joint.armature, "friction": joint.coulomb, "damping": joint.damping}
         values["stiffness"] = sum(springs.values()) * joint.ratio**2
-        entries[joint.name] = values | ({"effort_limit": joint.limit} if math.isfinite(joint.limit) else {})
+        entries[joint.name] = values | ({} if joint.limit is None else {"effort_limit": joint.limit})
     return _python(
         lines,
         "from newton import ModelBuilder\n",

@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import mujoco
+import numpy as np
 import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
@@ -38,8 +39,6 @@ from bench.structured import read_toml
 SCHEMA, OF_JOINTS = "bench.model/1", "bench.effects/1"
 #: Step that the exported MuJoCo model runs at - s.
 TIMESTEP = 250e-6
-#: Units of what a mounting holds.
-MOUNTED = {"gear_ratio": "dimensionless", "load_mass": "kg", "link_inertia": "kg*m**2"}
 
 
 @dataclass(frozen=True)
@@ -50,17 +49,25 @@ class Mounting:
         gear_ratio: motor turns per turn of the joint; 1 without a gear.
         load_mass: of the disk on the joint - kg; None where the rig does not tell.
         link_inertia: part of the model's inertia that is the links' of a robot, on the joint's side - kg*m**2 (kg).
+        effort_limit: largest torque (force) that the rig or the robot's MJCF states, on the joint's side - N*m (N);
+            None where neither does.
     """
 
     gear_ratio: float = 1.0
     load_mass: float | None = None
     link_inertia: float = 0.0
+    effort_limit: float | None = None
 
     @classmethod
     def of(cls, rig: Rig) -> Mounting:
         """As a rig describes it."""
-        load = rig.load or Load()
-        return cls(float(load.gear_ratio), load.disk_mass, load.link_inertia or 0.0)
+        load, motor, constant = rig.load or Load(), rig.motor, rig.motor.torque_per_ampere
+        peak = motor.peak_torque
+        if peak is None and constant is not None and motor.peak_current is not None:
+            peak = float(constant.torque(np.asarray(motor.peak_current)))
+        limits = [load.effort_limit, None if peak is None else peak * load.gear_ratio]
+        limit = min((each for each in limits if each is not None), default=None)
+        return cls(float(load.gear_ratio), load.disk_mass, load.link_inertia or 0.0, limit)
 
 
 @dataclass(frozen=True)
@@ -119,7 +126,7 @@ def _content(stored: StoredModel) -> dict[str, Any]:
     if model.effects:
         content["effects"] = [{"name": one.name, **_texts(effect_values(one, kind))} for one in model.effects]
     if mounting != Mounting():
-        own = {key: (getattr(mounting, key), unit) for key, unit in MOUNTED.items()}
+        own = {key: (getattr(mounting, key), unit) for key, unit in _mounted_units(kind).items()}
         content["mounting"] = _texts({key: pair for key, pair in own.items() if pair[0] != getattr(Mounting, key)})
     return content
 
@@ -182,7 +189,7 @@ def _model(table: Mapping[str, Any], path: str) -> StoredModel:
     misalignment = parse_value(str(table.get("misalignment", 0.0)), "s", f"{path}: misalignment")
     model = AxisModel(parameters, effects, peak, winding)
     mounted = table.get("mounting", {})
-    given = {key: unit for key, unit in MOUNTED.items() if not isinstance(mounted, dict) or key in mounted}
+    given = {key: unit for key, unit in _mounted_units(kind).items() if not isinstance(mounted, dict) or key in mounted}
     mounting = _values(mounted, given, f"{path}: mounting")
     for key, value in mounting.items():
         if value <= 0.0:
@@ -222,6 +229,11 @@ def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]
         }
         found.append(Present.of(effect.name, values, where))
     return tuple(found)
+
+
+def _mounted_units(kind: AxisKind) -> dict[str, str]:
+    units = {"gear_ratio": "dimensionless", "load_mass": "kg", "link_inertia": "kg*m**2"}
+    return {**units, "effort_limit": kind.effort_unit}
 
 
 def _winding_units(kind: AxisKind) -> dict[str, str]:

@@ -180,6 +180,23 @@ class Robot:
         arm = np.cross(axis, model.body_ipos[body] - joint.pos)
         return link_about_centre(model, self.joint) + float(model.body_mass[body] * arm @ arm)
 
+    @property
+    def effort_limit(self) -> float | None:
+        """Largest torque (force) that the MJCF allows the joint's actuators - N*m (N); None where it limits none."""
+        model, joint = self.model, self.model.joint(self.joint).id
+        allowed, known = [], model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_JOINT)
+        for k in np.flatnonzero(known & (model.actuator_trnid[:, 0] == joint)):
+            largest = np.inf
+            if model.actuator_forcelimited[k]:
+                largest = np.abs(model.actuator_forcerange[k]).max()
+            elif model.actuator_ctrllimited[k] and model.actuator_biastype[k] == int(mujoco.mjtBias.mjBIAS_NONE):
+                largest = np.abs(model.actuator_ctrlrange[k]).max() * abs(model.actuator_gainprm[k, 0])
+            allowed.append(abs(model.actuator_gear[k, 0]) * largest)
+        most = sum(allowed) if allowed else np.inf
+        if model.jnt_actfrclimited[joint]:
+            most = min(most, np.abs(model.jnt_actfrcrange[joint]).max())
+        return float(most) if np.isfinite(most) else None
+
     @cached_property
     def inertia(self) -> float:
         """Of all that the joint carries, where the MJCF stands - kg*m**2 (kg)."""
@@ -362,7 +379,8 @@ def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
 
 def rig_within(rig: Rig, robot: Robot) -> Rig:
     """The rig of a joint whose links the robot's model knows."""
-    load = (rig.load or Load()).model_copy(update={"link_inertia": robot.inertia})
+    known = {"link_inertia": robot.inertia, "effort_limit": robot.effort_limit}
+    load = (rig.load or Load()).model_copy(update=known)
     return rig.model_copy(update={"load": load})
 
 

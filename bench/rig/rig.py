@@ -37,6 +37,7 @@ class Load(RigTable):
         eccentric_mass: of a pendulum on the load's shaft, known to pull by gravity - kg; with it `eccentric_radius`,
             of its centre from the shaft - m, and `hanging_position`, the load's angle at which it hangs - rad.
         link_inertia: part of the inertia that a robot's own model has, on the load's side - kg*m**2.
+        effort_limit: largest torque (force) of the drive that a robot's own model states, on the load's side - N*m (N).
         behind_rotor: whether the torque is measured on the load's side, so that the motor's inertia is not in it.
     """
 
@@ -52,6 +53,7 @@ class Load(RigTable):
     eccentric_radius: values.Length | None = None
     hanging_position: values.Angle = 0.0
     link_inertia: values.Inertia | None = None
+    effort_limit: Annotated[float | None, Field(exclude=True)] = None
     behind_rotor: Annotated[bool, Field(exclude=True)] = False
 
     @model_validator(mode="after")

@@ -19,7 +19,9 @@ import pytest
 from bench.export.mjcf import ArmatureShare, armature_of, onto
 from bench.export.simulators import simulator_file
 from bench.files import write_text
-from bench.plant.model_file import joints_toml
+from bench.plant.model_file import Mounting, joints_toml, load_joints
+from bench.plant.robot import Robot, rig_within
+from bench.rig.rig import Rig
 from tests.diagnosis.command import started
 from tests.effects.axes import WINDING
 from tests.export.arms import PARAMETERS, stored
@@ -40,6 +42,11 @@ def of(*effects, **parts):
     return replace(made, model=replace(made.model, **parts))
 
 
+def limited(model, limit):
+    """A model whose joint has a limit of torque - N*m."""
+    return replace(model, mounting=replace(model.mounting, effort_limit=limit))
+
+
 class Stub(SimpleNamespace):
     """A configuration of another simulator, as what it was given."""
 
@@ -58,7 +65,8 @@ def loaded(text, monkeypatch):
 
 
 def test_mjlab_gets_torque_cogging_and_bristles(monkeypatch):
-    text, lines = simulator_file("mjlab", {"elbow": of(COGGING, SECOND, BRISTLES, LOADED, peak_effort=3.0)}, None)
+    model = limited(of(COGGING, SECOND, BRISTLES, LOADED, peak_effort=2.44), 3.0 * RATIO)
+    text, lines = simulator_file("mjlab", {"elbow": model}, None)
     (motor,) = loaded(text, monkeypatch)["ACTUATORS"]
     assert motor.target_names_expr == ("elbow",)
     assert (motor.gear, motor.effort_limit, motor.frictionloss) == (RATIO, 3.0, 0.0)
@@ -71,6 +79,50 @@ def test_mjlab_gets_torque_cogging_and_bristles(monkeypatch):
     assert "elbow: carried: cogging_torque, presliding_friction" in lines
     assert "elbow: not carried: cogging_torque (MuJoCo has it: --to mjcf)" in lines
     assert "elbow: not carried: load_dependent_friction (bench.Effects steps it)" in lines
+
+
+def test_the_largest_logged_torque_is_no_limit(monkeypatch):
+    """A limit is what the MJCF or the rig states; `peak_effort` may be the largest that was recorded."""
+    for target, names in (("mjlab", "ACTUATORS"), ("newton", "JOINTS")):
+        text, lines = simulator_file(target, {"elbow": of(peak_effort=2.44)}, None)
+        assert "effort_limit" not in repr(loaded(text, monkeypatch)[names])
+        assert any(line.startswith("elbow: no effort_limit: neither MJCF nor rig states one") for line in lines)
+        text, lines = simulator_file(target, {"elbow": limited(of(peak_effort=2.44), 28.0)}, None)
+        value = 28.0 / RATIO if target == "mjlab" else 28.0
+        assert f"'effort_limit': {value!r}" in text or f"effort_limit={value!r}" in text
+        assert not any("no effort_limit" in line for line in lines)
+
+
+MOTOR = '<motor joint="elbow" gear="2" {}/>'
+
+
+@pytest.mark.parametrize(
+    ("joint", "actuator", "limit"),
+    [
+        ("", "", None),
+        ("", MOTOR.format(""), None),
+        ("", MOTOR.format('forcerange="-14 14"'), 28.0),
+        ("", MOTOR.format('ctrlrange="-14 10"'), 28.0),
+        ('actuatorfrcrange="-20 20"', MOTOR.format('ctrlrange="-14 10"'), 20.0),
+        ('actuatorfrcrange="-20 20"', "", 20.0),
+        ("", '<position joint="elbow" kp="50" ctrlrange="-3 3"/>', None),
+        ("", '<position joint="elbow" kp="50" ctrlrange="-3 3" forcerange="-7 7"/>', 7.0),
+        ("", MOTOR.format('forcerange="-14 14"') + MOTOR.format(""), None),
+    ],
+)
+def test_a_limit_is_that_of_the_mjcf_or_of_the_rig(tmp_path, joint, actuator, limit):
+    path = tmp_path / "robot.xml"
+    body = f'<body><joint name="elbow" axis="0 1 0" {joint}/><geom size="0.1"/></body>'
+    write_text(path, f"<mujoco><worldbody>{body}</worldbody><actuator>{actuator}</actuator></mujoco>")
+    robot = Robot.of(path, "elbow")
+    assert robot.effort_limit == limit
+    known = {"torque_constant": "0.5 N*m/A", "peak_current": "4 A"}
+    rig = Rig.of({"name": "elbow", "kind": "rotary", "motor": known, "load": {"gear_ratio": 12.0}})
+    mounting = Mounting.of(rig_within(rig, robot))
+    assert mounting.effort_limit == min(24.0, limit or np.inf)
+    model = replace(of(), mounting=mounting)
+    write_text(tmp_path / "effects.toml", joints_toml({"elbow": model}))
+    assert load_joints(tmp_path / "effects.toml")["elbow"].mounting == mounting
 
 
 @pytest.mark.parametrize(
