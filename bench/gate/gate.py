@@ -27,6 +27,7 @@ CHECKS: tuple[Look, ...] = (
     effort.follows_motion,
     effort.constants,
     plausible.agrees,
+    plausible.units,
     neighbours.stand,
 )
 #: Checks that do not apply at one steady speed: signals may stay the same, and effort follows no motion.
@@ -35,7 +36,7 @@ UNSTEADY += (effort.has_sign, throughout.holds, effort.follows_motion)
 STEADY = tuple(look for look in CHECKS if look not in UNSTEADY)
 #: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
 WHOLE = (timing.rate, signals.resolution, effort.has_sign, effort.follows_motion, effort.constants, plausible.agrees)
-WHOLE += (neighbours.stand,)
+WHOLE += (plausible.units, neighbours.stand)
 PARTS = tuple(look for look in CHECKS if look not in WHOLE)
 
 

@@ -1,4 +1,5 @@
-"""Does a recording agree with its rig: the inertia of motor and disk, the motor's top speed and its peak current?"""
+"""Does a recording agree with its rig: the inertia of motor and disk, the motor's top speed and its peak current, and
+are its units stated?"""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from bench.axis_kind import INERTIA
 from bench.gate.check import Check, Seen, absent
+from bench.trace.trace import ASSUMED_UNITS
 
 NAME = "agrees_with_rig"
 #: Factor between what is found and what the rig says that is reported, and that is refused.
@@ -30,6 +32,12 @@ def agrees(seen: Seen) -> Check:
         return Check(NAME, "pass", found, ALLOWED)
     advice = "check units, signs and scales of the columns, the time's too, and whether the rig is this axis'"
     return Check(NAME, "fail" if off > REFUSED else "warn", found, ALLOWED, advice)
+
+
+def units(seen: Seen) -> Check | None:
+    """Whether the recording states its units; None where it does."""
+    assumed = seen.trace.metadata.get(ASSUMED_UNITS)
+    return None if assumed is None else Check("units", "warn", assumed, "a unit for each column")
 
 
 def _compared(seen: Seen) -> Iterator[tuple[float, str]]:

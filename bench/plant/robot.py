@@ -31,7 +31,6 @@ from bench.plant.silenced import silenced
 from bench.rig.rig import JointNotes, Load, Rig
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import GivenOptions, axes_of
-from bench.trace.inspect import time_unit
 from bench.trace.joints import named
 from bench.trace.motion import stretches_of
 from bench.trace.read import read_recording
@@ -489,10 +488,6 @@ def _joint_of(recording: Recording, name: str, rig: Rig, robot: Robot) -> Trace:
     units = {"position": angle, "velocity": f"{angle}/s", "torque": "N*m", "force": "N", "current": "A", "time": "s"}
     recording = replace(recording, usual_units={**units, **recording.usual_units})
     trace = assemble(recording, how)
-    if {"position", "velocity"} <= set(trace.signals):  # times in no unit are in the one in which these two agree
-        unit = time_unit(trace.time, trace["position"], trace["velocity"])
-        if unit not in (None, "s") and any("time taken as s" in note for note in trace.notes):
-            trace = assemble(replace(recording, usual_units={**recording.usual_units, "time": unit}), how)
     turned = {one: -values for one, values in trace.signals.items() if notes.sign < 0 and one != "temperature"}
     return trace.with_signals(turned, {})
 

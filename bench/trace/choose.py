@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from bench.errors import InputError
 from bench.names import nearest, short
+from bench.trace.assumed import Assumption, assumed_units
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of, wanted_units
 from bench.units.conversion import UnitScale, scale_or_none
@@ -91,27 +93,25 @@ def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, SignalC
             allowed = f"allowed: time, {', '.join(SI_UNITS)}"
             raise InputError(f"columns: {signal}", f"not a signal{nearest(signal, [*SI_UNITS])}", allowed)
     whole, recording = recording, replace(recording, channels=of_axis(recording, how.axis))
+    columns: dict[str, _Chosen] = {}
     chosen: dict[str, SignalColumn] = {}
     faults: dict[str, InputError] = {}
     notes: list[str] = []
     for signal in ("time", *SI_UNITS):
-        try:
-            found = _signal(recording, whole, signal, how.columns, notes)
-        except InputError as fault:
-            if signal in how.columns and not (signal == "time" and how.sample_period):
-                raise
-            faults[signal] = fault
-            continue
-        if found is not None:
-            chosen[signal] = found
+        with _fault_of(signal, faults, how):
+            column = _column(recording, whole, signal, how.columns, notes)
+            columns |= {signal: column} if column is not None else {}
+    assumption = _assumption(columns, whole, how)
+    for signal, column in columns.items():
+        with _fault_of(signal, faults, how):
+            chosen[signal] = column.scaled(signal, assumption)
+            notes += [f"{signal}: {note}"] if (note := chosen[signal].scale.note) else []
     _require(recording, chosen, faults, how)
     if "time" not in chosen and how.sample_period is not None:
         index = _index(recording, how.columns)
         chosen |= {"time": SignalColumn(index, _INDEX)} if index is not None else {}
-    taken = ", ".join(f"{signal} taken as {one.usual}" for signal, one in chosen.items() if one.usual is not None)
-    assumed = (f"{taken}, as the file tells no unit",) if taken else ()
     left = (f"{signal} left out: {fault.where} {fault.found}" for signal, fault in faults.items() if signal != "time")
-    return chosen, (*assumed, *notes, *left)
+    return chosen, (*assumed_note(chosen), *notes, *left)
 
 
 def of_axis(recording: Recording, axis: str | None) -> tuple[Channel, ...]:
@@ -156,9 +156,54 @@ def _require(
             raise found[0]
 
 
-def _signal(
+@dataclass(frozen=True)
+class _Chosen:
+    """A channel that was chosen for a signal.
+
+    Attributes:
+        channel: as the reader returned it.
+        unit: that the rig or the file states; None where neither does.
+        usual: unit of this signal in files of this kind, which carry none.
+        sign: +1 or -1.
+    """
+
+    channel: Channel
+    unit: str | None
+    usual: str | None
+    sign: float
+
+    def scaled(self, signal: str, assumption: Assumption) -> SignalColumn:
+        """The same with its scale; InputError where its unit is none of the signal's, or unknown."""
+        channel, usual = self.channel, assumption.units.get(signal) or self.usual
+        if channel.moments:
+            return SignalColumn(channel, scale_in(signal, channel.unit or "s", channel.place()), self.sign)
+        reason, example = assumption.refused.get(signal, ("", wanted_units(signal)[0]))
+        line = f'{signal} = "{channel.name} [{example}]" in the rig\'s [trace.columns]'
+        unit = self.unit or usual
+        if unit is None:
+            found = channel.open_unit or f"has no unit{f', {reason}' if reason else ''}"
+            raise InputError(channel.place(), found, f"allowed: a unit in the file, or e.g. {line}")
+        try:
+            scale = scale_in(signal, unit, channel.place())
+        except InputError as error:
+            raise InputError(error.where, error.found, f"{error.allowed}; {line} says which") from error
+        return SignalColumn(channel, scale, self.sign, None if self.unit else usual)
+
+
+@contextmanager
+def _fault_of(signal: str, faults: dict[str, InputError], how: ReadingOptions) -> Iterator[None]:
+    """Keep what is wrong with a signal's column; raise it where the rig names that column."""
+    try:
+        yield
+    except InputError as fault:
+        if signal in how.columns and not (signal == "time" and how.sample_period):
+            raise
+        faults[signal] = fault
+
+
+def _column(
     recording: Recording, whole: Recording, signal: str, columns: Mapping[str, str], notes: list[str]
-) -> SignalColumn | None:
+) -> _Chosen | None:
     """The channel of a signal, by a column's name of the whole recording's; None where there is none."""
     given, named, unit = columns.get(signal), None, None
     if given is not None:
@@ -174,29 +219,39 @@ def _signal(
         unit = None
     if channel.defect is not None:
         raise channel.defect
-    own = unit_of(channel.unit)
-    stated = unit_of(unit or channel.unit)
-    usual = recording.usual_units.get(signal) if stated is None and not channel.moments else None
-    scale = _scale(signal, channel, stated or usual)
-    notes += [f"{signal}: {scale.note}"] if scale.note else []
-    contrary = own is not None and scale_or_none(own, wanted_units(signal)) != scale
-    if named is not None and unit is not None and not channel.moments and contrary:
+    own, stated = unit_of(channel.unit), unit_of(unit or channel.unit)
+    scales = [scale_or_none(one or "", wanted_units(signal)) for one in (own, stated)]
+    if named is not None and unit is not None and not channel.moments and own is not None and scales[0] != scales[1]:
         notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
     inverted = named is not None and str(given).strip().startswith("-")
-    return SignalColumn(channel, scale, -1.0 if inverted else 1.0, usual)
+    usual = recording.usual_units.get(signal) if stated is None and not channel.moments else None
+    return _Chosen(channel, stated, usual, -1.0 if inverted else 1.0)
 
 
-def _scale(signal: str, channel: Channel, unit: str | None) -> UnitScale:
-    if channel.moments:
-        return scale_in(signal, channel.unit or "s", channel.place())
-    line = f'{signal} = "{channel.name} [unit]" in the rig\'s [trace.columns]'
-    if unit is None:
-        reason = channel.open_unit or "has no unit"
-        raise InputError(channel.place(), reason, f"allowed: a unit in the file, or {line}")
-    try:
-        return scale_in(signal, unit, channel.place())
-    except InputError as error:
-        raise InputError(error.where, error.found, f"{error.allowed}; {line} says which") from error
+def _assumption(columns: Mapping[str, _Chosen], recording: Recording, how: ReadingOptions) -> Assumption:
+    """Units of the columns without one; none where the file names a unit and leaves it open."""
+    time = columns["time"].channel if "time" in columns else None
+    bare = all(unit_of(one.unit) is None for one in recording.channels if one is not time)
+    open_to = {
+        signal: column
+        for signal, column in columns.items()
+        if column.channel.open_unit is None and not (signal == "time" and how.sample_period)
+    }
+    units = {signal: "s" if one.channel.moments else one.unit or one.usual for signal, one in open_to.items()}
+    if time is not None and "time" in units and not time.moments:
+        units["time"] = columns["time"].unit  # the usual one, unless motion determines another
+    return assumed_units({signal: column.channel for signal, column in open_to.items()}, units, bare)
+
+
+def assumed_note(chosen: Mapping[str, SignalColumn]) -> tuple[str, ...]:
+    """The note on units that were assumed, one line with what to write where one is wrong; else none."""
+    taken = {signal: one for signal, one in chosen.items() if one.usual is not None}
+    if not taken:
+        return ()
+    read = ", ".join(f"{signal} taken as {one.usual}" for signal, one in taken.items())
+    signal, one = next(reversed(taken.items()))
+    line = f'{signal} = "{one.channel.name} [{one.usual}]"'
+    return (f"{read}, as the file has no unit; to state another: {line} in the rig's [trace.columns]",)
 
 
 def _named(recording: Recording, signal: str, name: str) -> Channel | None:

@@ -17,6 +17,7 @@ import numpy as np
 from bench.arrays import Array, correlation, rms
 from bench.errors import InputError
 from bench.structured import json_text
+from bench.trace.assumed import time_unit
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis
 from bench.trace.in_si import in_si
@@ -37,8 +38,6 @@ _ROUND = re.compile(r"(.*?)\s*[({]([^(){}]*)[)}]\s*|(.*?)[,/]\s+(\S+)")
 DERIVATIVE, ENOUGH = 0.9, 200_000
 #: Characters of a name in which a unit is sought.
 LONGEST_NAME = 200
-#: Units of time without one, and the share by which a position and its velocity may miss each other in it.
-TIMES, AGREEMENT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}, 0.1
 
 _DYNAMIXEL = "as Dynamixel's X series has it (control table in Robotis' e-manual); check your model's"
 _ODRIVE = "as ODrive has it (docs.odriverobotics.com, API reference)"
@@ -321,16 +320,6 @@ def _with_time_unit(given: dict[Channel, Guess]) -> dict[Channel, Guess]:
     if unit is None:
         return given
     return {**given, clock: replace(time, unit=unit, why=(*time.why, f"position and velocity agree in {unit}"))}
-
-
-def time_unit(ticks: Array, position: Array, velocity: Array) -> str | None:
-    """The unit in which times (n,) make a position and its velocity - SI, (n,) each - agree; None where none does."""
-    step = np.diff(position)
-    travelled = 0.5 * (velocity[1:] + velocity[:-1]) * np.diff(ticks)
-    plain = np.abs(step) < 0.2 * np.ptp(position)
-    power = float(travelled[plain] @ travelled[plain])
-    second = float(travelled[plain] @ step[plain]) / power if power > 0.0 else 0.0
-    return next((unit for unit, factor in TIMES.items() if abs(second / factor - 1.0) < AGREEMENT), None)
 
 
 def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> list[Guess]:

@@ -90,11 +90,11 @@ def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
         pq.ParquetFile(path, memory_map=True, page_checksum_verification=True) as file,
     ):
         fields = list(file.schema_arrow)
-        empty = Recording(
-            tuple(channel_of(field, pa.nulls(0, field.type), path) for field in fields), PARQUET.format, readable(path)
-        )
-        chosen, assumed = choose(empty, how)
-        field_of = {name: fields[empty.channels.index(choice.channel)] for name, choice in chosen.items()}
+        head = next(file.iter_batches(CHUNK), pa.table([pa.nulls(0, one.type) for one in fields], pa.schema(fields)))
+        channels = tuple(channel_of(field, column, path) for field, column in zip(fields, head.columns, strict=True))
+        beginning = Recording(channels, PARQUET.format, readable(path))
+        chosen, assumed = choose(beginning, how)
+        field_of = {name: fields[beginning.channels.index(choice.channel)] for name, choice in chosen.items()}
         require_ratio(path, file.metadata.num_rows * len(field_of) * WIDTH, Path(path).stat().st_size)
         start, last = 0, None
         wrapping: dict[str, Unwrapping] = {}
@@ -104,7 +104,7 @@ def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
                 for name, choice in chosen.items()
             }
             notes = list(assumed)
-            part = on_time_base(in_si(pieces, empty, how, notes, wrapping), chosen, empty, notes)
+            part = on_time_base(in_si(pieces, beginning, how, notes, wrapping), chosen, beginning, notes)
             last = replace(part, continues=_continues(last, part.time, part.sample_period, part.origin))
             yield last
             start += batch.num_rows

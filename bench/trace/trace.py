@@ -23,7 +23,7 @@ from bench.arrays import Array, all_finite
 from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
 from bench.trace.channel import Recording
-from bench.trace.choose import ReadingOptions, SignalColumn, choose, reading_options
+from bench.trace.choose import ReadingOptions, SignalColumn, assumed_note, choose, reading_options
 from bench.trace.in_si import SampledSignal, in_si
 from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
 from bench.trace.time_base import HOLE, TimeBase, interpolate, regular
@@ -50,6 +50,8 @@ LARGEST = {
 }
 #: A signal that never exceeds this has a square that underflows - SI.
 SMALLEST = 1e-30
+#: Key of a trace's metadata: which units were assumed, in words.
+ASSUMED_UNITS = "assumed_units"
 #: Sample periods that a recording can have - s.
 SHORTEST, LONGEST = 1e-9, 1e6
 
@@ -221,6 +223,8 @@ def on_time_base(
     dropped = unused(chosen, recording)
     if dropped:
         metadata["dropped_columns"] = ", ".join(dropped)
+    for note in assumed_note(chosen):
+        metadata[ASSUMED_UNITS] = note
     return Trace(
         time=base.time,
         signals=base.signals,

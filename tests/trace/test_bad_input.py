@@ -34,10 +34,10 @@ TEXT = {
     "no known signal": ("time [ms],a [V],b [V]\n0,1,1\n1,2,2\n", r"position or velocity: not in the file; found: time"),
     "unit missing": (
         "time [ms],velocity,current [mA]\n0,1,1\n1,2,2\n",
-        r"column 'velocity': has no unit; allowed: .*\[tr",
+        r"column 'velocity': has no unit, where other columns have theirs; allowed: .*\[tr",
     ),
     "time without unit": ("time,velocity [deg/s]\n0,1\n1,2\n", r"column 'time': has no unit"),
-    "empty unit": ("time [ms],velocity []\n0,1\n1,2\n", r"column 'velocity': has no unit"),
+    "empty unit": ("time [ms],velocity [],current [A]\n0,1,1\n1,2,2\n", r"column 'velocity': has no unit"),
     "wrong dimension": (
         "time [ms],velocity [V]\n0,1\n1,2\n",
         r"'velocity \[V\]': found unit 'V'; allowed: .* rad/s or m/s",

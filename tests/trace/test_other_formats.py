@@ -96,7 +96,7 @@ def test_emps_in_the_units_the_rig_gives():
     assert np.array_equal(trace["position"], raw["qm"][:, 0])
     assert np.array_equal(trace["voltage"], raw["vir"][:, 0])
     assert float(trace.metadata["gtau"]) == pytest.approx(35.15065188248547)
-    with pytest.raises(InputError, match="'t': has no unit"):
+    with pytest.raises(InputError, match="position or velocity: not in the file"):
         read(path)
 
 
