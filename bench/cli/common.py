@@ -24,7 +24,6 @@ from bench.errors import InputError
 from bench.files import held, keeping, require_writable, write_text
 from bench.names import plain
 from bench.plant.profile_names import NAMES
-from bench.trace.trace import ASSUMED_UNITS
 
 if TYPE_CHECKING:
     from bench.report.document import Document, Picture
@@ -290,6 +289,8 @@ def subject(
     warned: set[str] = set()
 
     def reported(trace: bench.Trace) -> bench.Trace:
+        from bench.trace.trace import ASSUMED_UNITS  # numpy, which `--help` need not wait for
+
         of_gate = trace.metadata.get(ASSUMED_UNITS)
         warn(note for note in trace.notes if note not in warned and note != of_gate)
         warned.update(trace.notes)
