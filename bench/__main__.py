@@ -2,7 +2,6 @@
 
 import atexit
 import os
-import resource
 import signal
 import sys
 from contextlib import suppress
@@ -14,15 +13,12 @@ from types import FrameType
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from bench import __version__
+from bench.errors import Stopped
 
 #: Bytes of addresses that NumPy, Arrow and MuJoCo load in; less by any `ulimit -v` may never end.
 LEAST_MEMORY = 1000 * 1000 * 1024
 #: Threads that Arrow, MuJoCo and numerics start on a machine of two cores, rounded up; where one is refused they abort.
 LEAST_THREADS = 24
-
-
-class Stopped(BaseException):
-    """A signal to stop; no KeyboardInterrupt, which the command line's library turns into an exit without a word."""
 
 
 #: Statuses that a shell gives the signals that came.
@@ -51,9 +47,12 @@ def _threads() -> bool:
 
 def _lacking() -> str | None:
     """What libraries wait for without end, or abort the process for; None where there is enough of it."""
-    most = resource.getrlimit(resource.RLIMIT_AS)[0]
-    if most != resource.RLIM_INFINITY and most < LEAST_MEMORY:
-        return "ulimit -v: found less than 1 GB, for which NumPy's OpenBLAS waits for ever; allow 1 GB"
+    with suppress(ModuleNotFoundError):  # Windows has no such limits
+        import resource
+
+        most = resource.getrlimit(resource.RLIMIT_AS)[0]
+        if most != resource.RLIM_INFINITY and most < LEAST_MEMORY:
+            return "ulimit -v: found less than 1 GB, for which NumPy's OpenBLAS waits for ever; allow 1 GB"
     return None if _threads() else f"ulimit -u: found room for fewer than {LEAST_THREADS} threads; allow more"
 
 
@@ -77,19 +76,21 @@ def main() -> None:
 
     atexit.register(leave)  # the first that is registered is the last that is called
     try:
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it
+        for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+            number = getattr(signal, name, None)  # Windows has no SIGHUP
+            if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it
                 signal.signal(number, _stop)
         from bench.allocation import keep_freed_memory
         from bench.cli import main as run
 
         keep_freed_memory()
-        run()
+        try:
+            run()
+        except SystemExit as end:  # as the command line always ends; any other end is a fault
+            status = end.code if isinstance(end.code, int) else status
+            raise
     except Stopped:
         os._exit(_STOPPED[0])  # what is half imported cannot be taken down in order
-    except SystemExit as end:  # as the command line always ends
-        status = end.code if isinstance(end.code, int) else 0
-        raise
 
 
 if __name__ == "__main__":

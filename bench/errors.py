@@ -1,5 +1,7 @@
 """The one exception tree of the bench; the command line turns it into one line and an exit status."""
 
+from bench.names import readable
+
 
 class BenchError(Exception):
     """Anything the bench refuses. `exit_status` is what the command line returns for it."""
@@ -17,8 +19,8 @@ class InputError(BenchError):
     """
 
     def __init__(self, where: object, found: str, allowed: str) -> None:
-        self.where, self.found, self.allowed = str(where), found, allowed
-        super().__init__(f"{where}: {found}; {allowed}")
+        self.where, self.found, self.allowed = map(readable, (where, found, allowed))
+        super().__init__(f"{self.where}: {self.found}; {self.allowed}")
 
 
 class UndeterminedError(BenchError):
@@ -41,3 +43,7 @@ class SimulationError(BenchError):
     """A simulation diverged, or its model cannot do what is requested; never interpreted as "does not fit"."""
 
     exit_status = 1
+
+
+class Stopped(BaseException):
+    """A signal to stop; no KeyboardInterrupt, which the command line's library turns into an exit without a word."""

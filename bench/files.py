@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import os
 import re
 import secrets
 import stat
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from io import BufferedReader
@@ -33,12 +32,11 @@ class _Touched:
 
 
 _TOUCHED: ContextVar[_Touched | None] = ContextVar("touched", default=None)
-#: The same for each folder that it has locked for writing.
-_HELD: ContextVar[frozenset[Identity]] = ContextVar("held", default=frozenset())
 #: What tells that a folder is one recording, and the endings of its files that are read.
 _OF_FOLDERS, _READ = ("meta/info.json", "metadata.yaml"), (".parquet", ".json", ".yaml", ".db3", ".mcap")
-#: Names of files that are being written.
-_UNDER_WAY = re.compile(r"\.bench-[0-9a-f]{12}-.*", re.DOTALL)
+#: Ending of lock files, and names of those of files that are being written.
+_LOCK = ".lock"
+_UNDER_WAY = re.compile(r"\.bench-[0-9a-f]{12}-.*\.lock", re.DOTALL)
 
 
 def marker(path: Path) -> Path:
@@ -71,7 +69,8 @@ def opened(path: Path, kind: str, replaced: bool = False) -> Iterator[BufferedRe
         if not stat.S_ISREG(state.st_mode):  # a pipe may never end, a device has no end
             raise InputError(path, "found a pipe or a device", f"{give}, a regular file")
         with path.open("rb") as file:
-            if not state.st_size and not os.fstatvfs(file.fileno()).f_blocks:  # /proc, /sys
+            made = hasattr(os, "fstatvfs") and not os.fstatvfs(file.fileno()).f_blocks  # /proc, /sys
+            if made and not state.st_size:
                 raise InputError(path, "found a file that the system makes while it is read", f"{give}, a regular file")
             touched, own = _TOUCHED.get(), _identity(os.fstat(file.fileno()))
             if touched is not None and not replaced and own not in touched.made:
@@ -153,92 +152,80 @@ def require_writable(path: str | Path) -> Path:
 
 @contextmanager
 def whole(path: str | Path, lasting: bool = True) -> Iterator[Path]:
-    """A temporary path beside `path` that takes its name once the block has ended well, and is gone otherwise.
+    """A temporary path next to `path` that takes its name once the block has ended well, and is gone otherwise.
 
     The file is on the disk before it takes the name, unless it is one of many that can be made again (not `lasting`).
     Links are followed; permissions are those of the file that is replaced, else what the umask leaves. Its folder is
-    made; what a run that was killed has left in it is removed. InputError: it cannot be written to, or is an input.
+    made; files of runs that were killed while they wrote to it are removed. InputError: it cannot be written to, or is
+    an input.
     """
     target = require_writable(path)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        _remove_left(target.parent)
-        temporary, handle = _begun(target)
-        try:
-            if target.exists():
-                temporary.chmod(stat.S_IMODE(target.stat().st_mode))
-            yield temporary
-            if lasting:
-                _flush(temporary)
-            temporary.replace(target)
-            if (touched := _TOUCHED.get()) is not None:
-                touched.made.add(_identity(target.stat()))
-            if lasting:
-                _flush(target.parent)
-        finally:
-            os.close(handle)
-            temporary.unlink(missing_ok=True)
+        _remove_unfinished(target.parent)
+        temporary = target.with_name(f".bench-{secrets.token_hex(6)}-{target.stem[:32]}{target.suffix[-16:]}")
+        with _locked(temporary.with_name(temporary.name + _LOCK)):
+            try:
+                temporary.touch(exist_ok=False)  # 0o666 less the umask
+                if target.exists():
+                    temporary.chmod(stat.S_IMODE(target.stat().st_mode))
+                yield temporary
+                if lasting:
+                    _flush(temporary, os.O_RDWR)
+                temporary.replace(target)
+                if (touched := _TOUCHED.get()) is not None:
+                    touched.made.add(_identity(target.stat()))
+                if lasting and os.name == "posix":  # Windows opens no folder
+                    _flush(target.parent, os.O_RDONLY)
+            finally:
+                temporary.unlink(missing_ok=True)
     except OSError as error:
         found = f"cannot be written ({reason(error)})"
         raise InputError(path, found, "name a file in a folder that can be written to") from error
 
 
-def _begun(target: Path) -> tuple[Path, int]:
-    """A new file beside an output, and a handle that locks it for as long as this process writes to it."""
-    while True:
-        name = f".bench-{secrets.token_hex(6)}-{target.stem[:32]}{target.suffix[-16:]}"
-        temporary = target.with_name(name)
-        handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)  # less the umask
-        with suppress(OSError):  # a file system without locks, where `_remove_left` gets none either
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        if os.fstat(handle).st_nlink:  # none: another process took it for left over before it was locked
-            return temporary, handle
-        os.close(handle)
-
-
-def _remove_left(folder: Path) -> None:
-    """Remove files of runs that were killed while they wrote: those that no process has locked."""
+def _remove_unfinished(folder: Path) -> None:
+    """Remove files of runs that were killed while they wrote: those whose lock no process has."""
     for name in filter(_UNDER_WAY.fullmatch, os.listdir(folder)):  # noqa: PTH208 (a name is enough)
-        left = folder / name
-        # locked, or not ours to remove: it does no harm
-        with suppress(OSError), _handle(left, os.O_NOFOLLOW | os.O_NONBLOCK) as handle:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            left.unlink()
+        with suppress(OSError), _locked(folder / name, wait=False):  # a Timeout, too: another process writes it
+            (folder / name.removesuffix(_LOCK)).unlink(missing_ok=True)
 
 
-def _flush(path: Path) -> None:
+def _flush(path: Path, flags: int) -> None:
     """Flush a file, or the names in a folder, to the disk."""
-    with _handle(path) as handle:
+    handle = os.open(path, flags)
+    try:
         os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
 @contextmanager
-def _handle(path: Path, flags: int = 0) -> Iterator[int]:
-    handle = os.open(path, os.O_RDONLY | flags)
-    try:
-        yield handle
-    finally:
-        os.close(handle)
+def _locked(path: Path, wait: bool = True) -> Iterator[None]:
+    """Hold a lock file, which is removed in the end; this thread may hold it more than once."""
+    from filelock import FileLock  # 0.03 s
+
+    lock = FileLock(path, is_singleton=True)
+    with lock.acquire(blocking=wait):
+        try:
+            yield
+        finally:
+            if lock.lock_counter == 1:
+                with suppress(OSError):  # Windows removes it with the lock
+                    path.unlink()
 
 
 @contextmanager
 def held(folder: Path) -> Iterator[None]:
     """Make a folder and lock it for writing: another run of the bench waits until this one is done."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        handle = os.open(folder, os.O_RDONLY)
-    except (OSError, ValueError) as error:
-        found = f"cannot be written to ({reason(error)})"
-        raise InputError(folder, found, "name a folder that can be written to") from error
-    identity, before = _identity(os.fstat(handle)), _HELD.get()
-    token = _HELD.set(before | {identity})
-    try:
-        if identity not in before:
-            fcntl.flock(handle, fcntl.LOCK_EX)
+    with ExitStack() as stack:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(_locked(folder.resolve() / f".bench{_LOCK}"))
+        except (OSError, ValueError) as error:
+            found = f"cannot be written to ({reason(error)})"
+            raise InputError(folder, found, "name a folder that can be written to") from error
         yield
-    finally:
-        _HELD.reset(token)
-        os.close(handle)
 
 
 def write_text(path: str | Path, text: str, lasting: bool = True) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -19,7 +20,9 @@ _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 
 def plain(text: str) -> str:
     r"""The text with such characters written out, e.g. `\x1b`."""
-    return _OBEYED.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
+    text = _OBEYED.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
+    # by `##[` GitHub recognises an old command anywhere in a line
+    return text.replace("##[", "## [") if "GITHUB_ACTIONS" in os.environ else text
 
 
 def words(name: str) -> str:
@@ -34,8 +37,12 @@ def cell(text: str) -> str:
 
 
 def readable(path: object) -> str:
-    r"""A path as text that any encoding has: bytes of a file name that are not UTF-8 written out, e.g. `\xff`."""
-    return str(path).encode("utf-8", errors="surrogateescape").decode("utf-8", errors="backslashreplace")
+    r"""A path, or any text, on one line in any encoding: control characters and bytes that are not UTF-8 written out.
+
+    Those of a file name are `\xff`; a line end is `\n`.
+    """
+    text = str(path).encode("utf-8", errors="surrogateescape").decode("utf-8", errors="backslashreplace")
+    return plain(text).replace("\n", r"\n").replace("\t", r"\t")
 
 
 def in_a_row(paths: Iterable[Path]) -> str:

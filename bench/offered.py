@@ -8,7 +8,7 @@ from traceback import walk_tb
 from types import TracebackType
 from typing import TypeVar
 
-from bench.errors import InputError
+from bench.errors import InputError, Stopped
 from bench.names import short
 
 T = TypeVar("T")
@@ -32,14 +32,18 @@ def offered(group: str, kind: type[T], what: str) -> Iterator[tuple[str, T]]:
         InputError: one of them cannot be imported, or is something else; names its package.
     """
     for entry in entry_points(group=group):
-        place = f"{group}: {entry.value}" + (f" of {entry.dist.name}" if entry.dist else "")
+        package = entry.dist.name if entry.dist else entry.module
+        place = f"{group}: {entry.value} of {package}"
         try:
             found = entry.load()
-        except Exception as fault:  # whatever the code of others raises as it is imported
+        except (KeyboardInterrupt, Stopped):
+            raise
+        except BaseException as fault:  # whatever an import raises, SystemExit among it, which would end the run with 0
             said = short(f"{type(fault).__name__}: {fault}")
-            raise InputError(place, f"cannot be imported ({said})", "mend that package, or uninstall it") from fault
+            remedy = f"update that package, or remove it: pip uninstall {package}"
+            raise InputError(place, f"cannot be imported ({said})", remedy) from fault
         if not isinstance(found, kind):
-            raise InputError(place, f"found {found!r}", f"allowed: {what}")
+            raise InputError(place, f"found {short(repr(found))}", f"allowed: {what}")
         yield entry.name, found
 
 

@@ -90,13 +90,13 @@ def test_a_reader_is_among_the_formats_that_a_refusal_lists(extras):
         ("builtins:sum", r"found <built-in function sum>; allowed: a reader with format, endings, recognises and read"),
         (
             "nowhere:READER",
-            r"cannot be imported \(ModuleNotFoundError: .*nowhere.*\); mend that package, or uninstall it",
+            r"cannot be imported \(ModuleNotFoundError: .*nowhere.*\); update that package, or remove it: pip",
         ),
     ],
 )
 def test_what_is_no_reader_is_refused(monkeypatch, value, said):
     monkeypatch.setattr("bench.offered.entry_points", lambda group: [EntryPoint("other", value, group)])
-    with pytest.raises(InputError, match=rf"servobench.readers: {value}: {said}"):
+    with pytest.raises(InputError, match=rf"servobench.readers: {value} of \w+: {said}"):
         readers.__wrapped__()
 
 

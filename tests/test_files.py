@@ -270,12 +270,12 @@ def test_what_a_killed_run_has_left_goes_with_the_next_output_and_what_is_being_
         assert temporary.read_text() == "half"
         writer.communicate()
     assert writer.returncode == -signal.SIGKILL
-    assert {path.name for path in tmp_path.iterdir()} == {"x", "y", temporary.name}
+    assert {path.name for path in tmp_path.iterdir()} == {"x", "y", temporary.name, f"{temporary.name}.lock"}
     (tmp_path / ".bench-of-mine").touch()
-    (tmp_path / ".bench-0123456789ab-link").symlink_to("y")
+    (tmp_path / ".bench-0123456789ab-link.lock").symlink_to("y")
     write_text(tmp_path / "y", "new")
     here = {path.name for path in tmp_path.iterdir()}
-    assert here == {"x", "y", ".bench-of-mine", ".bench-0123456789ab-link"}
+    assert here == {"x", "y", ".bench-of-mine", ".bench-0123456789ab-link.lock"}
     assert (tmp_path / "x").read_text() == "old"
 
 

@@ -14,6 +14,7 @@ import pytest
 from bench.bounds import Bounds, bounded
 from bench.course.flights import read_flights
 from bench.errors import InputError
+from bench.plant.mjcf_file import read_mjcf
 from bench.trace.channel import split_label
 from bench.trace.read import read, read_recording
 from bench.trace.stream import stream
@@ -274,3 +275,32 @@ def test_a_zip_of_a_version_that_nobody_has_is_reported_in_one_line(tmp_path):
     (tmp_path / "x.npz").write_bytes(bytes(content))
     with pytest.raises(InputError, match="damaged"):
         read(tmp_path / "x.npz")
+
+
+XML = (
+    "<Trace><TraceVariable VarName='velocity'><Values>1,2</Values><Timestamps>1,2</Timestamps></TraceVariable></Trace>"
+)
+DOCTYPES = [
+    "<!DOCTYPE Trace>",
+    '<!DOCTYPE Trace [<!ENTITY a "x">]>',
+    '<!DOCTYPE Trace [<!ENTITY a SYSTEM "rig.toml">]>',
+    '<!DOCTYPE Trace SYSTEM "rig.dtd">',
+]
+
+
+@pytest.mark.parametrize("doctype", DOCTYPES)
+def test_a_codesys_trace_with_a_doctype_is_refused(tmp_path, doctype):
+    (tmp_path / "x.trace").write_text(XML)
+    assert read_recording(tmp_path / "x.trace").channels[0].name == "velocity"
+    for content in (doctype + XML, f"<?xml version='1.0'?>\n<!-- <Trace> -->{doctype}{XML}".replace("1,2", "&a;,2")):
+        (tmp_path / "x.trace").write_text(content)
+        with pytest.raises(InputError, match=r"found a DOCTYPE|not a trace in any format"):
+            read_recording(tmp_path / "x.trace")
+
+
+@pytest.mark.parametrize("entity", ['"hidden"', 'SYSTEM "secret.txt"'])
+def test_an_mjcf_expands_no_entity(tmp_path, entity):
+    (tmp_path / "secret.txt").write_text("hidden")
+    xml = f'<!DOCTYPE mujoco [<!ENTITY a {entity}>]><mujoco model="&a;"><worldbody/></mujoco>'
+    (tmp_path / "x.xml").write_text(xml)
+    assert read_mjcf(tmp_path / "x.xml")[0].modelname == "&a;"

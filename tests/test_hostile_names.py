@@ -3,7 +3,9 @@
 import json
 import os
 import re
+import tomllib
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -11,6 +13,7 @@ from bench.assets import asset
 from bench.course.recordings import LabRecordings
 from bench.course.report import Cover, lab_document
 from bench.course.result import TaskResult
+from bench.errors import InputError
 from bench.files import write_text
 from bench.fit.identify import identify
 from bench.names import cell, readable, short
@@ -41,6 +44,7 @@ NAMES = [
     "a\rb\x01c\x1b]0;title\x07\x1b[31m",
     "\u202etxt.exe",
     "half \udcff",
+    "two\nlines\t::error::x",
     "軸 🙂",
     "\"]]>'",
 ]
@@ -128,3 +132,35 @@ def test_a_text_is_cut_between_words():
         assert set(cut.split()) <= {*text.split(), "..."}
         assert (cut[:6], cut[-7:]) == ("word0 ", " word99")
     assert len(short("x" * 300, 80)) == 79
+
+
+BROKEN = "now\n::error::evil ##[error]x\t\x1b]0;y\x07.csv"
+ON_ONE_LINE = r"now\n::error::evil ## [error]x\t\x1b]0;y\x07.csv"
+
+
+def test_a_file_name_of_two_lines_is_one_line_wherever_it_is_printed(tmp_path):
+    (tmp_path / BROKEN).write_text(TABLE)
+    (tmp_path / "rig.toml").write_text(RIG)
+    here = {"cwd": tmp_path, "GITHUB_ACTIONS": "true"}
+    base = ("--rig", "rig.toml", "--baseline", f"{BROKEN}.toml")
+    done = run("check", BROKEN, *base, "--update", "--without-names", **here)
+    assert (done.returncode, done.stdout.splitlines()) == (0, [f"wrote {ON_ONE_LINE}.toml"])
+    for form in ("github", "gitlab", "text"):
+        done = run("check", BROKEN, *base, "--format", form, "--junit", f"{form}.xml", "--json", f"{form}.json", **here)
+        assert done.returncode == 0, done.stderr
+        said = done.stdout + done.stderr
+        assert not any(line.startswith(("::error", "::warning")) for line in said.splitlines())
+        assert "##[" not in said and "\x1b" not in said
+        (suite,) = ElementTree.parse(tmp_path / f"{form}.xml").getroot()
+        assert suite.get("name") == f"{ON_ONE_LINE} against {ON_ONE_LINE}.toml"
+    done = run("identify", BROKEN, "--draft", "drafted.toml", "--out", "found", **here)
+    assert done.returncode == 0
+    assert all(line.startswith("warning: ") for line in done.stderr.splitlines())
+    assert tomllib.loads((tmp_path / "drafted.toml").read_text())["kind"] == "rotary"
+    assert_one_line(run("identify", f"{BROKEN}.none", "--rig", "rig.toml", **here), f"{ON_ONE_LINE}.none: no such file")
+
+
+def test_an_error_is_one_line_in_python_too():
+    with pytest.raises(InputError) as error:
+        read("two\nlines.csv")
+    assert str(error.value) == r"two\nlines.csv: no such file; give the path of a trace"

@@ -66,6 +66,38 @@ def test_the_template_checks_an_axis(shell):
     assert all(Path(name).stat().st_size for name in (*reports, *job["artifacts"]["paths"]))
 
 
+OPTIONS = ("now.csv --help", "--help", "--version", "now.csv --update", "now.csv --format=text")
+
+
+def test_no_word_among_the_recordings_is_an_option(shell):
+    """`--help` in the place of a file ended well, without a result."""
+    write(again(2), Path("now.csv"))
+    before = Path("base.toml").read_bytes()
+    action = loaded(".github", "actions", "check", "action.yml")
+    (step,) = (step for step in action["runs"]["steps"] if step.get("id") == "check")
+    job = loaded(".ci", "gitlab-check.yml")[".bench-check"]
+    inputs = {"RIG": "rig.toml", "BASELINE": "base.toml", "UNDECIDED": "pass", "RATE": "0.01"}
+    Path("outputs").touch()
+    for given in OPTIONS:
+        assert shell(step["run"], RECORDINGS=given, **inputs, GITHUB_OUTPUT="outputs") == 2, given
+        assert shell("\n".join(job["script"]), **{**job["variables"], **inputs, "RECORDINGS": given}) == 2, given
+    assert Path("outputs").read_text() == ""
+    assert Path("base.toml").read_bytes() == before
+
+
+def test_the_action_without_a_result_fails(shell, tmp_path):
+    """Whatever ended the run with status 0: an old result, or none, is no success."""
+    action = loaded(".github", "actions", "check", "action.yml")
+    (step,) = (step for step in action["runs"]["steps"] if step.get("id") == "check")
+    job = loaded(".ci", "gitlab-check.yml")[".bench-check"]
+    (tmp_path / "programs" / "bench").write_text("#!/bin/sh\nexit 0\n")
+    Path("bench-check").mkdir()
+    Path("bench-check/check.json").write_text('{"result": "same"}')
+    Path("check.xml").write_text("old")
+    assert shell(step["run"], RECORDINGS="now.csv", RIG="r", BASELINE="b", RATE="0.01", UNDECIDED="pass") == 70
+    assert shell("\n".join(job["script"]), **job["variables"]) == 1
+
+
 def test_the_citation_is_of_this_version():
     assert loaded("docs", "CITATION.cff")["version"] == package.__version__
 

@@ -15,8 +15,8 @@ import errno
 import io
 import os
 import sys
-import traceback
 from pathlib import Path
+from traceback import extract_tb, print_exc, walk_tb
 from types import FunctionType
 from typing import Annotated
 
@@ -32,7 +32,7 @@ from bench.cli.model import compensate, export, replay, view
 from bench.cli.recording import diagnose, fleet, friction, identify, inspect, limits, robot
 from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate, validate
 from bench.errors import BenchError, InputError
-from bench.names import plain, short
+from bench.names import short
 from bench.offered import COMMANDS_GROUP, at_fault, offered
 
 app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
@@ -99,9 +99,16 @@ def main() -> None:
         sys.exit(_failed(error.format_message(), 2))
     except (KeyboardInterrupt, typer.Abort):
         sys.exit(_failed("interrupted", 130))
-    except BrokenPipeError:  # whoever reads what is printed has seen enough
-        _leave_output()
-        sys.exit(141)
+    except (BrokenPipeError, SystemExit) as end:
+        if isinstance(end, BrokenPipeError) or isinstance(
+            end.__context__, BrokenPipeError
+        ):  # rich makes it a SystemExit
+            _leave_output()  # the reader of what is printed has seen enough
+            sys.exit(141)
+        *_, (last, _) = walk_tb(end.__traceback__)
+        if str(last.f_globals.get("__name__")).startswith("typer."):  # shell completion
+            raise
+        sys.exit(_failed(_fault(end), 70))  # code of a package ended the run, and there may be no result
     except Exception as fault:
         if isinstance(fault, OSError) and fault.filename is None and fault.errno in UNWRITABLE:
             _leave_output()
@@ -127,11 +134,11 @@ def _add_offered() -> None:
             app.command(name)(guarded(command))
 
 
-def _fault(fault: Exception) -> str:
+def _fault(fault: BaseException) -> str:
     """What to say of an exception that nobody foresaw: it is never mistaken for bad input."""
     if isinstance(fault, MemoryError):
         return "out of memory; give less at a time, or a machine with more"
-    last = traceback.extract_tb(fault.__traceback__)[-1]
+    last = extract_tb(fault.__traceback__)[-1]
     place = f"{Path(last.filename).name}:{last.lineno}"
     what = f"{type(fault).__name__}: {short(str(fault))}" if str(fault) else type(fault).__name__
     whose = at_fault(fault.__traceback__) or "the bench itself"
@@ -142,10 +149,8 @@ def _fault(fault: Exception) -> str:
 
 def _failed(message: str, status: int) -> int:
     if "--debug" in sys.argv and sys.exc_info()[0] is not None:
-        traceback.print_exc()
-    line = plain(" ".join(message.replace("Value error, ", "").split()))
-    if "GITHUB_ACTIONS" in os.environ:
-        line = line.replace("##[", "## [")  # by which GitHub knows an old command wherever it stands in a line
+        print_exc()
+    line = " ".join(message.replace("Value error, ", "").split())
     if line:
         say(f"bench: {short(line, LONGEST)}", err=True)
     return status

@@ -70,7 +70,7 @@ def check(
             _accept(baseline, _of_model(simulated))
             return
         checked = _model_checked(baseline, simulated, rig, axis_name)
-        title = f"{simulated} against {baseline}"  # all of which are named model.toml
+        title = f"{readable(simulated)} against {readable(baseline)}"  # all of which are named model.toml
     _write(checked, title, baseline, (junit, json, report), form)
     raise typer.Exit(STATUS[checked.result])
 

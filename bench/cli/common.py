@@ -22,7 +22,7 @@ import bench
 from bench.bounds import bounded
 from bench.errors import InputError
 from bench.files import held, keeping, require_writable, write_text
-from bench.names import plain
+from bench.names import plain, readable
 from bench.plant.profile_names import NAMES
 
 if TYPE_CHECKING:
@@ -229,13 +229,13 @@ def list_files(files: Iterable[Path | None]) -> None:
     """A line for each file written."""
     for path in files:
         if path is not None:
-            say(f"wrote {path}")
+            say(f"wrote {readable(path)}")
 
 
 def warn(warnings: Iterable[str]) -> None:
     """A line on standard error for each warning."""
     for warning in warnings:
-        say(f"warning: {warning}", err=True)
+        say(f"warning: {readable(warning)}", err=True)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import Pipe
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Generic, Literal, TypeVar
 
@@ -27,6 +26,11 @@ import psutil
 
 from bench.allocation import KEPT
 from bench.bounds import shown
+
+if sys.platform == "win32":
+    from multiprocessing.connection import PipeConnection as Connection
+else:
+    from multiprocessing.connection import Connection
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -130,11 +134,17 @@ def _process() -> tuple[subprocess.Popen[bytes], Connection]:
     """A process that serves, and the pipe to it."""
     calls, other = Pipe()
     with other:
-        command = [sys.executable, "-c", _SERVE, str(other.fileno())]
+        handle, passed = other.fileno(), (other.fileno(),)
+        if sys.platform == "win32":
+            os.set_handle_inheritable(handle, True)
+            passed = ()
+        command = [sys.executable, "-c", _SERVE, str(handle)]
         own = {**_ONE_THREAD, **KEPT, **os.environ, _WATCHED: "1"}
         own["PYTHONPATH"] = os.pathsep.join(filter(None, sys.path))
-        nowhere = subprocess.DEVNULL
-        return subprocess.Popen(command, pass_fds=[other.fileno()], env=own, stdin=nowhere, stdout=nowhere), calls
+        none = subprocess.DEVNULL
+        return subprocess.Popen(
+            command, pass_fds=passed, close_fds=bool(passed), env=own, stdin=none, stdout=none
+        ), calls
 
 
 def watched() -> bool:

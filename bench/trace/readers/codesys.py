@@ -53,6 +53,12 @@ def _root_name(source: Source) -> str:
     return match[1].rsplit(":", 1)[-1] if match else ""
 
 
+class _WithoutDoctype(ElementTree.TreeBuilder):
+    def doctype(self, *_: object) -> None:
+        """Refuse it: a DOCTYPE may define entities, which expand. ElementTree calls this."""
+        raise ValueError("found a DOCTYPE")
+
+
 def _parse(source: Source) -> ElementTree.Element:
     """Root element, without namespaces in any name; InputError where it is not well-formed, as a truncated file."""
     try:
@@ -60,7 +66,7 @@ def _parse(source: Source) -> ElementTree.Element:
     except UnicodeDecodeError:
         text = source.content
     try:
-        root = ElementTree.fromstring(text)
+        root = ElementTree.fromstring(text, ElementTree.XMLParser(target=_WithoutDoctype()))
     except (ElementTree.ParseError, LookupError, ValueError) as error:
         found = f"the XML is truncated or damaged ({error})"
         raise InputError(source.path, found, "allowed: a complete XML") from error

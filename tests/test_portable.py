@@ -1,0 +1,57 @@
+"""The bench runs where the modules and calls of POSIX are missing, as on Windows."""
+
+import subprocess
+import sys
+
+from tests.hostile import RIG, ROOT, TABLE
+
+#: Modules and calls of POSIX are missing for the bench and for filelock; other libraries ask for the platform.
+WITHOUT_POSIX = """
+import builtins, os, signal
+
+HIDDEN = {"fcntl", "resource", "pwd", "grp", "termios", "pty", "tty", "syslog", "readline"}
+CALLS = {
+    os: ("fork", "getuid", "geteuid", "getgid", "fstatvfs", "statvfs", "confstr", "mkfifo", "killpg", "setsid", "nice"),
+    signal: ("SIGHUP", "SIGALRM", "SIGPROF", "setitimer", "alarm"),
+}
+found = builtins.__import__
+
+def hiding(name, globals=None, locals=None, fromlist=(), level=0):
+    importer = (globals or {}).get("__name__", "").partition(".")[0]
+    if importer in ("bench", "filelock") and name in HIDDEN:
+        raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+    return found(name, globals, locals, fromlist, level)
+
+builtins.__import__ = hiding
+for module, names in CALLS.items():
+    for name in names:
+        delattr(module, name)
+from bench.__main__ import main
+main()
+"""
+
+
+def without_posix(*arguments, cwd):
+    command = [sys.executable, "-c", WITHOUT_POSIX, *map(str, arguments)]
+    env = {"PATH": "", "PYTHONPATH": str(ROOT), "HOME": str(cwd)}
+    return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=300, check=False)
+
+
+def test_an_identification_and_the_demo(tmp_path):
+    (tmp_path / "rig.toml").write_text(RIG)
+    (tmp_path / "run.csv").write_text(TABLE)
+    done = without_posix("identify", "run.csv", "--rig", "rig.toml", "--out", "found", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    done = without_posix("demo", "--out", "shown", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    made = {path.name for folder in ("found", "shown") for path in (tmp_path / folder).iterdir()}
+    assert {"identify.json", "diagnosis.json", "model.toml", "trace.csv.gz"} <= made
+    assert not any(name.startswith(".bench") for name in made)
+
+
+def test_a_worker_process(tmp_path):
+    """MDF4 is read in a process of its own; here a damaged one."""
+    (tmp_path / "x.mf4").write_bytes(b"MDF     4.10    " + bytes(200))
+    done = without_posix("inspect", "x.mf4", cwd=tmp_path)
+    assert done.returncode == 2, done.stderr
+    assert "damaged" in done.stderr
