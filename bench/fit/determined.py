@@ -8,7 +8,7 @@ from dataclasses import replace
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, OFFSET, VISCOUS, AxisKind
 from bench.errors import UndeterminedError
 from bench.fit.estimate import Estimate, RefusedEstimateError
-from bench.fit.solution import INDEPENDENT_SHARE, NormalEquations
+from bench.fit.solution import INDEPENDENT_SHARE, NOISE_ALONE, NormalEquations
 from bench.names import words
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
@@ -39,7 +39,7 @@ PUSHING = (
 )
 LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
 SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
-EXPLAINED = "a motion in which inertia and friction take most of the effort, and ask bench diagnose what else acts"
+EXPLAINED = "nothing yet; run bench diagnose on this recording, which searches for what else acts"
 
 
 def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
@@ -121,7 +121,7 @@ def refused_masses(
             advice = {kind.inertia: TURNED, ARMATURE: LINKS}.get(name, SMALLER)
             refused[name] = UndeterminedError(words(name), "; ".join([reason, *suspicions]), advice)
         elif name == kind.inertia and low <= 0.0 and not behind_rotor:
-            reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {found.unit}, holds zero", *suspicions])
+            reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {found.unit}, contains zero", *suspicions])
             refused[name] = UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
     if LOAD in refused and kind.inertia not in refused:
         refused[kind.inertia] = UndeterminedError(kind.in_words(INERTIA), "it is less than the rotor's alone", SMALLER)
@@ -141,6 +141,19 @@ def negative_friction(
     return refused
 
 
+def _share(estimate: Estimate, kind: AxisKind) -> str:
+    return f"inertia and friction explain {estimate.explained:.0%} of the {kind.effort}'s variance"
+
+
+def remainder(estimate: Estimate, kind: AxisKind, hint: str) -> tuple[str, ...]:
+    """How much is explained, and how large the residual is, where that is more than noise; `hint`: what explains it."""
+    residual = estimate.residual
+    if not residual.rms > NOISE_ALONE * residual.noise_floor:
+        return ()
+    times = f"the residual is {residual.rms / residual.noise_floor:.3g} times the sensor noise"
+    return _share(estimate, kind), f"{times}, {hint}" if hint else times
+
+
 def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: Sequence[str]) -> Estimate:
     """The estimate, if its equations, of every column and a constant, determine it and it means something.
 
@@ -150,14 +163,12 @@ def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: 
     Raises:
         RefusedEstimateError: else, with what is determined, and with what else is suspicious.
     """
-    kind, refused = rig.axis_kind, _refusals(equations, rig.axis_kind)
+    kind, reasons = rig.axis_kind, [*_refusals(equations, rig.axis_kind).values()]
     negative = negative_friction(estimate.parameters, kind, suspicions)
-    reasons = [*refused.values(), *refused_masses(estimate.parameters, rig, suspicions).values()]
-    if estimate.explained < LEAST_EXPLAINED:
-        share = f"the model explains {max(estimate.explained, 0.0):.0%} of the {kind.effort}'s variance"
-        what = f"{kind.in_words(INERTIA)} and friction"
-        reasons.append(UndeterminedError(what, "; ".join([share, *suspicions]), EXPLAINED))
-    reasons += negative.values()
+    if estimate.explained < LEAST_EXPLAINED:  # then more acceleration does not help
+        why = "; ".join(dict.fromkeys([_share(estimate, kind), *suspicions]))
+        reasons.append(UndeterminedError(f"{kind.in_words(INERTIA)} and friction", why, EXPLAINED))
+    reasons += [*refused_masses(estimate.parameters, rig, suspicions).values(), *negative.values()]
     if not reasons:
         return estimate
     unknown = {kind.parameter(term) for term in left_open(equations, kind)} | negative.keys()

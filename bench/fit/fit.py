@@ -42,6 +42,7 @@ from bench.fit.hypothesis import (
 )
 from bench.fit.rows import Rows
 from bench.fit.solution import Floor, bounded, solved
+from bench.names import words
 from bench.trace.filter import Column
 
 #: Rounds in which levels of dry friction that multiply, and torque that is copied, are brought in line.
@@ -50,6 +51,8 @@ ROUNDS = 4
 OPEN_SHARE = 0.3
 #: Standard errors from which a strength is no longer chance: 3 of 1000 by a normal distribution.
 SURE = 3.0
+#: Share of the residual from which on an effect is suggested.
+SUGGESTED = 0.25
 #: How far a search of several shapes may wander, in units of how far a grid's shape reaches: along a valley without an
 #: end, as of a coupling that damps everything, it went on until numbers overflowed.
 FURTHEST = 10.0
@@ -386,12 +389,17 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
     return None
 
 
-def by_hint(rows: Rows, hypothesis: Hypothesis) -> dict[str, float]:
-    """By how much the effect that a recording hints at would move J, K_w and K_0; empty without one."""
+def by_hint(rows: Rows, hypothesis: Hypothesis) -> tuple[str, dict[str, float]]:
+    """The effect that a recording hints at: what share of the residual it explains, as text where that is much, and by
+    how much it would move J, K_w and K_0; empty without one.
+    """
     fitted = fit(rows, hypothesis)
     beside = hint(fitted, catalogue().values())
-    terms = INERTIA, VISCOUS, COULOMB
-    return {} if beside is None else {term: beside.value(term) - fitted.value(term) for term in terms}
+    if beside is None:
+        return "", {}
+    moves = {term: beside.value(term) - fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB)}
+    share = max(1.0 - beside.squares / max(fitted.squares, 1e-300), 0.0)
+    return f"{words(beside.terms[-1].effect.name)} would explain {share:.0%} of it" * (share > SUGGESTED), moves
 
 
 def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:

@@ -40,14 +40,13 @@ from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
-from bench.fit.determined import left_open, require_inertia, sound
+from bench.fit.determined import left_open, remainder, require_inertia, sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
 from bench.fit.fit import by_hint
 from bench.fit.hum import mains, passes
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
 from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
-    NOISE_ALONE,
     SURE,
     NormalEquations,
     Solution,
@@ -74,7 +73,7 @@ NARROWER = 0.6
 ROUNDING = 1e-4
 #: Terms of the axis, in whose order all numbers here stand.
 TERMS = (INERTIA, VISCOUS, COULOMB)
-TELLS = "bench diagnose may tell why"
+TELLS = "bench diagnose searches for the cause"
 #: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
 #: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
 A_DELAY = 0.25
@@ -128,7 +127,8 @@ class Gathered:
         samples_read: of all parts.
         measured: sum of the squares of the measured effort over all rows - its unit squared -, and its sum.
         doubt: possible bias of J, K_w and K_0, as they move with the filter's cut-off.
-        hinted: by how much the effect that the recording hints at would move them; empty without one.
+        hint: what the effect that the recording hints at would explain of the residual; empty without one.
+        hinted: by how much that effect would move J, K_w and K_0.
         tolerance: half widths of coefficients from the rig's tolerances.
         warnings: about the cut-off.
         checks: of all parts.
@@ -139,6 +139,7 @@ class Gathered:
     samples_read: int
     measured: tuple[float, float]
     doubt: Mapping[str, float]
+    hint: str
     hinted: Mapping[str, float]
     tolerance: Mapping[Name, float]
     warnings: tuple[str, ...]
@@ -167,7 +168,7 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
     others = list(_in_parallel(summed, parts))
     checks = joined([gated.checks, *(checked for _, _, checked in others)])
     require(checks, first)
-    whole = found
+    whole, (told, hinted) = found, by_hint(found.rows, found.hypothesis)
     if others:
         equations = join([found.whole, *(each for each, _, _ in others)])
         offset = rig.offset and equations.one_way is None
@@ -178,7 +179,8 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
         samples_read=len(first) + sum(read for _, read, _ in others),
         measured=_measured(whole.whole, None if others else found.rows),
         doubt=dict(zip(TERMS, chosen.doubt.tolist(), strict=True)),
-        hinted=by_hint(found.rows, found.hypothesis),
+        hint=told,
+        hinted=hinted,
         tolerance=_by_tolerance(first, rig, found),
         warnings=chosen.warnings,
         checks=checks,
@@ -358,8 +360,9 @@ def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
         parameter = _parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
         parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
     estimate = _estimate_of([gathered], [found], parameters, found.power, rig)
-    remaining = tuple(_remaining(estimate))
-    estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *remaining))
+    remaining = remainder(estimate, kind, gathered.hint)
+    told = [f"{'; '.join(remaining)}; {TELLS}"] if remaining else []
+    estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *told))
     return sound(estimate, gathered.solution.whole, rig, (*gathered.warnings, *remaining))
 
 
@@ -394,19 +397,9 @@ def _estimate_of(
         samples_used=int(counts @ [smooth.stride for smooth in filters]),
         cutoff=min(smooth.cutoff for smooth in filters),
         source=" and ".join(sorted({one.solution.rows.conditioning.source for one in gathered})),
-        explained=1.0 - left / max(squares - total**2 / count, 1e-300),
+        explained=max(1.0 - left / max(squares - total**2 / count, 1e-300), 0.0),
         checks=joined([one.checks for one in gathered]),
     )
-
-
-def _remaining(estimate: Estimate) -> Iterator[str]:
-    """What share is explained, where more than noise is left."""
-    residual = estimate.residual
-    if residual.rms > NOISE_ALONE * residual.noise_floor:
-        yield (
-            f"the model explains {estimate.explained:.2%} of the effort's variance and leaves "
-            f"{residual.rms / residual.noise_floor:.3g} times what noise alone would: bench diagnose may tell why"
-        )
 
 
 def _shifted(found: Solution) -> Iterator[str]:

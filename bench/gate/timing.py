@@ -23,9 +23,9 @@ PLACED = 0.5
 LOWEST, HIGHEST = 2.0, 200e3
 #: Below this rate - Hz - an axis that turns more than this between samples - rad - moves faster than it is recorded.
 SLOW, TURNED = 20.0, math.pi
-#: Speed and effort that change by more than this share of their spread from one sample to the next, and whose changes
-#: are no more alike than this from one to the next, however many samples are averaged, were not followed. Noise may do
-#: that to one of them, undersampling does it to both.
+#: A signal that changes by more than this share of its spread from one sample to the next, and whose changes correlate
+#: by no more than this, however many samples are averaged, was not followed. Noise does that to one signal,
+#: undersampling to speed, effort and position alike.
 CHANGES, ALIKE = 0.3, 0.85
 #: Spread of speed, as share of its RMS, below which it is steady and its noise is all that changes.
 STEADY = 0.1
@@ -84,10 +84,16 @@ def rate(seen: Seen) -> Check:
     if hertz < SLOW and trace.axis_kind.turns and turned > TURNED:
         found = f"{found}, at which the axis turns {turned:.3g} rad from one sample to the next"
         return Check(RATE, "fail", found, ALLOWED_RATE, f"{unit}, or record faster", unanswerable=True)
-    changes = _missed(seen, parts, speeds)
-    if changes is not None:
-        found = f"{found}, at which speed changes by {changes:.0%} of its spread from one sample to the next"
-        return Check(RATE, "fail", found, ALLOWED_RATE, f"record faster, or {unit}", unanswerable=True)
+    every = np.concatenate(speeds)
+    changes = 0.0 if float(np.std(every)) <= STEADY * rms(every) else _missed(speeds)
+    if changes:
+        effort = [seen.effort[0][part] for part in parts] if seen.effort is not None else speeds
+        position = [trace["position"][part] for part in parts] if "position" in trace else None
+        if _missed(effort) and (position is None or followed(position)[1] < ALIKE):
+            found = f"{found}, at which speed changes by {changes:.0%} of its spread from one sample to the next"
+            noise = "record the position too, which separates noise from fast motion, or " * (position is None)
+            return Check(RATE, "fail", found, ALLOWED_RATE, f"{noise}record faster, or {unit}", unanswerable=True)
+        found = f"{found}; the speed contains noise: it changes by {changes:.0%} of its spread in one sample"
     heavy = _heavy(seen)
     if heavy is not None:
         found = f"{found}, which makes {trace.axis_kind.in_words(INERTIA)} {heavy:.3g} times the motor's own"
@@ -95,19 +101,10 @@ def rate(seen: Seen) -> Check:
     return Check(RATE, "pass", found, ALLOWED_RATE)
 
 
-def _missed(seen: Seen, parts: list[slice], speeds: list[Array]) -> float | None:
-    """Change of speed from sample to sample over its spread, where motion passed between the samples."""
-    every = np.concatenate(speeds)
-    if float(np.std(every)) <= STEADY * rms(every):
-        return None
-    changes, alike = followed(speeds)
-    if changes <= CHANGES or alike >= ALIKE:
-        return None
-    if seen.effort is not None:
-        rough, like = followed([seen.effort[0][part] for part in parts])
-        if rough <= CHANGES or like >= ALIKE:
-            return None
-    return changes
+def _missed(signals: list[Array]) -> float:
+    """Change from sample to sample, over the spread, of a signal that was not followed; 0 of one that was."""
+    changes, alike = followed(signals)
+    return changes if changes > CHANGES and alike < ALIKE else 0.0
 
 
 def followed(signals: list[Array]) -> tuple[float, float]:

@@ -127,7 +127,7 @@ def test_where_nothing_is_missing_the_recording_is_refused(recorded, monkeypatch
 def refuse(monkeypatch, lacks):
     """No fit of a kind determines the inertia, nor the load's."""
     refusals = {
-        name: UndeterminedError(name.replace("_", " "), "its interval holds zero", "a motion that accelerates")
+        name: UndeterminedError(name.replace("_", " "), "its interval contains zero", "a motion that accelerates")
         for name in ("moment_of_inertia", "load_moment_of_inertia")
     }
     monkeypatch.setattr(adding, "refusals", lambda recordings, fitted: refusals if lacks(fitted) else {})

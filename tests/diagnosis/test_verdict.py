@@ -205,7 +205,7 @@ AGAINST = {
     moves_worse: shown(SPRING, velocity=Gap("rad/s", 0.01, (0.1, 0.2), None)),
     undetermined: shown(named("torsion_spring", stiffness=(0.1, 0.11))),
     negative_friction: shown(SPRING, friction=(-0.08, 0.001)),
-    refused: shown(SPRING, refused={"moment_of_inertia": "its interval holds zero"}),
+    refused: shown(SPRING, refused={"moment_of_inertia": "its interval contains zero"}),
     holdout_apart: shown(SPRING, torque=Gap("N*m", 0.01, (0.1, 0.008), (0.1, 0.04))),
 }
 

@@ -75,8 +75,8 @@ def test_an_effect_that_is_never_named_has_no_least():
 
 
 def test_a_recording_that_leaves_inertia_open_takes_no_effects():
-    left_open = SimpleNamespace(refused={"moment_of_inertia": "its interval holds zero"}, parameters={})
-    with pytest.raises(UndeterminedError, match="moment of inertia cannot be determined: its interval holds zero"):
+    left_open = SimpleNamespace(refused={"moment_of_inertia": "its interval contains zero"}, parameters={})
+    with pytest.raises(UndeterminedError, match="moment of inertia cannot be determined: its interval contains zero"):
         axis_of(left_open, OWN.host.trace, RIG)
 
 
