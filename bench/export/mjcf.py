@@ -96,7 +96,11 @@ class Carried:
 
 
 def robot_with(
-    path: Path, models: Mapping[str, tuple[StoredModel, Armature | None]], out: Path, added: Sequence[AddedBody] = ()
+    path: Path,
+    models: Mapping[str, tuple[StoredModel, Armature | None]],
+    out: Path,
+    added: Sequence[AddedBody] = (),
+    kept: Sequence[str] = (),
 ) -> tuple[str, tuple[str, ...]]:
     """Text of a robot's MJCF with models at its joints, and what went onto each in sentences.
 
@@ -105,6 +109,7 @@ def robot_with(
         models: of joints by their names, each with its armature; None: that of the MJCF stays.
         out: where the text will stand, from where its meshes and textures are found.
         added: what the robot has beside its MJCF.
+        kept: joints that were asked for and have no model.
 
     Raises:
         InputError: the MJCF cannot be read, or cannot have a model at its joint.
@@ -112,8 +117,9 @@ def robot_with(
     spec, notes = read_mjcf(path)
     lines = [*notes, *(_beside(spec, one, path) for one in added)]
     for name, (stored, armature) in models.items():
-        kept = Armature(float(joint_of(spec, name, stored.model).armature), "the MJCF's own")
-        lines += onto(spec, name, stored, armature or kept).lines
+        own = Armature(float(joint_of(spec, name, stored.model).armature), "the MJCF's own")
+        lines += onto(spec, name, stored, armature or own).lines
+    lines += [f"{name}: the MJCF's own armature, damping and frictionloss stay" for name in kept]
     compiled(spec)
     for folder in ("meshdir", "texturedir"):
         where = path.resolve().parent / (getattr(spec, folder) or "")

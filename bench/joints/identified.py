@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -30,6 +30,8 @@ from bench.trace.trace import Trace
 Told = TypeVar("Told")
 #: Of one joint: ten times what the longest log tried took (600 s at 500 Hz).
 LIMITS = Limits(deadline=1800.0, memory=8.0 * 1024**3)
+#: Share of the links' inertia, and of the largest torque, below which armature and friction may be none.
+LITTLE = 0.05
 #: Key of a refusal that concerns no parameter: whether anything is missing.
 EFFECTS = "effects"
 
@@ -106,6 +108,8 @@ class IdentifiedJoint:
     @property
     def model(self) -> StoredModel | None:
         """Of the joint for MuJoCo; without armature where that is not determined; None without friction."""
+        if self.rig is not None and _behind(self.rig):
+            return None
         if self.diagnosis is not None and self.diagnosis.model is not None:
             return self.diagnosis.model
         if self.rig is None:
@@ -146,7 +150,8 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
         return _without_effects(asked.joint, traces, rig, refusal, left_out)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
-    refused = {**found.refused, **_behind(rig), **_any_friction(found, rig.axis_kind)}
+    found = replace(found, warnings=[*found.warnings, *_frictionless(asked.joint, found, rig)])
+    refused = {**found.refused, **_any_friction(found, rig.axis_kind), **_behind(rig)}
     motion = joint_motion(found, traces[0], rig, poses_along(next(iter(used)), rig, robot, asked.stated))
     return IdentifiedJoint(asked.joint, rig, found, refused=refused, left_out=left_out, motion=motion)
 
@@ -163,9 +168,25 @@ def of_each(
 
 
 def _behind(rig: Rig) -> dict[str, str]:
-    """Why there is no armature, where the torque is the joint's."""
-    behind = rig.load is not None and rig.load.behind_rotor
-    return {ARMATURE: "the torque is measured on the joint's side, where the rotor is not in it"} if behind else {}
+    """Why there is neither armature nor friction, where the torque is measured on the joint's side."""
+    if rig.load is None or not rig.load.behind_rotor:
+        return {}
+    names = (ARMATURE, *map(rig.axis_kind.parameter, (VISCOUS, COULOMB)))
+    return dict.fromkeys(names, "the torque is measured on the joint's side, where rotor, motor and gear are not in it")
+
+
+def _frictionless(joint: str, found: Diagnosis, rig: Rig) -> Iterator[str]:
+    """A warning where armature and friction are zero, within little of the links' inertia and the largest torque."""
+    names = (ARMATURE, *map(rig.axis_kind.parameter, (VISCOUS, COULOMB)))
+    own = [found.parameters[name] for name in names if name in found.parameters]
+    if found.model is None or len(own) < len(names) or any(one.ci95[0] > 0.0 for one in own):
+        return
+    links, largest = found.model.mounting.link_inertia, found.model.model.peak_effort
+    if own[0].ci95[1] < LITTLE * links and own[2].ci95[1] < LITTLE * largest:
+        yield (
+            "armature and friction are zero, as of a torque that is measured behind the gear. It does not show motor "
+            f'and gear: if so, put torque = "joint side" under [joints.{joint}] in a rig'
+        )
 
 
 def _any_friction(found: Diagnosis, kind: AxisKind) -> dict[str, str]:
@@ -207,7 +228,7 @@ def _without_effects(
         refusal = error
     known = {} if estimate is None else estimate.parameters
     refused |= {name: error.reason for name, error in refused_masses(known, rig, ()).items()}
-    for name in (*map(kind.parameter, (INERTIA, VISCOUS, COULOMB)), *(() if _behind(rig) else (ARMATURE,))):
-        if name not in known:
+    for name in (*map(kind.parameter, (INERTIA, VISCOUS, COULOMB)), ARMATURE):
+        if name not in known and name not in refused:
             refused[name] = refusal.reason
     return IdentifiedJoint(joint, rig, None, estimate, refused, refusal.record, left_out)

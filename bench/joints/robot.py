@@ -62,7 +62,7 @@ class IdentifiedRobot:
             found = self.joints[name].parameters.get(ARMATURE)
             armature = None if found is None else Armature(max(found.value, 0.0), "all that moved but the links")
             models[name] = model, armature
-        return robot_with(self.mjcf, models, out, self.added)
+        return robot_with(self.mjcf, models, out, self.added, [name for name in self.joints if name not in models])
 
 
 def robot(

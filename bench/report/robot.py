@@ -105,6 +105,8 @@ def _verdict(found: IdentifiedRobot) -> str:
     whole, answered, settled = len(found.joints), len(found.answered), _settled(found)
     if not answered:
         return f"None of {whole} joints could be answered."
+    if not found.models:
+        return f"No model of {whole} joints: neither armature nor friction is determined."
     rest = "what is left of them is noise" if settled == answered else f"{settled} of them down to noise"
     return f"{answered} of {whole} joints are identified, {rest}."
 
