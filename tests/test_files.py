@@ -87,7 +87,8 @@ def test_what_another_file_leads_to_is_an_input_too(folder, monkeypatch):
     form = "quantity,value,unit\nstudent,07,\n"
     (folder / "forms" / "grades.csv").write_text(form)
     content = {"schema": SEALED, "students": {"07": {"expected": {}, "truth": {}, "tolerance": {}, "mistakes": {}}}}
-    (folder / "class.json").write_text(json.dumps({**content, "seal": seal(content)}))
+    (folder / "class.json").write_text(json.dumps({**content, "seal": seal(content, "key")}))
+    (folder / "class.key").write_text("key")
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     with keeping([]):
         robot = Robot.of(Path("robot.xml"), "el")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from typer import BadParameter, Exit, Option
 
-from bench.cli.common import list_files, printed, say
+from bench.cli.common import list_files, printed, say, warn
 
 
 def lab(
@@ -22,6 +22,7 @@ def lab(
         Path | None, Option("--grade", help="Grade the filled forms in this folder; with --truth.")
     ] = None,
     truth: Annotated[Path | None, Option(help="Sealed truth that --students wrote.")] = None,
+    key: Annotated[Path | None, Option(help="Key of its seal; preset: next to it, with the ending .key.")] = None,
     notebooks: Annotated[Path | None, Option(help="Only write a notebook for each task, into this folder.")] = None,
     folders: Annotated[
         Path | None, Option("--questions", help="Three questions for each student of this class' folder.")
@@ -36,7 +37,7 @@ def lab(
             made = record(synthetic, seed, done) if students is None else record_class(synthetic, students, seed, done)
         list_files(made)
     elif submissions is not None:
-        _grade(submissions, truth, out)
+        _grade(submissions, truth, key, out)
     elif folders is not None:
         _ask(folders, out)
     elif notebooks is not None:
@@ -49,17 +50,18 @@ def lab(
         _report(data, out)
 
 
-def _grade(submissions: Path, truth: Path | None, out: Path) -> None:
+def _grade(submissions: Path, truth: Path | None, key: Path | None, out: Path) -> None:
     from bench.course.grade import grade_class, grades_table, write_grades
 
     if truth is None:
         raise BadParameter("--grade needs --truth FILE, which --record --students wrote")
-    graded = grade_class(submissions, truth)
+    graded = grade_class(submissions, truth, key)
     files = write_grades(graded, out)
     printed(grades_table(graded))
     for error in graded.unread:
         say(f"not graded: {error}", err=True)
     list_files(files[:2])
+    warn(graded.warnings)
     if graded.unread:
         raise Exit(1)
 

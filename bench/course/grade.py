@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import hmac
 import io
 import json
 import math
@@ -26,8 +27,11 @@ from bench.structured import parse_json
 from bench.units import convert
 
 TITLE = "Industrial Drives, Part 2: grades"
-#: Schema of the truth of a class.
-SEALED = "bench.lab.class/2"
+#: Schema of the truth of a class, and the earlier one, whose seal is a checksum without a key.
+SEALED, CHECKSUMMED = "bench.lab.class/3", "bench.lab.class/2"
+UNKEYED = (
+    "the seal of this class is a checksum without a key, which anybody can renew: who else can write to that file?"
+)
 #: An answer is a mistake's figure within the tolerance of a right one; E, which has none, within this share of it.
 OF_ERROR = 0.04
 
@@ -72,19 +76,20 @@ class GradedStudent:
 
 @dataclass(frozen=True)
 class GradedClass:
-    """Grades of a class by student, forms that could not be read, and students that none came from."""
+    """Grades of a class by student, forms that could not be read, students that none came from, and warnings."""
 
     students: tuple[GradedStudent, ...]
     unread: tuple[InputError, ...]
     missing: tuple[str, ...]
+    warnings: tuple[str, ...]
 
 
-def grade_class(submissions: Path, truth: Path) -> GradedClass:
+def grade_class(submissions: Path, truth: Path, key: Path | None = None) -> GradedClass:
     """Grade every submission of a folder by a sealed truth; a bad one, or two of one student, leave the others alone.
 
-    Raises InputError where there are no submissions, or no truth.
+    Raises InputError where there are no submissions, or no truth, or not the key of its seal.
     """
-    known = read_truth_of_class(truth)
+    known, warnings = read_truth_of_class(truth, key)
     graded: dict[str, GradedStudent] = {}
     forms: dict[str, list[str]] = {}
     unread: list[InputError] = []
@@ -102,29 +107,39 @@ def grade_class(submissions: Path, truth: Path) -> GradedClass:
             found = f"found {len(paths)} of student {student} ({', '.join(paths)})"
             unread.append(InputError(submissions, found, "leave one of them"))
     students = tuple(one for _, one in sorted(graded.items()))
-    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))))
+    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))), warnings)
 
 
-def seal(content: Mapping[str, Any]) -> str:
-    """Checksum of a truth's content, to detect changes."""
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+def seal(content: Mapping[str, Any], key: str) -> str:
+    """Code by which a truth's content can be told from a changed one, by whoever has the key (HMAC-SHA-256)."""
+    return hmac.digest(key.encode(), json.dumps(content, sort_keys=True).encode(), "sha256").hex()
 
 
-def read_truth_of_class(path: Path) -> Mapping[str, Any]:
+def key_path(truth: Path) -> Path:
+    """Where the key of a truth's seal is, unless it is kept elsewhere: `class.truth.json` has `class.truth.key`."""
+    return truth.with_suffix(".key")
+
+
+def read_truth_of_class(path: Path, key: Path | None = None) -> tuple[Mapping[str, Any], tuple[str, ...]]:
     """Truth, expected answers and figures of mistakes by student, as `bench lab --record --students` wrote them.
 
-    Raises InputError where there is no such file, or one that was changed.
+    And warnings. Raises InputError where there is no such file, one that was changed, or another key.
     """
     advice = "give the file that bench lab --record FOLDER --students N wrote beside FOLDER"
     try:
         content = parse_json(read_text(path, "a truth of a class"), path)
     except InputError as error:
         raise InputError(path, error.found, advice) from error
-    if not isinstance(content, dict) or content.get("schema") != SEALED:
+    if not isinstance(content, dict) or content.get("schema") not in (SEALED, CHECKSUMMED):
         raise InputError(path, "is no truth of a class", advice)
-    if content.pop("seal", None) != seal(content):
-        raise InputError(path, "was changed: its seal is broken", advice)
-    return content["students"]
+    given, key = str(content.pop("seal", None)), key or key_path(path)
+    if content["schema"] == SEALED or key.exists():  # a class with a key never had a checksum
+        right = seal(content, read_text(key, "the key that was written with the class, or name it with --key").strip())
+    else:
+        right = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    if not hmac.compare_digest(given.encode(), right.encode()):
+        raise InputError(path, f"its seal does not fit it and the key {key}: one of them was changed", advice)
+    return content["students"], () if content["schema"] == SEALED else (UNKEYED,)
 
 
 def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:

@@ -21,7 +21,7 @@ from bench.arrays import Array
 from bench.course.answers import Worked, every_mistake, tolerances
 from bench.course.axis import KG_CM2, RPM, embedded, lab_rig, motor_value, without_friction
 from bench.course.catapult import record_flights
-from bench.course.grade import SEALED, seal
+from bench.course.grade import SEALED, key_path, seal
 from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.recordings import LabRecordings, read_truth
 from bench.course.submission import FORM, form
@@ -116,7 +116,7 @@ def record_class(folder: Path, students: int, seed: int, progress: Progress = la
         progress: called with the share done.
 
     Returns:
-        The students' folders, and the file of the truth.
+        The students' folders, and the files of the key and of the truth that it seals, readable by their owner alone.
     """
     if students < 1:
         raise InputError("--students", f"found {students}", "allowed: 1 or more")
@@ -131,9 +131,13 @@ def record_class(folder: Path, students: int, seed: int, progress: Progress = la
     own = folder if folder.name not in ("", "..") else folder.resolve()  # "." has no name of its own
     truth = own.with_name(f"{own.name}.truth.json")
     content = {"schema": SEALED, "seed": seed, "salt": f"{salt:032x}", "students": known}
-    write_text(truth, json.dumps({**content, "seal": seal(content)}, indent=1) + "\n")
-    truth.chmod(0o600)
-    return [*folders, truth]
+    key = secrets.token_hex()
+    sealed = json.dumps({**content, "seal": seal(content, key)}, indent=1)
+    for path, text in ((key_path(truth), key), (truth, sealed)):
+        path.touch(0o600)
+        path.chmod(0o600)
+        write_text(path, text + "\n")
+    return [*folders, key_path(truth), truth]
 
 
 def _record_student(folder: Path, name: str, random: np.random.Generator) -> dict[str, Any]:

@@ -1,8 +1,10 @@
 """A class: every student's own axis, forms filled in right and wrong, and the command that grades them."""
 
 import csv
+import hashlib
 import json
 import re
+import stat
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +16,10 @@ from scipy.interpolate import make_interp_spline
 from scipy.signal import butter, filtfilt, savgol_filter
 
 from bench.course import record
-from bench.course.grade import SEALED, seal
+from bench.course.grade import CHECKSUMMED, SEALED, read_truth_of_class, seal
 from bench.course.record import draw_rig
 from bench.course.submission import QUESTIONS
+from bench.errors import InputError
 from bench.trace.read import read
 from tests.command import bench
 
@@ -416,7 +419,8 @@ def known():
 
 def sealed(path, known):
     content = {"schema": SEALED, "seed": 0, "students": known}
-    path.write_text(json.dumps({**content, "seal": seal(content)}))
+    path.write_text(json.dumps({**content, "seal": seal(content, "key")}))
+    path.with_suffix(".key").write_text("key\n")
     return path
 
 
@@ -487,3 +491,47 @@ def test_a_changed_truth_and_missing_ones_are_refused(tmp_path, known):
     status, _, err = bench("lab", "--grade", tmp_path / "in", "--truth", truth)
     assert status == 2
     assert "seal" in err
+
+
+def test_only_who_has_the_key_can_seal_a_truth(tmp_path, known):
+    truth, key = sealed(tmp_path / "truth.json", known), tmp_path / "truth.key"
+    assert read_truth_of_class(truth) == (known, ())
+    key.rename(tmp_path / "elsewhere")
+    with pytest.raises(InputError, match=r"truth\.key: no such file; give the path of the key .* --key"):
+        read_truth_of_class(truth)
+    assert read_truth_of_class(truth, tmp_path / "elsewhere") == (known, ())
+    content = json.loads(truth.read_text())
+    del content["seal"]
+    content["students"]["07"]["expected"]["J"] = 2.0
+    checksum = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    for forged in (checksum, seal(content, ""), seal(content, "another key"), None, 1):
+        truth.write_text(json.dumps({**content, "seal": forged}))
+        with pytest.raises(InputError, match="its seal does not fit"):
+            read_truth_of_class(truth, tmp_path / "elsewhere")
+
+
+def test_a_class_of_before_is_graded_with_a_warning_unless_it_has_a_key(tmp_path, known):
+    content = {"schema": CHECKSUMMED, "seed": 0, "students": known}
+    checksum = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "good.csv").write_text("quantity,value,unit\nstudent,7,\nJ,1,\n")
+    truth = tmp_path / "truth.json"
+    truth.write_text(json.dumps({**content, "seal": checksum}))
+    lab = ("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
+    status, _, err = bench(*lab)
+    assert status == 0
+    assert "warning: the seal of this class is a checksum without a key" in err
+    (tmp_path / "truth.key").write_text("key\n")
+    status, _, err = bench(*lab)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "its seal does not fit" in err
+
+
+def test_truth_and_key_of_a_class_are_for_their_owner_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr("bench.course.record._record_student", lambda folder, name, random: folder.mkdir(parents=True))
+    *_, key, truth = record.record_class(tmp_path / "class", 1, 0)
+    assert (truth.name, key.name) == ("class.truth.json", "class.truth.key")
+    assert [stat.S_IMODE(path.stat().st_mode) for path in (truth, key)] == [0o600, 0o600]
+    assert len(bytes.fromhex(key.read_text().strip())) == 32
+    assert key.read_text().strip() not in truth.read_text()
+    read_truth_of_class(truth)
