@@ -3,7 +3,8 @@
     integral of v over a span = ratio*(displacement) - lag*(change of v) + offset*(span)
 
 by least squares over spans of SPAN samples, so that a filter of the speed is a lag and a sensor's zero an offset, not
-another ratio. What remains, as share of the displacements, says whether both are the same motion at all.
+another ratio. At one steady speed neither can be separated from the ratio, and only that is fitted. What remains, as
+share of the displacements, says whether both are the same motion at all.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ WARNED, REFUSED = 0.02, 0.1
 REMAINDER = 0.4
 #: Steps of both signals, or noise of the speed, that the displacements of a span need to make the ratio.
 STEPS = 5.0
+#: Spread of the displacements, as share of their RMS, up to which the speed is steady.
+STEADY = 0.1
 
 ALLOWED = f"the same motion in both: 1 within {WARNED:.0%}, a lag aside"
 
@@ -57,9 +60,12 @@ def compared(seen: Seen) -> tuple[float, float, float] | None:
         return None
     moved, claimed, change = (np.concatenate(column) for column in zip(*spans, strict=True))
     step = max(resolution_of(trace["velocity"]), white_noise(trace["velocity"])) * trace.sample_period * math.sqrt(SPAN)
-    if max(rms(moved), rms(claimed)) <= STEPS * max(resolution_of(trace["position"]), step):
+    least = STEPS * max(resolution_of(trace["position"]), step)
+    if max(rms(moved), rms(claimed)) <= least:
         return None
+    steady = np.std(moved) <= max(STEADY * rms(moved), least)
     columns = np.column_stack([moved, change, np.full(moved.size, SPAN * trace.sample_period)])
+    columns *= [1.0, not steady, not steady]
     scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     theta = np.linalg.lstsq(columns / scale, claimed, rcond=1e-9)[0] / scale
     left = rms(claimed - columns @ theta)
