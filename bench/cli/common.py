@@ -289,9 +289,7 @@ def subject(
     warned: set[str] = set()
 
     def reported(trace: bench.Trace) -> bench.Trace:
-        from bench.trace.trace import ASSUMED_UNITS  # numpy, which `--help` need not wait for
-
-        of_gate = trace.metadata.get(ASSUMED_UNITS)
+        of_gate = trace.metadata.get("assumed_units")
         warn(note for note in trace.notes if note not in warned and note != of_gate)
         warned.update(trace.notes)
         return trace

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.errors import InputError
 from bench.names import short
+from bench.trace.signals import unit_in_name
 
 _ELEMENT = re.compile(r"\S\[\d+\]")
 
@@ -94,6 +95,12 @@ def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:
             channel = replace(channel, time=time)
         shared.append(channel)
     return tuple(shared)
+
+
+def with_units(channels: Sequence[Channel]) -> tuple[Channel, ...]:
+    """The same channels, each without a unit with the one in its name, as `velocity_rad_s` has it."""
+    bare = {channel for channel in channels if channel.unit is None and channel.open_unit is None}
+    return tuple(replace(one, unit=unit_in_name(one.name)[1]) if one in bare else one for one in channels)
 
 
 def split_label(label: str) -> tuple[str, str | None]:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from bench.errors import InputError
 from bench.names import nearest
-from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.channel import Channel, Recording, split_label, with_units
 from bench.trace.readers.arrow import channel_of
 from bench.trace.signals import SI_UNITS, signal_of
 from bench.units import parse
@@ -40,7 +40,7 @@ def recording_of(
     origin: str,
 ) -> Recording:
     """Columns of `Trace.from_arrays`, whose arguments these are."""
-    channels = list(_channels(signals, origin))
+    channels = list(with_units(tuple(_channels(signals, origin))))
     names = [channel.name for channel in channels]
     for name in units:
         if name not in names:

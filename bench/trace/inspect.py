@@ -21,9 +21,19 @@ from bench.trace.assumed import time_unit
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis
 from bench.trace.in_si import in_si
-from bench.trace.signals import REFERENCE, SI_UNITS, WORDS, is_index, scale_in, signal_of, unit_of, wanted_units
+from bench.trace.signals import (
+    REFERENCE,
+    SI_UNITS,
+    WORDS,
+    is_index,
+    scale_in,
+    signal_of,
+    unit_in_name,
+    unit_of,
+    wanted_units,
+)
 from bench.trace.trace import on_time_base, unused
-from bench.units.conversion import is_unit, scale_of
+from bench.units.conversion import scale_of
 from bench.units.grammar import UnitError
 
 SCHEMA = "bench.inspect/1"
@@ -33,11 +43,8 @@ _FOREIGN = re.compile(
     r"d_axis\w*|id|in|battery|supply|mos|frame|seq|state|status|flags?|mode|error|fault|checksum", re.I
 )
 _PARTS = re.compile(r"[\s._/:()\[\],;|-]+|(?<=[a-z])(?=[A-Z])")
-_ROUND = re.compile(r"(.*?)\s*[({]([^(){}]*)[)}]\s*|(.*?)[,/]\s+(\S+)")
 #: Correlation from which a column is another's derivative, and samples that are looked at.
 DERIVATIVE, ENOUGH = 0.9, 200_000
-#: Characters of a name in which a unit is sought.
-LONGEST_NAME = 200
 
 _DYNAMIXEL = "as Dynamixel's X series has it (control table in Robotis' e-manual); check your model's"
 _ODRIVE = "as ODrive has it (docs.odriverobotics.com, API reference)"
@@ -365,12 +372,7 @@ def _guesses(channel: Channel, derived: tuple[str, str] | None, rises: bool) -> 
 
 def written_unit_of(channel: Channel) -> str | None:
     """Unit of a channel from its head or, in round brackets or behind a comma, its name."""
-    unit = unit_of(channel.unit)
-    if unit is not None or channel.moments:
-        return unit
-    match = _ROUND.fullmatch(channel.name) if len(channel.name) <= LONGEST_NAME else None
-    inside = (match[2] or match[4] or "").strip() if match else ""
-    return inside if inside and is_unit(inside) else None
+    return unit_of(channel.unit) or (None if channel.moments else unit_in_name(channel.name)[1])
 
 
 def _fits(signal: str, unit: str | None) -> bool | None:

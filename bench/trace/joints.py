@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 from bench.trace.channel import Recording
 from bench.trace.choose import axes_of
-from bench.trace.signals import REFERENCE, SI_UNITS, WORDS, is_index
+from bench.trace.signals import REFERENCE, SI_UNITS, WORDS, is_index, unit_in_name
 
 _SIGNALS = {signal: re.compile(words, re.IGNORECASE) for signal, words in WORDS.items()}
 _MEASURED = re.compile(r"meas|measured|act|actual|present|feedback|fb|raw", re.IGNORECASE)
@@ -42,7 +42,7 @@ def by_joints(recording: Recording) -> Recording:
     names = {
         place: name
         for place, channel in enumerate(recording.channels)
-        if channel.axis is None and not channel.moments and (name := _read(channel.name)) is not None
+        if not channel.moments and (name := _read(unit_in_name(channel.name)[0])) is not None
     }
     alike: defaultdict[tuple[str, frozenset[str], bool], set[str]] = defaultdict(set)
     for name in names.values():
@@ -52,7 +52,7 @@ def by_joints(recording: Recording) -> Recording:
     measured = {(name.signal, name.joint) for name in names.values() if name.measured}
     channels = list(recording.channels)
     for place, name in names.items():
-        if name.joint in joints:
+        if name.joint in joints if channels[place].axis is None else name.joint == channels[place].axis:
             plain = name.measured or (name.signal, name.joint) not in measured  # `pos_meas1` beside `pos1`
             channels[place] = replace(channels[place], axis=name.joint, signal=name.signal if plain else None)
     return replace(recording, channels=tuple(channels))

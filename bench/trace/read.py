@@ -10,13 +10,14 @@ tells:
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from bench.errors import InputError
 from bench.offered import READERS_GROUP, offered
-from bench.trace.channel import Recording
+from bench.trace.channel import Recording, with_units
 from bench.trace.choose import ReadingOptions
 from bench.trace.joints import by_joints
 from bench.trace.readers.arrow import PARQUET
@@ -117,4 +118,5 @@ def read_recording(path: str | Path) -> Recording:
     Those of joints have them as their axes. Raises as `open_source` and `Reader`.
     """
     source = open_source(path)
-    return by_joints(reader_of(source).read(source))
+    recording = reader_of(source).read(source)
+    return by_joints(replace(recording, channels=with_units(recording.channels)))

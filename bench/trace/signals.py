@@ -6,11 +6,14 @@ Conservative: only whole and unambiguous names are recognised; everything else g
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
+from functools import cache
 
 from bench.axis_kind import KINDS, AxisKind
 from bench.errors import InputError
 from bench.units.conversion import UnitScale, scale_of
-from bench.units.grammar import UnitError
+from bench.units.grammar import ALIASES as UNITS
+from bench.units.grammar import UnitError, parse_unit
 
 #: SI unit of each known signal, one for each of KINDS.
 SI_UNITS: dict[str, tuple[str, str]] = {
@@ -64,6 +67,20 @@ REFERENCE = re.compile(
     r"r62|r0062|607a|60ff",
     re.I,
 )
+_WORD_OF = {signal: re.compile(rf"(?:{words})\d*", re.I) for signal, words in WORDS.items()}
+#: Units in a name: in round or curly brackets; behind a slash, a comma, a dash or `in`; parts of a name.
+_BRACKETS = re.compile(r"(.*?)\s*[({]([^(){}]*(?:\([^()]*\))?[^(){}]*)[)}]\s*")
+_MARKED = re.compile(r"(.*?[^\s/])(?:\s*/\s*|\s*,\s*|\s+-\s+|\s+in\s+)(\([^()]+\)|[^\s(),]+)")
+_PART = re.compile(
+    r"(?<![A-Za-z])[mukn]?(?:Nm|N|A|V|Hz)(?:rms)?(?![A-Za-z])|[A-Z]?[^\W\d_A-Z]+2?|[A-Z]+(?![a-z])2?|\d|[%°]"
+)
+#: Characters of a name in which a unit is sought; ends of names that are no unit there; names of units that are.
+LONGEST_NAME = 200
+_NO_SUFFIX = frozenset(("in", "raw", "unit", "units", "step", "steps", "bit", "bits", "lu", "uu", "pu", "el"))
+_ANGLE = re.compile(r"(?:angle|theta|phi|winkel|(?<![^\W_])q)[\W_]*$", re.I)
+_USUAL = re.compile(
+    r"[numckdM]?(?:g|m|s|A|K|N|V|W|Hz|rad|deg|rpm)|turn|min|deg[CF]|percent|permille|inch|foot|pound\w*|ounce\w*"
+)
 #: Names of columns that count samples.
 _INDEX = re.compile(
     r"samples?|sample (index|number|no\.?|nr)|index|idx|n|nr\.?|no\.?|row|abtastung|point|cycle|ticks?|count|counter"
@@ -85,9 +102,82 @@ def plain_name(name: str) -> str:
     return name.lstrip("#% ").rsplit(".", 1)[-1].lower().replace("_", " ").strip()
 
 
+@cache
 def signal_of(name: str) -> str | None:
-    """Signal that a column's name stands for; None when the name does not tell."""
-    return _BY_ALIAS.get(plain_name(name))
+    """Signal of a column's name, with or without a unit in it; None where it is not a name of a signal."""
+    return _BY_ALIAS.get(plain_name(name)) or _BY_ALIAS.get(plain_name(unit_in_name(name)[0]))
+
+
+@cache
+def unit_in_name(name: str) -> tuple[str, str | None]:
+    """A column's name without the unit in it, and that unit; the name as it is and None where it has none.
+
+    `vel (rpm)`, `v / (m/s)`, `Strom in A`, `Speed, rpm`, `velocity_rad_s`, `timeMs`. A unit behind a mere mark must
+    suit the signal: `torque_nm` is in N*m, `speed_ms` in m/s, `time_ms` in ms, and `omega_m` has no unit.
+    """
+    if len(name) > LONGEST_NAME:
+        return name, None
+    for pattern in (_BRACKETS, _MARKED):
+        if (match := pattern.fullmatch(name)) is not None:
+            bare, unit = match[1].strip(" /,"), match[2].strip("() ")
+            plain = (pattern is _BRACKETS or " / " in name) and (len(unit) > 1 or unit in "sVANKC") and _is_usual(unit)
+            if plain or _fitting(_signals_in(bare), [unit]) is not None:
+                return bare, unit
+    parts = [(part[0], part.start()) for part in _PART.finditer(name)]
+    for count in range(min(4, len(parts)), 0, -1):
+        bare, last = name[: parts[-count][1]], [part for part, _ in parts[-count:]]
+        signals = _signals_in(bare) or (_signals_in(name) if count == 1 else [])
+        known = last[0].lower() in _NO_SUFFIX or (last == ["m"] and _ANGLE.search(bare) is not None)
+        unit = _fitting(signals, _spellings(last)) if count > 1 or not known else None
+        if unit is not None:
+            return bare.rstrip(" _.-:") or name, unit
+    return name, None
+
+
+def _signals_in(text: str) -> list[str]:
+    """Signals that a name's words speak of, without its unit."""
+    known = _BY_ALIAS.get(plain_name(text))
+    words = [part[0] for part in _PART.finditer(text)]
+    return [known] if known else [name for name, known in _WORD_OF.items() if any(map(known.fullmatch, words))]
+
+
+def _spellings(parts: list[str]) -> Iterator[str]:
+    """Units that the last parts of a name may spell: `rad s` is rad/s, `degs` deg or deg/s, `nm` Nm, `ma` mA."""
+    words = [part.lower() if part.istitle() and part not in UNITS else part for part in parts if part != "per"]
+    words = ["N" if word == "n" else word for word in words]
+    if len(words) > 1:
+        power = words.pop() if words[-1] in ("2", "1") else ""
+        yield from (f"{mark.join(words)}{'-' * (power == '1')}{power}" for mark in ("/", "*", ""))
+        return
+    (word,) = words or [""]
+    if len(word) == 1 and word not in "smavnkcSMAVNKC":
+        return
+    yield from (word, re.sub(r"^([mukc]?)n(?=[cm]?m$)", r"\1N", word), word[:-1] + word[-1:].upper(), word.title())
+    yield from (f"{word[: -len(end)]}/{end.strip('p')}" for end in ("ps2", "s2", "ps", "s") if word.endswith(end))
+
+
+def _fitting(signals: Iterable[str], spellings: Iterable[str]) -> str | None:
+    """The first spelling that is a usual unit of one of the signals, or counts of it; None where there is none."""
+    units = [unit for unit in spellings if _is_usual(unit)]
+    return next((unit for unit in units for signal in signals if _suits(unit, signal)), None)
+
+
+def _is_usual(unit: str) -> bool:
+    """Whether a text is a unit of a drive, counts included; asks no library."""
+    try:
+        names = parse_unit(unit).powers
+    except UnitError as error:
+        return not error.found.endswith("not a unit")
+    return bool(names) and all(map(_USUAL.fullmatch, names))
+
+
+def _suits(unit: str, signal: str) -> bool:
+    """Whether a signal may be in a unit: as far as it is known, where only the user knows what it is worth."""
+    try:
+        scale_of(unit, wanted_units(signal))
+    except UnitError as error:
+        return "counts" in error.found or "may mean" in error.found
+    return True
 
 
 def is_index(name: str) -> bool:

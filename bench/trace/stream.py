@@ -16,7 +16,7 @@ from bench.bounds import require_ratio
 from bench.errors import InputError
 from bench.files import opened
 from bench.names import readable
-from bench.trace.channel import Recording
+from bench.trace.channel import Recording, with_units
 from bench.trace.choose import ReadingOptions, choose, reading_options
 from bench.trace.in_si import in_si
 from bench.trace.read import read
@@ -91,7 +91,8 @@ def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
     ):
         fields = list(file.schema_arrow)
         head = next(file.iter_batches(CHUNK), pa.table([pa.nulls(0, one.type) for one in fields], pa.schema(fields)))
-        channels = tuple(channel_of(field, column, path) for field, column in zip(fields, head.columns, strict=True))
+        columns = zip(fields, head.columns, strict=True)
+        channels = with_units(tuple(channel_of(field, column, path) for field, column in columns))
         beginning = Recording(channels, PARQUET.format, readable(path))
         chosen, assumed = choose(beginning, how)
         field_of = {name: fields[beginning.channels.index(choice.channel)] for name, choice in chosen.items()}

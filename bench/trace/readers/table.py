@@ -19,7 +19,7 @@ import pyarrow.csv
 
 from bench.errors import InputError
 from bench.names import short
-from bench.trace.channel import Channel, Recording, split_label
+from bench.trace.channel import Channel, Recording, split_label, with_units
 from bench.trace.readers.arrow import channels_of_table, compute, floats, seconds, speaks_of_moment
 from bench.trace.signals import signal_of, unit_of
 from bench.trace.source import FileFormat, Source, decode, no_samples, utf8
@@ -152,12 +152,11 @@ def _of_joints(table: pa.Table, layout: TableLayout, path: str) -> tuple[Channel
     for k, joint in enumerate(names):
         own = pa.array(which == k)
         channels = [channel_of_cells(name, cells.filter(own), layout.decimal, path, None) for name, cells in others]
-        time = next((channel for channel in channels if signal_of(channel.name) == "time"), None)
-        found += [
-            replace(channel, name=joint if alone else f"{joint}.{channel.name}", time=time)
-            for channel in channels
-            if channel is not time
-        ]
+        if not alone:
+            found += [replace(channel, name=f"{joint}.{channel.name}", axis=joint) for channel in channels]
+            continue
+        time = next((channel for channel in with_units(channels) if signal_of(channel.name) == "time"), None)
+        found += [replace(one, name=joint, time=time) for one in channels if signal_of(one.name) != "time"]
     return tuple(found)
 
 
