@@ -43,6 +43,8 @@ _PRESET = Bounds()
 _BOUNDS: ContextVar[Bounds] = ContextVar("bounds", default=_PRESET)
 #: Bytes that are taken at a time out of what expands.
 _PIECE = 1 << 22
+#: Columns, data sets or channels of a recording; a logger of a whole plant has fewer.
+MOST_COLUMNS = 4096
 #: How a user raises them.
 RAISE = "--max-size raises the bound where the file is to be trusted"
 
@@ -85,6 +87,12 @@ def require_expansion(where: object, size: float, stored: int) -> None:
     """Raise InputError naming `where` if a file of `stored` bytes must not expand to `size`."""
     if size > bounds().most(stored):
         raise too_much(where, stored, shown(size))
+
+
+def require_columns(where: object, count: int) -> None:
+    """Raise InputError naming `where` if `count` columns are too many: the time of some readers grows by its square."""
+    if count > MOST_COLUMNS:
+        raise InputError(where, f"found {count} columns or more", f"allowed: {MOST_COLUMNS}; export fewer signals")
 
 
 def require_ratio(where: object, size: float, stored: int) -> None:

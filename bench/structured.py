@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -14,26 +16,45 @@ from bench.files import read_text
 
 #: What Python says of an integer beyond 4300 digits is advice to a programmer.
 TOO_MANY_DIGITS = "holds an integer of thousands of digits"
+#: Levels of JSON; Arrow takes gigabytes for hundreds of them.
+_DEEPEST = 64
+#: Parts of a dotted key, which take `tomllib` the square of their number in time and memory; files of the bench have 4.
+_MOST_PARTS = 64
+_PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+"""
+_CHAIN = re.compile(rf"(?<![\w-])(?:{_PART}\.[ \t]*+){{{_MOST_PARTS}}}")
 
 
 def read_toml(path: str | Path, kind: str, schema: str | None = None) -> dict[str, Any]:
     """Tables of a TOML file; `kind` is what it should be, for messages, e.g. `a rig file`.
 
-    InputError: it cannot be read, is no TOML, is nested too deep, holds a number of too many digits, or is of another
-    schema than the one that it must have.
+    InputError: as `parse_toml`, it cannot be read, or is of another schema than the one that it must have.
     """
-    text = read_text(path, kind)
-    try:
-        table = tomllib.loads(text)
-    except RecursionError as error:
-        raise InputError(path, "its tables are nested too deep", f"allowed: {kind} (TOML)") from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(path, f"not TOML ({error})", f"allowed: {kind} in UTF-8 TOML") from error
-    except ValueError as error:
-        raise InputError(path, TOO_MANY_DIGITS, f"allowed: {kind} (TOML)") from error
+    table = parse_toml(read_text(path, kind), path, kind)
     if schema is not None and table.get("schema") != schema:
         raise InputError(f"{path}: schema", f"found {table.get('schema')!r}", f"allowed: '{schema}'")
     return table
+
+
+def parse_toml(text: str, where: object, kind: str = "TOML") -> dict[str, Any]:
+    """Tables of a TOML text; `kind` as of `read_toml`.
+
+    InputError: it is no TOML, is nested too deep, or holds a number of too many digits; names `where`.
+    """
+    allowed = f"allowed: {kind} in UTF-8 TOML"
+    long = _CHAIN.search(text)
+    if long is not None:
+        line = text.count("\n", 0, long.start()) + 1
+        raise InputError(
+            f"{where}: line {line}", f"found a key of more than {_MOST_PARTS} parts", "allowed: fewer dots"
+        )
+    try:
+        return tomllib.loads(text)
+    except RecursionError as error:
+        raise InputError(where, "its tables are nested too deep", allowed) from error
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(where, f"not TOML ({error})", allowed) from error
+    except ValueError as error:
+        raise InputError(where, TOO_MANY_DIGITS, allowed) from error
 
 
 def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
@@ -42,12 +63,19 @@ def parse_json(text: str, where: object) -> Any:  # noqa: ANN401
     InputError: not JSON, nested too deep, or a number of too many digits; names `where`, and the line.
     """
     try:
-        return json.loads(text)
+        content = json.loads(text)
+        level: list[Any] = [[content]]
+        for _ in range(_DEEPEST + 1):
+            inner = chain.from_iterable(one.values() if type(one) is dict else one for one in level)
+            level = [one for one in inner if type(one) in (dict, list)]
+        if level:
+            raise RecursionError
+        return content
     except json.JSONDecodeError as error:
         found = f"the JSON is truncated or damaged ({error.msg})"
         raise InputError(f"{where}: line {error.lineno}", found, "allowed: whole JSON") from error
     except RecursionError as error:
-        raise InputError(where, "the JSON is nested too deep", "allowed: a few levels") from error
+        raise InputError(where, "the JSON is nested too deep", f"allowed: {_DEEPEST} levels") from error
     except ValueError as error:
         raise InputError(where, TOO_MANY_DIGITS, "allowed: numbers") from error
 

@@ -15,7 +15,7 @@ from bench.fit.identify import identify
 from bench.plant.model_file import load_model, read_table
 from bench.plant.profiles import s_curve
 from bench.rig.rig import Rig, load_rig
-from bench.structured import json_text, parse_json
+from bench.structured import json_text, parse_json, read_toml
 from bench.trace.choose import GivenOptions
 from bench.trace.inspect import inspect_recording, to_json
 from bench.trace.read import read_recording
@@ -117,6 +117,10 @@ BAD_TOML = {
     "null": "x = \0",
     "latin-1": "name = '\udce9'",
     "key": "'" * 5000,
+    "dots": ".".join(["a"] * 32_000) + " = 1",
+    "dots apart": " . ".join(['"a b"'] * 32_000) + " = 1",
+    "dots of a table": "[" + ".".join(["a"] * 32_000) + "]",
+    "dots in a table": "x = {" + ".".join(["'a'"] * 32_000) + " = 1}",
 }
 
 
@@ -137,6 +141,22 @@ def test_json_that_is_none():
     for text, words in ((DEEP * 40, "too deep"), ("1" * 5000, "integer of thousands of digits"), ("{", "line 1")):
         with pytest.raises(InputError, match=words):
             parse_json("[" * 100_000 if words == "too deep" else text, "x.json")
+
+
+@pytest.mark.parametrize(
+    "text", ["[" * 65 + "]" * 65, '{"a":' * 65 + "1" + "}" * 65, '[1, {"a": ' * 40 + "1" + "}]" * 40]
+)
+def test_json_has_64_levels_at_most(text):
+    with pytest.raises(InputError, match="too deep; allowed: 64 levels"):
+        parse_json(text, "x.json")
+    assert parse_json("[" * 64 + "]" * 64, "x.json")
+
+
+@pytest.mark.parametrize("dots", [2, 40])
+def test_a_text_with_dots_is_no_key(tmp_path, dots):
+    path = tmp_path / "x.toml"
+    path.write_text("a.b.c = '''" + "word." * dots + " " + "...." * 100 + "'''\n# " + "a, b. " * 200)
+    assert read_toml(path, "a file")["a"]["b"]["c"].count(".") == dots + 400
 
 
 RIG_TEXT = asset("data", "rigs", "sh30701p.toml").read_text()

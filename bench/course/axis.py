@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +34,7 @@ def lab_rig() -> Rig:
 
 def embedded() -> dict[str, Any]:
     """The same as tables, as TOML has them."""
-    return tomllib.loads(LAB.read_text(encoding="utf-8"))
+    return read_toml(LAB, "a rig file")
 
 
 def simulated_with(rig: Rig, **truth: float | str) -> Rig:

@@ -7,7 +7,6 @@ user knows.
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TypeAlias, cast
@@ -16,6 +15,7 @@ from bench.errors import InputError
 from bench.names import short
 from bench.rig.motor import catalogue_motor
 from bench.rig.rig import Rig, load_rig, without_constant
+from bench.structured import parse_toml
 from bench.trace.choose import GivenOptions
 from bench.trace.from_arrays import Arrays
 from bench.trace.inspect import ColumnSummary, Inspection, inspect_recording
@@ -78,7 +78,7 @@ def drafted(path: Path, axis: str | None = None) -> tuple[Rig, str, str]:
     recording = read_recording(path)
     found = inspect_recording(recording, GivenOptions(axis=axis))
     text = draft(found, axis=axis)
-    rig = Rig.of(tomllib.loads(text), f"rig drafted from {path.name}")
+    rig = Rig.of(parse_toml(text, path), f"rig drafted from {path.name}")
     try:
         assemble(recording, rig.trace)
     except InputError as error:

@@ -7,7 +7,6 @@ datasheet draws them. The catalogue is one TOML file a motor in `data/motors/`, 
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, Self
 
@@ -20,6 +19,7 @@ from bench.errors import InputError
 from bench.names import nearest
 from bench.rig import values
 from bench.rig.values import RigTable, times, tolerance_of
+from bench.structured import read_toml
 
 #: Of constants whose tolerance is not stated, as datasheets have it.
 USUAL_TOLERANCE = 0.1
@@ -220,7 +220,7 @@ def motor_names() -> list[str]:
 
 def motor_sources(name: str) -> dict[str, tuple[Any, str]]:
     """Value (with unit) and source of every quantity known about a motor; name must be in the catalogue."""
-    entry = tomllib.loads(asset("data", "motors", f"{name}.toml").read_text(encoding="utf-8"))
+    entry = read_toml(asset("data", "motors", f"{name}.toml"), "a motor")
     return {key: (item["value"], item["source"]) for key, item in entry.items()}
 
 

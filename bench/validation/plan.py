@@ -6,7 +6,6 @@ Axes are drawn over all their ranges; of one's own axis, with its rig, motion an
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -23,6 +22,7 @@ from bench.plant.drive import Cascade
 from bench.plant.profiles import MotionLimits, plan
 from bench.plant.simulate import Sampled, motion_of
 from bench.rig.rig import Rig, Simulation, require
+from bench.structured import parse_toml
 from bench.trace.noise import resolution, white_noise
 from bench.trace.trace import Trace
 from bench.validation.independent.effects import KINDS, Effect, any_effects
@@ -82,7 +82,7 @@ def any_axis(index: int, rng: np.random.Generator) -> Case:
     others = (1.0 - MIXED) / (len(MOTIONS) - 1)
     name = str(rng.choice([*MOTIONS], p=[MIXED if k == 0 else others for k in range(len(MOTIONS))]))
     motion = MOTIONS[name](axis, rng, float(rng.uniform(*DURATION)))
-    rig = Rig.of(tomllib.loads(rig_text(axis)), axis.name)
+    rig = Rig.of(parse_toml(rig_text(axis), axis.name), axis.name)
     plant = PLANTS[int(rng.integers(len(PLANTS)))]
     return Case(index, plant, axis, rig, motion, name, random_sensors(axis, rng))
 

@@ -8,6 +8,8 @@ import asammdf.blocks.v4_blocks
 import h5py
 import lz4.frame
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet
 import pytest
 import zstandard
 from asammdf import MDF, Signal
@@ -18,7 +20,7 @@ from bench.bounds import bounded
 from bench.errors import InputError
 from bench.trace.read import read, read_recording
 from bench.trace.readers.containers import unpack
-from tests.hostile import run
+from tests.hostile import cpu_seconds, run
 
 TIME = np.arange(400) * 2e-3
 #: A bound that keeps these tests short, and more than it allows.
@@ -168,3 +170,34 @@ def test_hdf5_is_of_one_file_and_each_dataset_read_once(tmp_path):
         inner["round"] = file["g0"]
     (channel,) = read_recording(tmp_path / "run.h5").channels
     assert channel.name.endswith(".a.w") and np.array_equal(channel.values, np.sin(TIME))
+
+
+MANY = {f"d{k}": np.arange(4.0) for k in range(5000)}
+
+
+def many_of_hdf5(path):
+    with h5py.File(path, "w") as file:
+        for name, values in MANY.items():
+            file[name] = values
+
+
+def many_of_tdms(path):
+    with TdmsWriter(path) as writer:
+        writer.write_segment([ChannelObject("group", name, values) for name, values in MANY.items()])
+
+
+CROWDED = {
+    "many.h5": many_of_hdf5,
+    "many.tdms": many_of_tdms,
+    "many.npz": lambda path: np.savez(path, **MANY),
+    "many.parquet": lambda path: pyarrow.parquet.write_table(pa.table(MANY), path),
+    "many.json": lambda path: path.write_text(json.dumps({name: [1, 2] for name in MANY})),
+    "many.csv": lambda path: path.write_text(",".join(MANY) + "\n" + ",".join(["1"] * len(MANY)) + "\n"),
+}
+
+
+@pytest.mark.parametrize("name", CROWDED)
+def test_columns_are_bounded_in_number(tmp_path, name):
+    CROWDED[name](tmp_path / name)
+    with cpu_seconds(20.0), pytest.raises(InputError, match="allowed: 4096"):
+        read(tmp_path / name)

@@ -17,8 +17,9 @@ import numpy as np
 import pyarrow as pa
 
 from bench.arrays import Array
-from bench.bounds import require_expansion
+from bench.bounds import require_columns, require_expansion
 from bench.errors import InputError
+from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.readers.containers import reading
 from bench.trace.source import FileFormat, Source, begins
@@ -28,6 +29,8 @@ MAGIC = b"PAR1"
 DAMAGE = (pa.ArrowException, OSError, UnicodeDecodeError)
 #: Bytes of a value once it is read.
 WIDTH = 8
+#: Fields in one another that are channels.
+_DEEPEST = 16
 #: Numbers of a list; a robot has fewer joints, a picture more points.
 MOST_PLACES = 256
 
@@ -55,6 +58,7 @@ def parquet_table(content: bytes, path: str) -> pa.Table:
         pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=True) as file,
     ):
         fields, meta = list(file.schema_arrow), file.metadata
+        require_columns(path, meta.num_columns)
         wanted = [field.name for field in fields if is_numeric(field.type)]
         # Where a column's description is damaged, asking for it ends the process: Arrow raises while it reads alone.
         plain = [field.name for field in fields if is_numeric(field.type) and not field.type.num_fields]
@@ -91,8 +95,8 @@ def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, s
         moments = seconds(column.cast(pa.string()).fill_null(""))
         if moments is not None:
             return replace(channel, unit="s", values=moments, moments=True)
-    if not is_numeric(kind):
-        return replace(channel, defect=InputError(channel.place(), f"found {kind}", "allowed: numbers"))
+    if pa.types.is_struct(kind) or not is_numeric(kind):
+        return replace(channel, defect=InputError(channel.place(), f"found {short(str(kind))}", "allowed: numbers"))
     values = _passed(column) if is_moment(kind) else floats(column)
     return replace(channel, values=values, moments=pa.types.is_timestamp(kind))
 
@@ -107,8 +111,10 @@ def channels_of_table(
 
     A column of lists of names tells those of the same length, as does `lists` by the length.
     """
-    while any(pa.types.is_struct(kind) for kind in table.schema.types):
-        table = table.flatten()  # a column for each field, `parent.field`
+    for _ in range(_DEEPEST):  # those in one another beyond it are no columns of numbers
+        if any(pa.types.is_struct(kind) for kind in table.schema.types):
+            table = table.flatten()  # a column for each field, `parent.field`
+    require_columns(path, table.num_columns)
     named = [one for one in table.columns if pa.types.is_list(one.type) and pa.types.is_string(one.type.value_type)]
     lists = {**(lists or {}), **{len(first): first for one in named if (first := one[0].as_py())}}
     found: list[Channel] = []
@@ -133,10 +139,10 @@ def _places(
     each = field.type.value_type
     plain = len(lengths) == 1 and not lists.null_count and is_numeric(each) and not each.num_fields
     if not plain or not 0 < lengths[0] <= MOST_PLACES:
-        found = f"found {field.type}" if len(lengths) < 2 else f"found lists of {lengths[0]} to {lengths[-1]} numbers"
+        several = f"lists of {lengths[0]} to {lengths[-1]} numbers" if len(lengths) > 1 else short(str(field.type))
         channel = Channel(label, unit, np.empty(0), path)
         allowed = f"allowed: numbers, or lists of as many each, {MOST_PLACES} at most"
-        yield replace(channel, defect=InputError(channel.place(), found, allowed))
+        yield replace(channel, defect=InputError(channel.place(), f"found {several}", allowed))
         return
     matrix = floats(lists.flatten()).reshape(-1, int(lengths[0]))
     names = names if names is not None and len(names) == lengths[0] else known.get(int(lengths[0]))

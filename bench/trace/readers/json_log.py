@@ -18,7 +18,7 @@ import pyarrow as pa
 import pyarrow.json
 
 from bench.arrays import Array
-from bench.bounds import require_expansion
+from bench.bounds import require_columns, require_expansion
 from bench.errors import InputError
 from bench.names import short
 from bench.structured import parse_json
@@ -60,6 +60,7 @@ def _read(source: Source) -> Recording:
             columns = {name: values for name, values in lists if isinstance(values, list) and len(values) > 1}
             if not columns:
                 raise InputError(source.path, "found no samples", allowed)
+            require_columns(source.path, len(columns))
             tables = [pa.table({name: _column(values)}) for name, values in columns.items()]  # each of its own length
             texts = (values for values in columns.values() if all(isinstance(one, str) for one in values))
             names = {len(values): values for values in texts}

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.bounds import require_expansion
+from bench.bounds import require_columns, require_expansion
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording, with_shared_times
 from bench.trace.readers.containers import apart, library, reading, unpack, warnings_of
@@ -48,6 +48,7 @@ def _read_mdf(source: Source) -> Recording:
         asammdf.MDF(content, process_bus_logging=False) as file,
     ):
         chosen = list(_chosen(file, formulas))
+        require_columns(source.path, sum(map(len, chosen)))
         _require_bounds(file, chosen, source)
         signals = [signal for channels in chosen for signal in file.select(channels, copy_master=False)]
     numeric = [
@@ -115,6 +116,7 @@ def _read_tdms(source: Source) -> Recording:
             for channel in group.channels()
             if channel.dtype is not None and np.dtype(channel.dtype).kind in _NUMERIC  # texts are not read
         ]
+        require_columns(source.path, len(numeric))
         require_expansion(source.path, sum(len(channel) for _, channel in numeric) * _WIDTH, len(source.content))
         read = [(group, channel, channel[:]) for group, channel in numeric]
         metadata = {str(name): str(value) for name, value in file.properties.items()}

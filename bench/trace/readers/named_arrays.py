@@ -20,11 +20,12 @@ import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
-from bench.bounds import bounds, require_expansion, shown, too_much
+from bench.bounds import MOST_COLUMNS, bounds, require_columns, require_expansion, shown, too_much
 from bench.errors import InputError
 from bench.trace.channel import Channel, Recording
 from bench.trace.readers.containers import library, reading
@@ -110,6 +111,7 @@ def _read_numpy(source: Source) -> Recording:
             require_expansion(source.path, size, len(source.content))
         loaded = np.load(BytesIO(source.content), allow_pickle=False)
         lone = isinstance(loaded, np.ndarray)
+        require_columns(source.path, len(loaded.dtype.names or ()) if lone else len(loaded.files))
         arrays = {"": loaded} if lone else {name: _array(loaded, name) for name in loaded.files}
     texts = [one for one in arrays.values() if one.dtype.kind == "U" and one.ndim == 1]
     names = {one.size: [str(text) for text in one] for one in texts}
@@ -139,7 +141,8 @@ def _read_hdf5(source: Source) -> Recording:
     channels: list[Channel] = []
     metadata: dict[str, str] = {}
     with reading(source.path, HDF5.format), h5py.File(BytesIO(source.content), "r") as file:
-        found = list(_datasets(file, h5py, "", set()))
+        found = list(islice(_datasets(file, h5py, "", set()), MOST_COLUMNS + 1))
+        require_columns(source.path, len(found))
         size = sum(dataset.nbytes for _, dataset in found if dataset.shape is not None)
         require_expansion(source.path, size, len(source.content))
         for name, dataset in found:

@@ -17,6 +17,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 
+from bench.bounds import require_columns
 from bench.errors import InputError
 from bench.names import short
 from bench.trace.channel import Channel, Recording, split_label, with_units
@@ -34,8 +35,6 @@ EMPTY = (
 )
 #: Characters of the head that are looked at, and lines at its end that show what samples are like.
 HEAD, SHOWN = 1 << 18, 60
-#: Columns of a table; a recorder has some hundred channels at most.
-MOST_COLUMNS = 10_000
 #: Joints that take turns in the lines of a file, and the share of the lines in which they do.
 MOST_JOINTS, IN_TURN = 64, 0.9
 #: Of the kinds of columns; `list` is one of numbers; `exact` are epochs in ns with more digits than a float holds, and
@@ -103,8 +102,7 @@ def read_lines(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[
         InputError: too many columns, a line with too few or too many cells, or a quote that is not closed; names
             `path` and the line.
     """
-    if len(layout.labels) > MOST_COLUMNS:
-        raise InputError(path, f"found {len(layout.labels)} columns", f"allowed: {MOST_COLUMNS}")
+    require_columns(path, len(layout.labels))
     if layout.separator == BLANKS:
         text = re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+\r?$", b"", text))
     table, first, notes = parsed(text, line, layout, path)
