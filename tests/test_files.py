@@ -147,7 +147,6 @@ SHIPPED = {
     "course/report.py",
     "course/pdf.py",
     "course/catapult.py",
-    "course/sliders.py",
 }
 SHIPPED |= {"plant/axis_model.py", "report/html.py", "rig/motor.py"}
 WRITES = {

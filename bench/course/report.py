@@ -17,11 +17,10 @@ from bench.course.course import TASKS, course
 from bench.course.pdf import write_pdf
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult
-from bench.course.sliders import sliders
 from bench.errors import InputError
 from bench.files import held, whole, write_text
 from bench.report.document import AnyPart, Chart, Document, Paragraph, Section, Table, section, table
-from bench.report.html import Program, html
+from bench.report.html import html
 from bench.report.serial import known
 from bench.rig.motor import DATASHEET
 from bench.structured import json_text, read_toml
@@ -113,20 +112,17 @@ def report_course(data: Path | None, out: Path, progress: Callable[[float], None
     results = course(recordings, lambda share: progress(0.7 * share))
     with held(out):
         document, content = lab_document(results, recordings, cover), lab_json(results, recordings.rig.name)
-        live = sliders(results, recordings)
-        files = write_lab_report(out, document, content, lambda share: progress(0.7 + 0.3 * share), live)
+        files = write_lab_report(out, document, content, lambda share: progress(0.7 + 0.3 * share))
         sources = write_sources(out / "sources", recordings, results)
     return CourseReport(results, [*sources, *files])
 
 
-def write_lab_report(
-    out: Path, document: Document, json: str, progress: Callable[[float], None], live: Program | None = None
-) -> list[Path]:
-    """Write results as `lab.json`, `lab.html`, alive or not, and `lab.pdf` into a folder, which is made; the paths."""
+def write_lab_report(out: Path, document: Document, json: str, progress: Callable[[float], None]) -> list[Path]:
+    """Write results as `lab.json`, `lab.html` and `lab.pdf` into a folder, which is made; the paths."""
     paths = [out / f"lab.{ending}" for ending in ("json", "html", "pdf")]
     with held(out):
         write_text(paths[0], json)
-        write_text(paths[1], html(document, own=live))
+        write_text(paths[1], html(document))
         progress(0.5)
         with whole(paths[2]) as temporary:
             write_pdf(temporary, document)

@@ -25,33 +25,21 @@ if TYPE_CHECKING:  # 0.05 s, which only a page has to pay
     from jinja2 import Environment
 
 
-@dataclass(frozen=True)
-class Program:
-    """What a page runs beside what all pages have: a script, and what it reads from the element `live`."""
-
-    script: str
-    data: Mapping[str, Any]
-
-
-def html(document: Document, script: str | None = None, own: Program | None = None) -> str:
+def html(document: Document, script: str | None = None) -> str:
     """The page of a document.
 
-    Args:
-        script: address, as seen from the page, of the script file that it shares with others; inside of it without.
-        own: program of this page.
+    `script`: address, as seen from the page, of the script file that it shares with others; without, it is in the page.
     """
     blocks = [block for section in document.sections for block in section.blocks]
     moving = any(isinstance(block, TimeGraph | Moving) for block in blocks)
     lively = moving or any(isinstance(block, Table) and block.sought for block in blocks)
     inside = (program() if moving else _asset("assets", "seek.js")) if lively and script is None else None
-    inside = inside if own is None else "\n".join(filter(None, (inside, own.script)))
     page = _environment().get_template("page.html.j2")
     return page.render(
         page=document,
         style=Markup(f"{_asset('uplot', 'uPlot.min.css')}\n{_asset('assets', 'page.css')}"),
         script=None if inside is None else Markup(inside),
         shared=script if lively else None,
-        live=None if own is None else _json(own.data),
         policy=_policy(inside),
     )
 
