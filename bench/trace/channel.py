@@ -33,6 +33,7 @@ class Channel:
         open_unit: why the file leaves the unit open though it names one.
         axis: of a file that tells several apart.
         signal: that it holds of that axis, where its name tells (`bench.trace.joints`).
+        number: of its column in the file, from 1, where it has one.
         moments: whether the values are moments of a calendar or a clock, as times from the first of them.
     """
 
@@ -48,6 +49,7 @@ class Channel:
     axis: str | None = None
     signal: str | None = None
     moments: bool = False
+    number: int | None = None
 
     @property
     def label(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -260,7 +261,9 @@ def _named(recording: Recording, signal: str, name: str) -> Channel | None:
         matches = [channel for channel in recording.channels if key(channel.name) == key(name)]
         if matches:
             return _one(recording, signal, matches)
-    return None
+    numbered = re.fullmatch(r"column ([1-9]\d{0,4})", name)
+    places = enumerate(recording.channels, 1) if numbered else ()
+    return next((one for place, one in places if (one.number or place) == int(name.split()[1])), None)
 
 
 def _without_marks(name: str) -> str:

@@ -302,3 +302,87 @@ def test_axes_by_the_first_part_of_their_names(tmp_path):
     with pytest.raises(InputError, match="several columns"):
         read(path)
     holds(read(path, GivenOptions(axis="Axis1")))
+
+
+def three(mark=".", separator=","):
+    return list(lines(separator, mark))
+
+
+def paired(shift):
+    """Each signal behind times of its own."""
+    return [f"{t:.6f},{speed:.3f},{t + shift:.6f},{amps:.5f}" for t, speed, amps in zip(TIME, SPEED, AMPS, strict=True)]
+
+
+#: Lines of a file, and the columns of its rig.
+MAPPED = {"velocity": "column 2 [rpm]", "current": "column 3 [A]"}
+PAIRED = {"velocity": "column 2 [rpm]", "current": "column 4 [A]"}
+DIALECTS = {
+    "Keysight": (["x-axis,1,2", "msec,Volt,Volt", *three()], {"time": "x-axis", **MAPPED}),
+    "Tektronix": (["Model,TBS2000", "Waveform Type,ANALOG", "Label,,", "TIME (ms),CH1,CH2", *three()], MAPPED),
+    "Siglent": (
+        ["Record Length,7000", "Source,CH1,CH2", "Millisecond,Volt,Volt", *three()],
+        {"time": "Source", **MAPPED},
+    ),
+    "PicoScope": (["Time,Channel A,Channel B", "(ms),(V),(mV)", "", *three()], MAPPED),
+    "separator at the end": (["Time(ms),CH1(V),CH2(V),", *(f"{row}," for row in three())], MAPPED),
+    "DIN": (["t / ms;n / min^-1;i / A", *three(",", ";")], {"velocity": "n / min^-1", "current": "i / A"}),
+    "in": (["Zeit in ms;Drehzahl in 1/min;Strom in A", *three(",", ";")], {"velocity": "Drehzahl in 1/min"}),
+    "quoted names": (
+        ['"time, t [ms]","velocity, filtered [rpm]","current [A]"', *three()],
+        {"time": "column 1", **MAPPED},
+    ),
+    "a summary": (["time [ms],velocity [rpm],current [A]", *three(), "Mean,0.1,0.2", "Max,3,1", ""], {}),
+    "a long header": (
+        [*(f"# line {k}: gain = {k}" for k in range(9000)), *["meta" * 400] * 200, ",".join(NAMES), *three()],
+        {},
+    ),
+    "started again": (
+        ["Recorder 7", ",".join(NAMES), *three()[:300], "Recorder 7", ",".join(NAMES), *three()[300:]],
+        {},
+    ),
+    "times of their own, equal": (["Time [s],CH1,Time [s],CH2", *paired(0.0)], PAIRED),
+    "X,Y,X,Y": (["X,Y,X,Y", *paired(0.0)], {"time": "X [s]", **PAIRED}),
+    "labels": (
+        [f"t[ms]:{a} speed[rpm]:{b}\tiq[A]:{c}" for a, b, c in (row.split(",") for row in three())],
+        {"time": "t", "velocity": "speed"},
+    ),
+    "pairs with units": (
+        [f"time={a} ms, w={b} rpm, i={c}A" for a, b, c in (row.split(",") for row in three())],
+        {"velocity": "w", "current": "i"},
+    ),
+    "two columns of a name": (
+        ["time [ms],velocity [rpm],velocity [rpm],current [A]", *(row.replace(",", ",7,", 1) for row in three())],
+        {"velocity": "column 3 [rpm]"},
+    ),
+}
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_dialects_of_scopes_and_logs(tmp_path, dialect):
+    text, columns = DIALECTS[dialect]
+    holds(read(written(tmp_path / "run.csv", text, []), columns))
+
+
+def test_signals_with_times_of_their_own(tmp_path):
+    recording = read_recording(written(tmp_path / "run.csv", ["X,Y,X,Y", *paired(0.5e-3)], []))
+    assert recording.notes == ("times taken as s, as the file has no unit",)
+    for channel, values, shift in zip(recording.channels, (SPEED, AMPS), (0.0, 0.5e-3), strict=True):
+        assert channel.time is not None and channel.time.unit == "s"
+        np.testing.assert_allclose(channel.time.values, TIME + shift, atol=1e-9)
+        np.testing.assert_array_equal(channel.values, values)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            ["This is a log", "of 12 things", "and nothing else 3"],
+            "line 3: found no columns of numbers: 'and nothing else 3'",
+        ),
+        (["time [s],velocity [rad/s]"], "found a header and no samples"),
+        (["velocity [rad/s]", "1", "2"], "found one column"),
+    ],
+)
+def test_the_reason_why_a_text_is_no_table(tmp_path, text, words):
+    with pytest.raises(InputError, match=words):
+        read(written(tmp_path / "run.csv", text, []))

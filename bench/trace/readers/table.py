@@ -20,9 +20,10 @@ import pyarrow.csv
 from bench.bounds import require_columns
 from bench.errors import InputError
 from bench.names import short
+from bench.trace.assumed import assumed_units
 from bench.trace.channel import Channel, Recording, split_label, with_units
 from bench.trace.readers.arrow import channels_of_table, compute, floats, seconds, speaks_of_moment
-from bench.trace.signals import signal_of, unit_of
+from bench.trace.signals import plain_name, signal_of, unit_of
 from bench.trace.source import FileFormat, Source, decode, no_samples, utf8
 from bench.units.conversion import is_unit, scale_or_none
 
@@ -34,7 +35,9 @@ EMPTY = (
     *("nan", "NaN", "NAN", "Nan", "-nan", "-NaN", "nan(ind)", "-nan(ind)", "1.#QNAN"),
 )
 #: Characters of the head that are looked at, and lines at its end that show what samples are like.
-HEAD, SHOWN = 1 << 18, 60
+HEAD, SHOWN, FEW = 1 << 18, 60, 8
+#: Numbers a line times their share of its cells, up to which lines are prose with a number in it.
+PROSE = 0.15
 #: Joints that take turns in the lines of a file, and the share of the lines in which they do.
 MOST_JOINTS, IN_TURN = 64, 0.9
 #: Of the kinds of columns; `list` is one of numbers; `exact` are epochs in ns with more digits than a float holds, and
@@ -48,6 +51,12 @@ _LEADING = re.compile(r"^\s*(?:#+|//+|!+|%+(?=\s))\s*")
 _EXACT = re.compile(r"[+-]?\d{16,}|[+-]?\d{9,}[.,]\d{4,9}")
 _LIST = re.compile(r"[\[(]\s*[-+\d.][-+\d.eE,;\s]*[\])]")
 _NUMBERED = re.compile(r"(?:^|_)(?:joint|motor|servo|actuator|axis|id)(?:_?(?:id|index|number|no))?$", re.IGNORECASE)
+#: `iq_lft[A]: 2.36`, `w=1,5 rad/s`: a label, a value and perhaps a unit, which no next label is.
+_PAIR = re.compile(
+    r"([^\W\d][^\s:=,;|]*(?: ?\[[^\]\s]*\])?)\s*[:=]\s*"
+    r"([+-]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][+-]?\d+)?|nan|NaN)(?![.\d:])"
+    r"(?:\s?([^\W\d][^\s:=,;|\[]*|[%°][^\s:=,;|\[]*)(?!\s*[:=\[]|[^\s,;|]))?"
+)
 _COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
 
 
@@ -60,6 +69,7 @@ class TableLayout:
         separator, decimal: characters between columns and in numbers; BLANKS: any run of them.
         start: line of the first samples, counted from 0.
         kinds: of each column: `number`, `exact` (instants of more digits than a float holds), `text`.
+        head: lines above the samples, which a recorder that starts anew writes again.
     """
 
     labels: tuple[str, ...]
@@ -67,6 +77,7 @@ class TableLayout:
     decimal: str
     start: int
     kinds: tuple[str, ...]
+    head: frozenset[str] = frozenset()
 
     @property
     def delimiter(self) -> str:
@@ -76,20 +87,61 @@ class TableLayout:
 
 def _recognises(source: Source) -> bool:
     marked_up = "\0" in source.head or source.head.lstrip().startswith(("{", "[{", "<"))
-    return not marked_up and _layout_of(source) is not None
+    return not marked_up and (_layout_of(source) is not None or bool(_labels_in(source.head.splitlines())))
 
 
 def _read(source: Source) -> Recording:
-    layout = _layout_of(source)
+    layout, notes = _layout_of(source), ()
+    if layout is None and (labels := _labels_in(source.head.splitlines())):
+        source, notes = _unlabelled(source, labels)
+        layout = _layout_of(source)
     if layout is None:
-        lines = [line for line in source.head.splitlines() if line.strip()]
-        if len(lines) > 1 and all(is_number(line.strip()) for line in lines[1:10]):
-            allowed = "allowed: at least two, one of them velocity or position"
-            raise InputError(f"{source.path}: line 1", "found one column", allowed)
-        raise no_samples(source)
+        raise _no_table(source)
     samples = utf8(source.content).split(b"\n", layout.start)[-1]
-    channels, notes = read_lines(samples, layout.start + 1, layout, source.path)
-    return Recording(channels, TABLE.format, source.path, notes=notes)
+    channels, found = read_lines(samples, layout.start + 1, layout, source.path)
+    return Recording(channels, TABLE.format, source.path, notes=(*notes, *found))
+
+
+def _no_table(source: Source) -> InputError:
+    """Why a text is no table."""
+    lines = [(number, line) for number, line in enumerate(source.text().splitlines(), 1) if line.strip()]
+    if len(lines) > 1 and all(is_number(line.strip()) for _, line in lines[1:10]):
+        allowed = "allowed: at least two, one of them velocity or position"
+        return InputError(f"{source.path}: line 1", "found one column", allowed)
+    number, last = lines[-1]
+    if not any(char.isdigit() for _, line in lines[1:] for char in line):
+        return no_samples(source)
+    allowed = (
+        "allowed: a line for each sample, with as many numbers in each, between commas, semicolons, tabs or blanks"
+    )
+    return InputError(f"{source.path}: line {number}", f"found no columns of numbers: {short(last)!r}", allowed)
+
+
+def _labels_in(lines: list[str]) -> tuple[str, ...]:
+    """Labels of lines such as `speed[rpm]:12 iq:0.5`, which most lines have; none where the lines are not like that."""
+    shown = [line for line in lines if line.strip()][-SHOWN:]
+    found = Counter(tuple(label for label, _ in pairs) for line in shown if (pairs := _pairs_of(line)))
+    labels, often = found.most_common(1)[0] if found else ((), 0)
+    return labels if len(set(labels)) > 1 and often > 0.5 * len(shown) else ()
+
+
+def _pairs_of(line: str) -> list[tuple[str, str]]:
+    """Labels, with the unit behind the value where that has one, and values of a line that consists of them."""
+    pairs = list(_PAIR.finditer(line))
+    if len(pairs) < 2 or _PAIR.sub("", line).strip(" \t\r,;|&{}"):
+        return []
+    return [(f"{one[1]} [{one[3]}]" if one[3] and "[" not in one[1] else one[1], one[2]) for one in pairs]
+
+
+def _unlabelled(source: Source, labels: Sequence[str]) -> tuple[Source, tuple[str, ...]]:
+    """The same as a table under a header; lines without these labels are left out."""
+    rows = [dict(_pairs_of(line)) for line in source.text().splitlines()]
+    kept = ["\t".join(row[label].replace(",", ".") for label in labels) for row in rows if set(labels) <= set(row)]
+    content = "\n".join(("\t".join(labels), *kept, "")).encode()
+    count = len(rows) - len(kept)
+    return replace(source, content=content), (
+        (f"{count} line{'s' * (count > 1)} without all labels left out",) if count else ()
+    )
 
 
 TABLE = FileFormat("CSV table", (".csv", ".txt", ".tsv", ".dat", ".log", ".asc", ".lvm"), _recognises, _read)
@@ -115,15 +167,37 @@ def read_lines(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[
         return of_joints, notes
     unnamed = [label == f"column {number}" for number, label in enumerate(layout.labels, 1)]
     kept: list[Channel] = []
-    for label, column, kind, plain in zip(layout.labels, table.columns, layout.kinds, unnamed, strict=True):
+    columns = zip(layout.labels, table.columns, layout.kinds, unnamed, strict=True)
+    for number, (label, column, kind, plain) in enumerate(columns, 1):
         lists = as_lists(column) if kind == "list" else None
         if lists is not None:
             kept.extend(channels_of_table(pa.table({label: lists}), path))
             continue
-        channel = channel_of_cells(label, column, layout.decimal, path, first)
+        channel = replace(channel_of_cells(label, column, layout.decimal, path, first), number=number)
         if not plain or all(unnamed) or channel.defect is not None or np.isfinite(channel.values).any():
             kept.append(channel)
-    return tuple(kept), notes
+    channels, assumed = _with_own_times(with_units(kept))
+    return channels, (*notes, *assumed)
+
+
+def _with_own_times(channels: Sequence[Channel]) -> tuple[tuple[Channel, ...], tuple[str, ...]]:
+    """The same, each signal with the times in front of it, as `X, Y, X, Y` has them; and what was assumed."""
+    first = plain_name(channels[0].name) if channels else ""
+    times = [one for one in channels if plain_name(one.name) == first]
+    timed = len(times) > 1 and (first == "x" or signal_of(first) == "time")
+    if not timed or any(one.values.size < 2 or not (np.diff(one.values) > 0).all() for one in times):
+        return tuple(channels), ()
+    if all(np.array_equal(one.values, times[0].values) for one in times):
+        return tuple(one for one in channels if one is times[0] or one not in times), ()
+    assumed = assumed_units({"time": times[0]}, {"time": times[0].unit}, bare=True).units
+    times = [replace(one, unit=one.unit or assumed.get("time")) for one in times]
+    if any(one.unit is None for one in times):
+        return tuple(channels), ()
+    found: list[Channel] = []
+    for one in channels:
+        time = next(time for time in reversed(times) if (time.number or 0) <= (one.number or 0))
+        found += [replace(one, time=time)] if one.number != time.number else []
+    return tuple(found), tuple(f"times taken as {unit}, as the file has no unit" for unit in assumed.values())
 
 
 def _of_joints(table: pa.Table, layout: TableLayout, path: str) -> tuple[Channel, ...] | None:
@@ -225,8 +299,9 @@ def _cleaned(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[by
     numbered = list(enumerate(text.splitlines(), line))
     written = [(number, one) for number, one in numbered if one.strip() and not _COMMENT.match(one)]
     comments = sum(_COMMENT.match(one) is not None for _, one in numbered)
-    kept = [(number, one) for number, one in written if one.strip(b' \t\r"')]
-    while kept and not any(map(is_number, cells_of(kept[-1][1].decode("utf-8", errors="replace"), separator))):
+    again = {number for number, one in written if _one_blank(decode(one)) in layout.head}
+    kept = [(number, one) for number, one in written if one.strip(b' \t\r"') and number not in again]
+    while kept and _is_below(cells_of(decode(kept[-1][1]), separator), layout.kinds):
         kept.pop()
     below = sum(number > kept[-1][0] for number, _ in written) if kept else 0
     for number, one in kept:
@@ -236,10 +311,16 @@ def _cleaned(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[by
         if found != width:
             cells = f"found {found} cell{'s' * (found > 1)}"
             raise InputError(f"{path}: line {number}", cells, f"allowed: {width}, as the header has")
-    left_out = {f"comment{'s' * (comments > 1)}": comments, "line below the samples": below}
-    notes = tuple(f"{count} {what} left out" for what, count in left_out.items() if count)
+    left_out = {"comment{}": comments, "line{} below the samples": below, "line{} of a repeated header": len(again)}
+    notes = tuple(f"{count} {what.format('s' * (count > 1))} left out" for what, count in left_out.items() if count)
     whole = kept and kept[-1][0] - kept[0][0] == len(kept) - 1
     return b"\n".join(one for _, one in kept) + b"\n", kept[0][0] if whole else None, notes
+
+
+def _is_below(cells: Sequence[str], kinds: Sequence[str]) -> bool:
+    """Whether a line is none of the samples: without a number, or with a word such as `Mean` where each has one."""
+    word = kinds[0] != "text" and cells[:1] and cells[0] not in EMPTY and not is_number(cells[0])
+    return not any(map(is_number, cells)) or (bool(word) and not speaks_of_moment(cells[0]) and cells[0][0].isalpha())
 
 
 def _filled_rows(table: pa.Table) -> np.ndarray:
@@ -306,14 +387,20 @@ def _is_float(text: pa.Scalar) -> bool:
 
 
 def _layout_of(source: Source) -> TableLayout | None:
-    lines = utf8(source.content[:HEAD]).decode("utf-8", errors="replace").split("\n")
-    return find_layout([line.rstrip("\r") for line in (lines if len(source.content) <= HEAD else lines[:-1])])
+    for size in (HEAD, 16 * HEAD):  # a header may be long
+        lines = utf8(source.content[:size]).decode("utf-8", errors="replace").split("\n")
+        whole = len(source.content) <= size
+        layout = find_layout([line.rstrip("\r") for line in (lines if whole else lines[:-1])])
+        if layout is not None or whole:
+            return layout
+    return None
 
 
 def find_layout(lines: list[str]) -> TableLayout | None:
     """The layout of a table that begins with these lines; None where they show none."""
-    shown = [line for line in lines if line.strip()][-SHOWN:]
-    separator, width = _separator(shown)
+    filled = [line for line in lines if line.strip() and not _COMMENT.match(line.encode())]
+    tails = (filled[-SHOWN:], filled[-FEW:])  # few samples below a long header
+    shown, (separator, width) = next(((tail, cut) for tail in tails if (cut := _separator(tail))[1]), ([], ("", 0)))
     if not width:
         return None
     rows = [row for row in (cells_of(line, separator) for line in shown) if len(row) == width]
@@ -326,17 +413,22 @@ def find_layout(lines: list[str]) -> TableLayout | None:
     for place, label in enumerate(labels):
         if kinds[place] == "exact" and not _may_be_time(label):
             kinds[place] = "number"
-    return TableLayout(labels, separator, decimal, start, tuple(kinds))
+    head = frozenset(_one_blank(line) for line in lines[:start] if any(map(str.isalpha, line)))
+    return TableLayout(labels, separator, decimal, start, tuple(kinds), head)
 
 
 def cells_of(line: str, separator: str) -> list[str]:
     """Cells of a line, without quotes."""
-    text = " ".join(line.split()) if separator == BLANKS else line.replace("\r", "")
+    text = _one_blank(line) if separator == BLANKS else line.replace("\r", "")
     try:
         row = next(csv.reader([text], delimiter=separator, skipinitialspace=True), [])
     except csv.Error:  # longer than any cell of a recording
         return []
     return [cell.strip() for cell in row]
+
+
+def _one_blank(line: str) -> str:
+    return " ".join(line.split())
 
 
 def is_number(cell: str) -> bool:
@@ -354,7 +446,7 @@ def _may_be_time(label: str) -> bool:
 
 def _separator(shown: list[str]) -> tuple[str, int]:
     """Separator that cuts out the most numbers, and how many cells it makes; 0 where none makes two."""
-    best, found = 0.0, (",", 0)
+    best, found = PROSE, (",", 0)
     for separator in SEPARATORS if shown else ():
         rows = [cells_of(line, separator) for line in shown]
         width, often = Counter(map(len, rows)).most_common(1)[0]
@@ -397,7 +489,7 @@ def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
     """Labels of the columns from the lines above the samples; `column 1`, ... where there is no header."""
     rows: list[list[str]] = []
     for line in reversed([line for line in above if line.strip()]):
-        row = _header_row(line, separator, width)
+        row = _header_row(line, separator, width, bool(rows) and _is_unit_row(rows[0]))
         if row is None or len(rows) == 2:
             break
         rows.append(row)
@@ -413,13 +505,17 @@ def _labels(above: list[str], separator: str, width: int) -> tuple[str, ...]:
     )
 
 
-def _header_row(line: str, separator: str, width: int) -> list[str] | None:
-    """Cells of a line of names; None where it is none: another count of cells, or numbers among them."""
+def _header_row(line: str, separator: str, width: int, numbered: bool) -> list[str] | None:
+    """Cells of a line of names; None where it has another count of cells, or numbers and may not be `numbered`."""
     for row in (*_cuts(line, separator), *_cuts(_LEADING.sub("", line), separator)):
         row = row[:-1] if len(row) == width + 1 and not row[-1] else row
         row = [*row, ""] if len(row) == width - 1 and separator != BLANKS and row[0] else row
         row[:1] = [_LEADING.sub("", row[0])] if row else []
-        if len(row) == width and any(row) and not any(map(is_number, row)):
+        if (
+            len(row) == width
+            and any(row)
+            and (not any(map(is_number, row)) or (numbered and not all(map(is_number, row))))
+        ):
             return row
     return None
 
