@@ -102,7 +102,7 @@ class Added:
         stages: the model after none, one, ... all of them.
         gaps: velocity gaps, simulated for every addition.
         recorded: the recording, and the holdout where there is one.
-        rejected: the others, with the reason.
+        rejected: the others, also those whose size is not determined, with the reason.
         refined: the final model, its quantities refined by simulation where that helps.
         repeats: whether the recording's events occur in the holdout too.
         compared: whether the holdout is of this axis.
@@ -140,7 +140,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         recorded.append(Recorded(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
     extension = Extension(recordings.rows, found.hypothesis, suspects.detected, recordings.rig)
     closed_loop = closed_loop_gap(recordings, extension)
-    rejected: list[Rejected] = []
+    rejected = [Rejected(*one) for one in suspects.unsized.items()]
     while True:
         refused = refusals(recordings, extension.fitted)
         modelled = last_determined(recordings, extension, suspects.policy) if refused else extension

@@ -19,7 +19,7 @@ from bench.arrays import Array, known_rms, rms
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, Rejected, add
-from bench.diagnosis.name import NamedEffect, name
+from bench.diagnosis.name import NamedEffect, name, with_interval
 from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.policy import ERRS_TWICE, POLICY, Policy
 from bench.diagnosis.probability import Probabilities
@@ -490,10 +490,10 @@ def undetermined(shown: Shown) -> str:
             found = one.parameters.get(quantity.name)
             itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
             if found is not None and found.half_width > (abs(found.value) if itself is None else itself):
-                return f"{one.name}: {_with_interval(quantity.name, found)} is not determined"
+                return f"{one.name}: {with_interval(quantity.name, found)} is not determined"
     for friction, (found, torque) in shown.friction.items():
         if found.half_width > abs(found.value) and found.half_width * torque > shown.torque.noise_floor:
-            return f"{_with_interval(friction, found)} is not determined"
+            return f"{with_interval(friction, found)} is not determined"
     return ""
 
 
@@ -501,7 +501,7 @@ def negative_friction(shown: Shown) -> str:
     """Friction is negative by more than noise, so it includes something else."""
     for friction, (found, torque) in shown.friction.items():
         if found.value < 0.0 and (found.ci95[1] < 0.0 or -found.value * torque > shown.torque.noise_floor):
-            return f"{_with_interval(friction, found)} is negative"
+            return f"{with_interval(friction, found)} is negative"
     return ""
 
 
@@ -534,10 +534,6 @@ def verdict(shown: Shown) -> tuple[str, list[str]]:
     if against:
         return "unexplained_remainder", against
     return ("explained" if shown.effects else "nothing_missing"), []
-
-
-def _with_interval(name: str, found: Parameter) -> str:
-    return f"{name.replace('_', ' ')} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"
 
 
 def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:

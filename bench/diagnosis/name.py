@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -26,6 +26,7 @@ from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit, hint, shaped, unbiased
 from bench.fit.hypothesis import Term
 from bench.fit.quantities import uncertain
+from bench.names import words
 from bench.parameter import Parameter
 
 
@@ -70,6 +71,7 @@ class Suspects:
         withheld: whether something was found whose name was not to be tried.
         policy: that decided.
         excluded: names that were not to be tried.
+        unsized: why the size of what was found at first is not determined, by name; these were then not tried either.
     """
 
     searched: Searched
@@ -78,21 +80,53 @@ class Suspects:
     withheld: bool
     policy: Policy
     excluded: frozenset[str] = frozenset()
+    unsized: Mapping[str, str] = field(default_factory=dict)
 
 
 def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy) -> Suspects:
-    """The likeliest names of those that a search finds and their neighbours, and what the signals show directly."""
-    effects = [effect for name, effect in catalogue().items() if name not in excluded]
-    searched = search(bare, effects, policy)
-    hypotheses = scored([*neighbourhood(searched, excluded, policy)], recordings.holdout_rows, policy)
+    """The likeliest names of those that a search finds and their neighbours, and what the signals show directly.
+
+    An effect whose size the recording does not determine is not found: the search is repeated without it.
+    """
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
-    likely = probabilities(hypotheses, frozenset(effect.name for effect in kept), policy)
-    chosen = likely.fits[likely.chosen.names]
-    last = with_events(chosen, effects, policy)
+    direct, unsized = frozenset(effect.name for effect in kept), dict[str, str]()
+    while True:
+        untried = excluded | unsized.keys()
+        effects = [effect for name, effect in catalogue().items() if name not in untried]
+        searched = search(bare, effects, policy)
+        hypotheses = scored([*neighbourhood(searched, untried, policy)], recordings.holdout_rows, policy)
+        likely = probabilities(hypotheses, direct, policy)
+        chosen = likely.fits[likely.chosen.names]
+        last = with_events(chosen, effects, policy)
+        more = without_size(last, recordings)
+        if not more:
+            break
+        unsized |= more
     standing = frozenset(term.effect.name for term in last.terms[len(chosen.terms) :])
     likely = replace(likely, detected=likely.detected | standing)
     withheld = len(kept) < len(recordings.detected)
-    return Suspects(searched.ending(last), likely, kept, withheld, policy, excluded)
+    return Suspects(searched.ending(last), likely, kept, withheld, policy, excluded, unsized)
+
+
+def without_size(fitted: Fit, recordings: Recordings) -> dict[str, str]:
+    """Why the size of an effect is not determined, by name: of all its terms the intervals contain its absence."""
+    if not fitted.terms:
+        return {}
+    numbers, sizes = uncertain(fitted), dict[str, list[tuple[str, Parameter]]]()
+    for index, term in enumerate(fitted.terms):
+        values = numbers.quantities(index, partial(_unit, recordings))
+        known = [(each.name, values[each.name]) for each in term.effect.quantities if each.null is not None]
+        sizes.setdefault(term.effect.name, []).extend(known)
+    return {
+        name: f"{with_interval(*known[0])} is not determined"
+        for name, known in sizes.items()
+        if known and all(abs(one.value) <= numbers.reach * one.std_error for _, one in known)
+    }
+
+
+def with_interval(name: str, found: Parameter) -> str:
+    """A quantity with half of its interval in words."""
+    return f"{words(name)} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"
 
 
 def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:

@@ -405,9 +405,10 @@ def _estimate_of(
 def _shifted(found: Solution) -> Iterator[str]:
     (shift, error), period = found.shift, found.rows.scope.sample_period
     if abs(shift) > period and abs(shift) > SURE * error and found.shift_explains > A_DELAY:
+        side, cause = ("behind", "a filter of the effort") if shift > 0.0 else ("ahead of", "a lag of drive or speed")
         yield (
-            f"current and speed are {shift * 1e3:.3g} ms apart, more than a sample ({period * 1e3:.3g} ms): "
-            "a lag in the drive or its filters, which bench diagnose can tell"
+            f"the effort is recorded {abs(shift) * 1e3:.3g} ms {side} the speed, more than a sample "
+            f"({period * 1e3:.3g} ms): {cause}, or columns recorded at different times; {TELLS}"
         )
 
 

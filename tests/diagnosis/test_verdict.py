@@ -196,7 +196,7 @@ def test_a_holdout_with_half_as_much_friction_again_is_no_proof_that_nothing_is_
 def test_friction_that_drives_is_reported():
     found = diagnose(recorded(MOTION, lambda motion: -1.5 * COULOMB * motion.sign), RIG, excluded=NONE)
     assert found.verdict == "unexplained_remainder"
-    assert any("coulomb friction torque" in said and "negative" in said for said in found.because)
+    assert any("Coulomb friction torque" in said and "negative" in said for said in found.because)
 
 
 AGAINST = {
