@@ -22,7 +22,7 @@ def write(folder: Path) -> None:
         time,
         np.round(position / 4e-4) * 4e-4,
         velocity + 0.05 * rng.normal(size=time.size),
-        torque + 0.15 * rng.normal(size=time.size),
+        torque + 0.05 * rng.normal(size=time.size),
     )
     head = "time,position,velocity,torque"
     np.savetxt(folder / "log.csv", np.column_stack(columns), "%.6f", ",", header=head, comments="")
