@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 from bench.trace.channel import Recording
 from bench.trace.choose import axes_of
-from bench.trace.signals import REFERENCE, SI_UNITS, WORDS, is_index, unit_in_name
+from bench.trace.signals import REFERENCE, SI_UNITS, WORDS, is_index, signal_of, unit_in_name
 
 _SIGNALS = {signal: re.compile(words, re.IGNORECASE) for signal, words in WORDS.items()}
 _MEASURED = re.compile(r"meas|measured|act|actual|present|feedback|fb|raw", re.IGNORECASE)
@@ -55,6 +55,11 @@ def by_joints(recording: Recording) -> Recording:
         if name.joint in joints if channels[place].axis is None else name.joint == channels[place].axis:
             plain = name.measured or (name.signal, name.joint) not in measured  # `pos_meas1` beside `pos1`
             channels[place] = replace(channels[place], axis=name.joint, signal=name.signal if plain else None)
+    axes = set(axes_of(channels))
+    for place, channel in enumerate(channels):
+        whose = channel.name.rpartition(".")[0]  # times of one axis, as `run.2.t` are of `run.2`
+        if channel.axis is None and whose in axes and signal_of(channel.name) == "time":
+            channels[place] = replace(channel, axis=whose)
     return replace(recording, channels=tuple(channels))
 
 

@@ -1,11 +1,15 @@
 import json
+import struct
+import zlib
 
 import numpy as np
 import pytest
 from scipy.io import loadmat, savemat
 
 from bench.errors import InputError
+from bench.trace.choose import GivenOptions
 from bench.trace.read import read, read_recording
+from bench.trace.trace import assemble
 from tests.trace.recordings import shared
 
 TWINCAT = (
@@ -164,3 +168,54 @@ def test_bam_recording():
 def test_frequency_response_is_refused():
     with pytest.raises(InputError, match="frequency-response measurement, which holds no motion"):
         read(shared("formats", "freq_trace.XML"))
+
+
+def test_mat_cells_and_arrays_of_structs(tmp_path):
+    time = np.arange(100) * 1e-3
+    runs = np.zeros((1, 2), dtype=[("t_s", object), ("w_rad_s", object)])
+    runs[0, 0], runs[0, 1] = (time, 2.0 * time), (time + 1.0, 3.0 * time)
+    cells = np.empty((1, 2), dtype=object)
+    cells[0, :] = [time, 5.0 * time]
+    savemat(tmp_path / "run.mat", {"run": runs, "cell": cells})
+    recording = read_recording(tmp_path / "run.mat")
+    assert [channel.name for channel in recording.channels] == [
+        *(f"run.{place}.{name}" for place in (1, 2) for name in ("t_s", "w_rad_s")),
+        *("cell.1", "cell.2"),
+    ]
+    trace = assemble(recording, GivenOptions({"velocity": "run.2.w_rad_s", "time": "run.2.t_s"}))
+    np.testing.assert_allclose(trace["velocity"], 3.0 * time)
+    np.testing.assert_allclose(assemble(recording, GivenOptions(axis="run.2")).time, time + 1.0)
+    np.testing.assert_allclose(
+        read(tmp_path / "run.mat", {"velocity": "cell.2 [rad/s]", "time": "cell.1 [s]"}).time, time
+    )
+
+
+def test_iddata_in_a_struct(tmp_path):
+    """System Identification Toolbox: `s = get(d)` has the samples, their names and units, and the sample time."""
+    values = np.random.default_rng(1).standard_normal((100, 3))
+    names = {"OutputName": np.array([["position"], ["velocity"]], dtype=object), "InputName": "current"}
+    units = {"OutputUnit": np.array([["deg"], ["deg/s"]], dtype=object), "InputUnit": "mA", "TimeUnit": "milliseconds"}
+    data = {"OutputData": values[:, :2], "InputData": values[:, 2:], "Ts": 2.0, "Tstart": 4.0, **names, **units}
+    savemat(tmp_path / "run.mat", {"s": {**data, "SamplingInstants": np.empty((0, 0))}})
+    trace = read(tmp_path / "run.mat")
+    np.testing.assert_allclose(trace.time, 4e-3 + 2e-3 * np.arange(100))
+    np.testing.assert_allclose(trace["position"], np.radians(values[:, 0]))
+    np.testing.assert_allclose(trace["velocity"], np.radians(values[:, 1]))
+    np.testing.assert_allclose(trace["current"], 1e-3 * values[:, 2])
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_an_object_of_matlab_is_refused_with_what_to_run_there(tmp_path, packed):
+    def element(kind, data):
+        return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
+
+    flags = [element(6, struct.pack("<II", kind, 0)) for kind in (17, 13)]
+    handle = flags[1] + element(5, struct.pack("<ii", 6, 1)) + element(1, b"") + element(6, bytes(24))
+    opaque = flags[0] + element(1, b"T") + element(1, b"MCOS") + element(1, b"table") + element(14, handle)
+    body = element(14, opaque)
+    if packed:
+        body = struct.pack("<II", 15, len(zlib.compress(body))) + zlib.compress(body)
+    header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
+    (tmp_path / "run.mat").write_bytes(header + body)
+    with pytest.raises(InputError, match=r"holds an object of MATLAB .* writetable\(T, 'run.csv'\)"):
+        read(tmp_path / "run.mat")

@@ -44,6 +44,8 @@ _NUMBERS = frozenset((1, 2, 3, 4, 5, 6, 7, 9, 12, 13))
 _TYPES = _NUMBERS | {_MATRIX, _COMPRESSED, 16, 17, 18}
 _SPARSE, _CHARACTERS = 5, 4
 _COMPLEX = 0x0800
+#: Fields of iddata in a struct.
+_IDDATA = ("OutputData", "InputData")
 #: Structs and cells in one another.
 _DEEPEST = 32
 #: Elements of a matrix of class: flags, dimensions, name, and its data; numeric classes are 6 to 15.
@@ -191,11 +193,24 @@ def _read_mat(source: Source) -> Recording:
     channels: list[Channel] = []
     metadata: dict[str, str] = {}
     for name, value in _variables(load_mat(source.content, source.path)):
-        if isinstance(value, np.ndarray) and is_samples(value):
+        if isinstance(value, dict):
+            channels.extend(_of_iddata(name, value, source.path))
+        elif isinstance(value, np.ndarray) and is_samples(value):
             channels.extend(channels_of(name, value, source.path))
         elif np.isscalar(value) or (isinstance(value, np.ndarray) and value.size == 1):
             metadata[name] = str(value)
+    if not channels and b"MCOS" in _plain_start(source.content):
+        found = "holds an object of MATLAB (table, timetable, timeseries, iddata), which only MATLAB opens"
+        lines = "for a table T: writetable(T, 'run.csv'); for iddata d: s = get(d); save('run.mat', 's', '-v7')"
+        raise InputError(source.path, found, f"allowed: numeric vectors; in MATLAB, {lines}")
     return _recording(MAT, source, channels, metadata, "numeric vector", "vectors")
+
+
+def _plain_start(content: bytes) -> bytes:
+    """The first variable as it is stored, unpacked."""
+    (kind,) = struct.unpack("<I", content[_HEADER : _HEADER + 4].ljust(4))
+    packed = content[_HEADER + 8 :]
+    return zlib.decompressobj().decompress(packed, 4096) if kind == _COMPRESSED else packed[:4096]
 
 
 NUMPY = FileFormat("NumPy", (".npz", ".npy"), _is_numpy, _read_numpy)
@@ -220,11 +235,31 @@ def load_mat(content: bytes, where: str) -> dict[str, Any]:
 
 
 def _variables(content: dict, prefix: str = "") -> Iterator[tuple[str, object]]:
+    """Variables by their names; of structs `struct.field`, of cells and arrays of structs `cell.1`; iddata whole."""
     for name, value in content.items():
-        if isinstance(value, dict):
+        if isinstance(value, list) or (isinstance(value, np.ndarray) and value.dtype == object):
+            value = {str(place): one for place, one in enumerate(np.ravel(np.array(value, dtype=object)), 1)}
+        if isinstance(value, dict) and all(np.ndim(value.get(data, "")) for data in _IDDATA):
+            yield prefix + name, value
+        elif isinstance(value, dict):
             yield from _variables(value, f"{prefix}{name}.")
         elif not name.startswith("__"):
             yield prefix + name, value
+
+
+def _of_iddata(name: str, data: dict, path: str) -> Iterator[Channel]:
+    """Channels of iddata that was saved as a struct (System Identification Toolbox), under its names and units."""
+    count = len(data[_IDDATA[0]])
+    instants = np.ravel(data.get("SamplingInstants", ()))
+    if instants.size != count:
+        instants = np.ravel(data.get("Tstart", ())).sum() + np.arange(count) * float(data["Ts"])
+    yield Channel(f"{name}.time", str(data.get("TimeUnit", "seconds")), instants.astype(np.float64), path)
+    for side in ("Output", "Input"):
+        names, units = (np.atleast_1d(data.get(f"{side}{what}", ())) for what in ("Name", "Unit"))
+        for k, values in enumerate(np.reshape(data[f"{side}Data"], (count, -1)).T):
+            unit = str(units[k]) if k < units.size else ""
+            label = str(names[k]) if k < names.size else f"{side.lower()}{k + 1}"
+            yield Channel(f"{name}.{label}", unit or None, np.array(values, dtype=np.float64), path)
 
 
 def _check_structure(content: bytes, where: str) -> None:
