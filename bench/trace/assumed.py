@@ -69,7 +69,7 @@ def assumed_units(channels: Mapping[str, Channel], units: Mapping[str, str | Non
     ratio = travel_ratio(*moved) if moved is not None and clock is not None else None
     if ratio is None or clock is None or all(units[name] is not None for name in usual):
         return found
-    _compare(abs(ratio) / _seconds(clock), usual, units, known, found)
+    _compare(abs(ratio) / _factor("time", clock), usual, units, known, found)
     return found
 
 
@@ -111,10 +111,6 @@ def _moved(channels: Mapping[str, Channel], known: Mapping[str, str]) -> tuple[A
 def _factor(name: str, unit: str) -> float:
     scale = scale_or_none(unit, wanted_units(name))
     return scale.factor if scale is not None else np.nan
-
-
-def _seconds(unit: str) -> float:
-    return _factor("time", unit)
 
 
 def _implausible(name: str, values: Array, si: str) -> str | None:
