@@ -25,6 +25,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.gate.check import Check
 from bench.gate.gate import STEADY as STEADY_CHECKS
 from bench.gate.gate import joined, passed
+from bench.rig.given import Given, GivenRig, Units, recordings_of
 from bench.rig.rig import Rig
 from bench.trace.motion import measured_velocity
 from bench.trace.trace import Trace
@@ -98,15 +99,16 @@ class FrictionMap:
     checks: tuple[Check, ...] = ()
 
 
-def friction_map(recordings: Sequence[Trace], rig: Rig) -> FrictionMap:
-    """Friction over the speeds of recordings at one speed each.
+def friction_map(recordings: Sequence[Given], rig: GivenRig | None = None, units: Units | None = None) -> FrictionMap:
+    """Friction over the speeds of recordings at one speed each; arguments as `identify` takes them.
 
     Raises:
         UndeterminedError: fewer than LEAST speeds in a direction, or none twice as fast as another.
         InputError: a recording holds no torque or speed, fails a check, keeps no speed or was given twice, recordings
             give efforts in different units, or torque and speed are counted in opposite directions.
     """
-    gated = [passed(trace, rig, STEADY_CHECKS) for trace in recordings]
+    rig, traces = recordings_of(recordings, rig, units)
+    gated = [passed(trace, rig, STEADY_CHECKS) for trace in traces]
     velocity, effort, unit = _points([one.trace for one in gated], rig)
     total = float(effort @ effort)
     plain = _fitted("", (), velocity, effort)

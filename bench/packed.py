@@ -31,8 +31,8 @@ _UNKNOWN = (ValueError, KeyError, TypeError, AttributeError, ImportError, OSErro
 _SERIES = {kind.__name__: kind for kind in (tuple, list, frozenset)}
 
 
-def pack(path: Path, result: object) -> None:
-    """Write a dataclass of the bench whole into a file; InputError where that cannot be written.
+def pack(path: Path, result: object) -> Path:
+    """Write a dataclass of the bench whole into a file, whose path is returned; InputError where it cannot be written.
 
     TypeError: a part of it is neither a dataclass, an effect, an array, a number nor a text, nor made of those.
     """
@@ -41,6 +41,7 @@ def pack(path: Path, result: object) -> None:
     with whole(path) as temporary, temporary.open("wb") as file:
         arrays[_PARTS] = np.array(parts)
         np.savez_compressed(file, allow_pickle=False, **arrays)
+    return path
 
 
 def unpack(path: Path, kind: type) -> Any:  # noqa: ANN401 - of this kind

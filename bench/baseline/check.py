@@ -25,7 +25,7 @@ from bench.effects.effect import Occasional
 from bench.errors import InputError
 from bench.names import nearest
 from bench.presented import Presented
-from bench.rig.given import Given, recordings_of, rig_of
+from bench.rig.given import Given, GivenRig, Units, recordings_of
 from bench.rig.rig import CheckTable, Rig
 from bench.units import parse
 
@@ -56,30 +56,30 @@ _MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}
 
 def check(
     trace: Given | Sequence[Given],
-    rig: Rig | str | Path,
+    rig: GivenRig | None,
     baseline: State | str | Path,
     false_alarm_rate: float = FALSE_ALARM_RATE,
     progress: Callable[[float], None] = lambda share: None,
+    units: Units | None = None,
 ) -> Checked:
     """Whether an axis still is as its baseline; effects are searched for if the baseline names them.
 
     Args:
         trace: a recording of the axis now, or its file, arrays or a data frame; or a list of several.
-        rig: of the axis, or its file, or a shipped rig's name.
+        rig: of the axis, as `identify` takes it.
         baseline: its earlier state, or the file that `bench check --update` wrote.
         false_alarm_rate: probability that an axis within its margins is called changed, over all comparisons.
         progress: called with the share done.
+        units: of columns by their names, which replace those of the file or data frame.
 
     Raises:
         UndeterminedError: the recording does not determine what the baseline holds.
         InputError: rig and recording do not fit together, or the baseline is that of a model.
     """
-    rig = rig_of(rig)
+    rig, traces = recordings_of(trace, rig, units)
     baseline = baseline if isinstance(baseline, State) else read_baseline(Path(baseline))
     baseline.require_source("recordings")
-    return compare(
-        baseline, observe(recordings_of(trace, rig), rig, baseline.names, progress), Allowed.of(rig), false_alarm_rate
-    )
+    return compare(baseline, observe(traces, rig, baseline.names, progress), Allowed.of(rig), false_alarm_rate)
 
 
 @dataclass(frozen=True, repr=False)

@@ -181,15 +181,28 @@ def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
 
 
 def deliver(
-    document: Document, text: Callable[[], str], json: Path | None, out: Path | None, ending: str = ".png"
+    document: Document,
+    text: Callable[[], str],
+    json: Path | None,
+    out: Path | None,
+    ending: str = ".png",
+    whole: bench.Diagnosis | None = None,
 ) -> None:
-    """Write a result into a folder and as JSON, where they are asked for, in one; show it, and list its files."""
+    """Write a result into a folder and as JSON, where they are asked for, in one; show it, and list its files.
+
+    `whole`: a diagnosis that can be loaded from the folder.
+    """
     files: list[Path] = []
     with nullcontext() if out is None else held(out):
         if out is not None:
             from bench.report.publish import write_document  # jinja2 and matplotlib: 0.5 s
 
             files = write_document(out, document, ending)
+            if whole is not None:
+                from bench.diagnosis.diagnosis import PACKED
+                from bench.packed import pack
+
+                files.append(pack(out / PACKED, whole))
         write_json(json, text)
     tell(document, files, json)
 
@@ -325,8 +338,9 @@ def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.
     if trace is None:
         raise InputError("--rig", "missing", "allowed: a rig file, or --mjcf and --joint")
     from bench.rig.given import drafted
+    from bench.trace.read import read_recording
 
-    rig, text, assumed = drafted(trace, axis)
+    rig, text, assumed = drafted(read_recording(trace), axis)
     if draft is not None:
         write_text(draft, text)
     warn([f"{assumed}. {f'It is {draft} now' if draft is not None else '--draft rig.toml keeps it'}"])

@@ -166,7 +166,7 @@ def diagnose(
     basis = of.provenance(traces, {"without": sorted(excluded)}, holdout)
     moving = [] if out is None else _moving(found, of, traces[0], recordings[0])
     document = diagnosis(found, f"{axis.name}: {names}", basis, moving)
-    common.deliver(document, lambda: diagnosis_json(found, basis), json, out, f".{figures}")
+    common.deliver(document, lambda: diagnosis_json(found, basis), json, out, f".{figures}", found)
 
 
 def robot(

@@ -43,7 +43,7 @@ from bench.packed import unpack
 from bench.parameter import Parameter
 from bench.plant.model_file import StoredModel, model_xml
 from bench.presented import Presented
-from bench.rig.given import Given, recordings_of, rig_of, trace_of
+from bench.rig.given import Given, GivenRig, Units, recordings_of, trace_of
 from bench.rig.rig import Rig
 from bench.trace.motion import measured_velocity
 from bench.trace.noise import white_noise
@@ -204,12 +204,13 @@ class Diagnosis(Presented):
 
     @classmethod
     def load(cls, folder: str | Path) -> Diagnosis:
-        """The diagnosis of a folder that `save` wrote, with all that it draws.
+        """The diagnosis of a folder that `save` or `bench diagnose --out` wrote, with all that it draws.
 
         Raises:
             InputError: no such folder, or one of another version of the bench.
         """
-        return unpack(Path(folder) / PACKED, cls)
+        path = Path(folder)
+        return unpack((path.parent if path.is_file() else path) / PACKED, cls)
 
     @property
     def mjspec(self) -> mujoco.MjSpec:
@@ -221,31 +222,33 @@ class Diagnosis(Presented):
 
 def diagnose(
     trace: Given | Sequence[Given],
-    rig: Rig | str | Path,
+    rig: GivenRig | None = None,
     holdout: Given | None = None,
     excluded: Collection[str] = (),
     progress: Callable[[float], None] = lambda share: None,
     policy: Policy = POLICY,
+    units: Units | None = None,
 ) -> Diagnosis:
     """Find what is missing, name it, add it, and show the gap shrink.
 
     Args:
         trace: the recording, or its file, arrays by their names or a data frame; or a list of several of one axis,
             which are joined (`bench.trace.trace.join`).
-        rig: of the axis, or its file, or a shipped rig's name.
+        rig: of the axis, as `identify` takes it.
         holdout: another recording of it, not used to fit.
         excluded: names of effects that are not tried, or of one.
         progress: called with the share done.
         policy: numbers that decide on names.
+        units: of columns by their names, which replace those of the file or data frame.
 
     Raises:
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
         InputError: rig and recording do not fit together, or a check of a recording fails.
     """
-    rig = rig_of(rig)
+    rig, traces = recordings_of(trace, rig, units)
     left_out = frozenset(named(one, "excluded").name for one in ([excluded] if isinstance(excluded, str) else excluded))
-    gated = [passed(each, rig) for each in recordings_of(trace, rig)]
-    unseen = passed(trace_of(holdout, rig), rig).trace if holdout is not None else None
+    gated = [passed(each, rig) for each in traces]
+    unseen = passed(trace_of(holdout, rig, units), rig).trace if holdout is not None else None
     recordings = Recordings.of([each.trace for each in gated], rig, unseen)
     bare = fit_bare(recordings.rows)
     suspects = name(recordings, bare, left_out, policy)

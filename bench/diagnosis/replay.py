@@ -23,7 +23,7 @@ from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
 from bench.plant.model_file import StoredModel, load_model, read_table
 from bench.plant.tracking import SoftTracking, Tracked, run_free, track
-from bench.rig.given import Given, rig_of, trace_of
+from bench.rig.given import Given, GivenRig, Units, rig_of, trace_of
 from bench.rig.rig import Rig
 from bench.structured import csv_text
 from bench.trace.motion import measured_position, measured_velocity, stretches_of
@@ -97,13 +97,14 @@ class Replay:
         return csv_text(head.split(","), np.column_stack([self.time, *both]).tolist())
 
 
-def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -> Replay:
+def replay(model: Diagnosis | str | Path, trace: Given, rig: GivenRig, units: Units | None = None) -> Replay:
     """Run the model of a diagnosis, or of the `model.toml` that it wrote, along a recording.
 
     Args:
-        model: the diagnosis, or the file's path.
+        model: the diagnosis, or the path of the file or of its folder.
         trace: the recording, or its file, arrays by their names or a data frame.
-        rig: of the axis, or its file, or a shipped rig's name.
+        rig: of the axis, as `identify` takes it.
+        units: of columns by their names, which replace those of the file or data frame.
 
     Raises:
         InputError: no model, one without the torque balance that `bench diagnose` writes, or of another kind of axis.
@@ -111,7 +112,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: Rig | str | Path) -
         SimulationError: the model diverged.
     """
     rig = rig_of(rig)
-    trace = trace_of(trace, rig)
+    trace = trace_of(trace, rig, units)
     path, table, balance, stored = parts_of(model, rig)
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
@@ -147,6 +148,9 @@ def parts_of(
     model: Diagnosis | str | Path, rig: Rig
 ) -> tuple[str | Path, Mapping[str, Any], Balance, StoredModel | None]:
     """Of a model of the rig's kind: where it is from, kind and name, its torque balance, what MuJoCo runs of it."""
+    if not isinstance(model, Diagnosis | str | Path):
+        allowed = "allowed: the diagnosis itself, replay(found, ...), or the folder that found.save(folder) wrote"
+        raise InputError("model", f"found {type(model).__name__}, which has no torque balance", allowed)
     if isinstance(model, Diagnosis):
         path, one = "diagnosis", model.model
         table = {} if one is None else {"kind": one.model.parameters.kind.name, "name": one.name}

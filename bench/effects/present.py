@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from bench.axis_kind import ROTARY, AxisKind
 from bench.effects.catalogue import catalogue
@@ -84,6 +85,32 @@ def known_quantity(effect: Effect, key: str, where: str) -> Quantity:
     return effect.quantities[names.index(key)]
 
 
+GivenEffects: TypeAlias = Present | str | Sequence[Present | str] | Mapping[str, Mapping[str, float | str]]
+
+
+def given_effects(given: GivenEffects, kind: AxisKind) -> list[Present]:
+    """Effects as a caller gives them: one or several, as texts of the command line or by name with their values.
+
+    Raises:
+        InputError: as `parse_effect`, or values that are no dictionary.
+    """
+    if not isinstance(given, Mapping):
+        every = [given] if isinstance(given, Present | str) else given
+        return [parse_effect(one, kind) if isinstance(one, str) else one for one in every]
+    for name, values in given.items():
+        if not isinstance(values, Mapping):
+            names = ", ".join(f'"{quantity.name}": ...' for quantity in named(name, "effects").quantities)
+            raise InputError(f"effects: {name}", f"found {values!r}", f"allowed: {{{names}}}")
+    return [_valued(named(name, "effects"), values, kind, "effects") for name, values in given.items()]
+
+
+def _valued(effect: Effect, values: Mapping[str, object], kind: AxisKind, where: str) -> Present:
+    """The effect with values in SI, or as texts with a unit."""
+    units = {key: kind.unit(known_quantity(effect, key, where)) for key in values}
+    found = {key: parse_value(str(values[key]), unit, f"{where}: {key}") for key, unit in units.items()}
+    return Present.of(effect.name, found, where)
+
+
 def parse_effect(text: str, kind: AxisKind = ROTARY) -> Present:
     """`NAME:key=value,key=value` as on the command line; a value without a unit is SI.
 
@@ -98,9 +125,8 @@ def parse_effect(text: str, kind: AxisKind = ROTARY) -> Present:
         key, sign, value = (piece.strip() for piece in part.partition("="))
         if not sign:
             raise InputError(where, f"found '{part}'", "allowed: key=value, separated by commas")
-        quantity = known_quantity(effect, key, where)
-        values[key] = parse_value(value.strip("\"'"), kind.unit(quantity), f"{where}: {key}")
-    return Present.of(effect.name, values, where)
+        values[key] = value.strip("\"'")
+    return _valued(effect, values, kind, where)
 
 
 def parse_value(text: str, unit: str, where: str) -> float:

@@ -111,11 +111,12 @@ class Estimate(Presented):
 
     @classmethod
     def load(cls, path: str | Path) -> Estimate:
-        """The estimate of a file that `save` wrote, as `bench identify --json` does.
+        """The estimate of a file that `save` wrote, as `bench identify --json` does, or of the folder of its `--out`.
 
         Raises:
             InputError: no such file, or one that holds none.
         """
+        path = Path(path) / "identify.json" if Path(path).is_dir() else path
         table = parse_json(read_text(path, "an estimate"), path)
         try:
             residual, smooth = _with_nan(table["residual"]), _with_nan(table["filter"])

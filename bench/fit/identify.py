@@ -31,8 +31,6 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
-from pathlib import Path
-from typing import cast
 
 import numpy as np
 
@@ -59,10 +57,11 @@ from bench.fit.solution import (
 from bench.gate.check import Check
 from bench.gate.gate import PARTS, gate, joined, passed, require
 from bench.parameter import Parameter
-from bench.rig.given import Given, rig_of, trace_of
+from bench.rig.given import Given, GivenRig, Units, given
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
+from bench.units import parse
 
 #: Cut-offs tried below the highest, relative to it: a decade in four steps.
 BELOW = 10.0 ** -np.arange(0.25, 1.01, 0.25)
@@ -84,8 +83,9 @@ Summed = tuple[NormalEquations, int, tuple[Check, ...]]
 
 def identify(
     trace: Given | Iterator[Trace] | Sequence[Given | Iterator[Trace]],
-    rig: Rig | str | Path,
-    cutoff: float | None = None,
+    rig: GivenRig | None = None,
+    cutoff: float | str | None = None,
+    units: Units | None = None,
 ) -> Estimate:
     """Inertia, viscous and Coulomb friction (and offset, if the rig asks for it) of a recording, or of several.
 
@@ -97,8 +97,10 @@ def identify(
         trace: the recording, or its file, arrays by their names or a data frame; an iterator over its consecutive
             parts, for one that does not fit into memory; or a list (tuple) of several of one axis, which are fitted
             together.
-        rig: what is known about the axis, or its file, or a shipped rig's name.
-        cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz.
+        rig: what is known about the axis: a rig, its file, a shipped rig's name or its tables as a dictionary, where
+            numbers without a unit are SI. Drafted from the recording where none is given.
+        cutoff: half-power frequency of the filter instead of the one chosen from the data - Hz, or `"50 Hz"`.
+        units: of columns by their names, which replace those of the file or data frame.
 
     Raises:
         RefusedEstimateError: the recordings leave one of them undetermined; the error carries the others.
@@ -106,9 +108,8 @@ def identify(
         InputError: no recording, one that is given twice, a signal is missing, efforts in different units, rig and
             trace do not fit together, or a check of a recording fails.
     """
-    rig = rig_of(rig)
-    every = trace if isinstance(trace, list | tuple) else [cast("Given", trace)]
-    recordings = [one if isinstance(one, Iterator) else trace_of(one, rig) for one in every]
+    rig, recordings = given(trace, rig, units)
+    cutoff = parse(cutoff, "Hz", "cutoff") if isinstance(cutoff, str) else cutoff
     gathered = [_gather(one, rig, cutoff) for one in recordings]
     if len(gathered) == 1:
         found = _estimated_alone(gathered[0], gathered[0].solution, rig)

@@ -11,7 +11,7 @@ from bench.axis_kind import INERTIA
 from bench.gate.check import Check, Seen, absent
 from bench.trace.trace import ASSUMED_UNITS
 
-NAME = "agrees_with_rig"
+NAME, UNITS = "agrees_with_rig", "units"
 #: Factor between what is found and what the rig says that is reported, and that is refused.
 WARNED, REFUSED = 1.2, 3.0
 #: Share of the effort that motion explains from which on the coarse balance tells an inertia.
@@ -35,9 +35,9 @@ def agrees(seen: Seen) -> Check:
 
 
 def units(seen: Seen) -> Check | None:
-    """Whether the recording states its units; None where it does."""
-    assumed = seen.trace.metadata.get(ASSUMED_UNITS)
-    return None if assumed is None else Check("units", "warn", assumed, "a unit for each column")
+    """Whether recording and rig state their units; None where they do."""
+    found = [*filter(None, [seen.trace.metadata.get(ASSUMED_UNITS)]), *(seen.rig.assumed if seen.rig else ())]
+    return Check(UNITS, "warn", "; ".join(found), "a unit for each value") if found else None
 
 
 def _compared(seen: Seen) -> Iterator[tuple[float, str]]:

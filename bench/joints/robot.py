@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from bench.axis_kind import ARMATURE
+from bench.effects.present import named
 from bench.errors import InputError, UndeterminedError
 from bench.export.mjcf import Armature, robot_with
 from bench.jobs.process import Failure
@@ -15,7 +16,7 @@ from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links,
 from bench.names import nearest
 from bench.plant.model_file import StoredModel
 from bench.plant.robot import AddedBody, joint_units
-from bench.rig.rig import Rig
+from bench.rig.given import GivenRig, rig_of
 
 #: Share of the progress in which a payload is sought.
 SEEKING = 0.3
@@ -69,10 +70,10 @@ def robot(
     logs: str | Path | Sequence[str | Path],
     mjcf: str | Path,
     holdout: str | Path | None = None,
-    rig: Rig | None = None,
-    joints: Sequence[str] = (),
+    rig: GivenRig | None = None,
+    joints: str | Sequence[str] = (),
     stated: Mapping[str, float] | None = None,
-    excluded: frozenset[str] = frozenset(),
+    excluded: str | Collection[str] = (),
     payload: AddedBody | str | None = None,
     progress: Callable[[float], None] = lambda share: None,
 ) -> IdentifiedRobot:
@@ -82,7 +83,7 @@ def robot(
         logs: one log of all joints, or several that each move a few.
         mjcf: of the robot.
         holdout: another log, not used to fit.
-        rig: what is known of the joints' drives; not needed where the logs hold torque.
+        rig: what is known of the joints' drives, as `identify` takes it; not needed where the logs hold torque.
         joints: names of those to identify; all hinges and slides of the MJCF where none is given.
         stated: positions of joints that stand and that the logs do not hold - rad (m).
         excluded: effects that are not tried.
@@ -92,13 +93,14 @@ def robot(
     Raises:
         InputError: no log, an MJCF that cannot be read, or a joint that it does not have.
     """
-    paths = [Path(log) for log in ([logs] if isinstance(logs, str | Path) else logs)]
-    if not paths:
-        raise InputError("logs", "found none", "allowed: at least one")
+    paths = _paths(logs)
+    known = None if rig is None else rig_of(rig)
+    joints = [joints] if isinstance(joints, str) else joints
+    left_out = frozenset(named(one, "excluded").name for one in ([excluded] if isinstance(excluded, str) else excluded))
     names = _required(Path(mjcf), joints)
     asked = [name for name in names if not joints or name in joints]
     unseen = None if holdout is None else Path(holdout)
-    work = [JointLogs(name, Path(mjcf), tuple(paths), unseen, rig, stated or {}, excluded) for name in asked]
+    work = [JointLogs(name, Path(mjcf), tuple(paths), unseen, known, stated or {}, left_out) for name in asked]
     sought, warnings = None, list[str]()
     if isinstance(payload, str):
         try:
@@ -114,6 +116,16 @@ def robot(
         work = carrying(work, [AddedBody(joint=one.joint, inertia=one.inertia) for one in links])
         found = _identified(work, progress)
     return IdentifiedRobot(Path(mjcf), found, sought, tuple(links), tuple(warnings), work[0].added if work else ())
+
+
+def _paths(logs: str | Path | Sequence[str | Path]) -> list[Path]:
+    """Of one log or several; InputError where there is none, or something else."""
+    every = [*logs] if isinstance(logs, list | tuple) else [logs]
+    wrong = next((type(log).__name__ for log in every if not isinstance(log, str | Path)), None if every else "none")
+    if wrong is not None:
+        allowed = 'allowed: paths of files; of a data frame, frame.to_csv("log.csv")'
+        raise InputError("logs", f"found {wrong}", allowed)
+    return [Path(str(log)) for log in every]
 
 
 def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:

@@ -198,7 +198,8 @@ def _model(table: Mapping[str, Any], path: str) -> StoredModel:
 
 
 def read_table(path: str | Path, schema: str | None = None) -> dict[str, Any]:
-    """The tables of a `model.toml`; InputError where it cannot be read, is no TOML or of another schema."""
+    """The tables of a `model.toml`, or of that in a folder; InputError: unreadable, no TOML or of another schema."""
+    path = Path(path) / "model.toml" if Path(path).is_dir() else path
     return read_toml(path, "a model.toml that the bench wrote", schema)
 
 

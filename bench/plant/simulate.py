@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import gaussian_filter1d
 
 from bench.arrays import Array
-from bench.effects.present import Present, parse_effect
+from bench.effects.present import GivenEffects, Present, given_effects
 from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisParameters, effect_values
@@ -23,8 +22,7 @@ from bench.plant.profile_names import DEFAULT
 from bench.plant.profiles import MOST_TICKS, MotionLimits, plan
 from bench.plant.run import Progress, run
 from bench.plant.sensing import Sensors, reported_states
-from bench.rig.given import rig_of
-from bench.rig.rig import Rig
+from bench.rig.given import GivenRig, rig_of
 from bench.structured import json_text
 from bench.trace.trace import Trace
 
@@ -48,32 +46,31 @@ class Simulated:
 
 
 def simulate(
-    rig: Rig | str | Path,
+    rig: GivenRig,
     profile: str | Trace | ArrayLike = DEFAULT,
     seed: int = 0,
     references: References | None = None,
     progress: Progress | None = None,
-    effects: Present | str | Sequence[Present | str] = (),
+    effects: GivenEffects = (),
 ) -> Simulated:
     """Simulate the axis of a rig.
 
     Args:
-        rig: with `[drive]` and `[simulation]`, or its file, or a shipped rig's name.
+        rig: with `[drive]` and `[simulation]`, as `identify` takes it.
         profile: name of the motion, see `bench.plant.profiles`; or a recording whose motion is followed; or speeds
             - rad/s (m/s) - (n,), one each sample period of `[simulation]`.
         seed: of the sensors' noise.
         references: a motion of one's own, signals of shape (ticks,); `profile` then only names it.
         progress: called with the share done.
-        effects: added to it, in any order; also as texts, `unbalance:amplitude=0.1`.
+        effects: added to it, in any order; as texts, `unbalance:amplitude=0.1`, or by their names in a dictionary,
+            `{"unbalance": {"amplitude": 0.1}}`, with numbers in SI or texts with a unit.
 
     Raises:
         InputError: the rig lacks what the simulation needs, or the profile is unknown.
         SimulationError: the simulation diverged.
     """
     rig = rig_of(rig)
-    every = [effects] if isinstance(effects, Present | str) else effects
-    added = [parse_effect(one, rig.axis_kind) if isinstance(one, str) else one for one in every]
-    plant, sensors = Plant.from_rig(rig, added), Sensors.from_rig(rig)
+    plant, sensors = Plant.from_rig(rig, given_effects(effects, rig.axis_kind)), Sensors.from_rig(rig)
     _require_possible(plant)
     period = plant.cascade.control_period
     if references is None and not isinstance(profile, str):

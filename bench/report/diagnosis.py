@@ -12,13 +12,14 @@ from typing import Any
 
 from bench.axis_kind import ARMATURE, KINDS, AxisKind
 from bench.diagnosis.add import NULL
-from bench.diagnosis.diagnosis import Course, Diagnosis, Gap, Shrunk
+from bench.diagnosis.diagnosis import PACKED, Course, Diagnosis, Gap, Shrunk
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.where import Where
 from bench.effects.acting import Sensing
 from bench.gate.gate import warnings_of
 from bench.names import words
+from bench.packed import pack
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report import document as doc
 from bench.report.gap import at_a_glance, gap_chart, remainder, rms_gaps, states, where_picture
@@ -150,8 +151,8 @@ def _experiment_json(found: Diagnosis) -> dict[str, Any] | None:
 
 
 def write_diagnosis(out: Path, found: Diagnosis, title: str) -> list[Path]:
-    """Write the document of a diagnosis into a folder, which is made if it is not there; the paths written."""
-    return write_document(out, diagnosis(found, title))
+    """Write the document of a diagnosis and all of it packed into a folder, made if need be; the paths written."""
+    return [*write_document(out, diagnosis(found, title)), pack(out / PACKED, found)]
 
 
 def diagnosis(

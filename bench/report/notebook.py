@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bench.axis_kind import KINDS
 from bench.baseline.check import Checked
-from bench.diagnosis.diagnosis import PACKED, Diagnosis
+from bench.diagnosis.diagnosis import Diagnosis
 from bench.errors import InputError
 from bench.files import write_text
 from bench.fit.estimate import Estimate
+from bench.gate.plausible import UNITS
 from bench.names import words
-from bench.packed import pack
 from bench.report.check import check_document, check_json
 from bench.report.diagnosis import diagnosis_json, verdict_sentence, write_diagnosis
 from bench.report.document import Panel, Paragraph, Picture, Table, series
@@ -63,9 +63,10 @@ def overview(result: object) -> Overview:
 
 
 def text(result: object) -> str:
-    """The headline and as many tables as one screen has room for."""
+    """The headline, units that were assumed, and as many tables as one screen has room for."""
     headline, tables, _ = overview(result)
-    lines = str(rendered(Paragraph(text=headline), WIDTH)).splitlines()
+    assumed = [check.found for check in getattr(result, "checks", ()) if check.name == UNITS]
+    lines = [line for one in (headline, *assumed) for line in str(rendered(Paragraph(text=one), WIDTH)).splitlines()]
     for table in tables:
         more = ["", *str(rendered(table, WIDTH)).splitlines()]
         lines += more if len(lines) + len(more) <= LINES else []
@@ -146,6 +147,5 @@ def save(result: object, path: Path) -> None:
     """A folder of a diagnosis, a file of anything else."""
     if isinstance(result, Diagnosis):
         write_diagnosis(path, result, path.name)
-        pack(path / PACKED, result)
     else:
         write_text(path, overview(result).json + "\n")

@@ -7,46 +7,92 @@ user knows.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 from bench.errors import InputError
 from bench.names import short
 from bench.rig.motor import catalogue_motor
 from bench.rig.rig import Rig, load_rig, without_constant
 from bench.structured import parse_toml
+from bench.trace.channel import ARRAYS, Recording
 from bench.trace.choose import GivenOptions
-from bench.trace.from_arrays import Arrays
+from bench.trace.from_arrays import Arrays, recording_of
 from bench.trace.inspect import ColumnSummary, Inspection, inspect_recording
-from bench.trace.read import read, read_recording
-from bench.trace.trace import Trace, assemble
+from bench.trace.read import read_recording
+from bench.trace.trace import Trace, assemble, join
 
 Given: TypeAlias = Trace | str | Path | Arrays
+GivenRig: TypeAlias = Rig | str | Path | Mapping[str, Any]
+Units: TypeAlias = Mapping[str, str]
+#: What tells in a dictionary that the axis is linear.
+_LINEAR = {"moving_mass", "force_constant", "force_per_volt", "rated_force"}
 
 
-def rig_of(given: Rig | str | Path) -> Rig:
-    """A rig, or that of a file or of a shipped one's name; InputError where it is none."""
+def given(
+    traces: Given | Iterator[Trace] | Sequence[Given | Iterator[Trace]],
+    rig: GivenRig | None,
+    units: Units | None = None,
+) -> tuple[Rig, list[Trace | Iterator[Trace]]]:
+    """A rig, drafted from the first recording where none is given, and one recording or a list (tuple) of several.
+
+    Args:
+        traces: a recording, its file, arrays by their names or a data frame, parts of one, or a list of these.
+        rig: or its file, the name of a shipped one, or its tables as a dictionary.
+        units: of columns by their names, which replace those of the file or frame.
+
+    Raises:
+        InputError: one of them is none, or a recording cannot be read.
+    """
+    every = traces if isinstance(traces, list | tuple) else [cast(Given, traces)]
+    known = rig_of(rig) if rig is not None else _drafted_for(every, units)
+    return known, [one if isinstance(one, Iterator) else trace_of(one, known, units) for one in every]
+
+
+def recordings_of(
+    traces: Given | Sequence[Given], rig: GivenRig | None, units: Units | None = None
+) -> tuple[Rig, list[Trace]]:
+    """The same for recordings that are in memory as a whole."""
+    known, every = given(traces, rig, units)
+    return known, [one if isinstance(one, Trace) else join(list(one)) for one in every]
+
+
+def rig_of(given: GivenRig) -> Rig:
+    """A rig, or that of a file, of a shipped one's name, or of tables; InputError where it is none."""
     if isinstance(given, Rig):
         return given
+    if isinstance(given, Mapping):
+        motor = given.get("motor")
+        kind = "linear" if isinstance(motor, Mapping) and _LINEAR & set(motor) else "rotary"
+        return Rig(**{"name": "axis", "kind": kind, **{str(key): value for key, value in given.items()}})
     if not isinstance(given, str | Path):
-        raise InputError("rig", f"found {short(repr(given))}", "allowed: a Rig, a rig file, or a shipped rig's name")
+        allowed = 'allowed: a Rig, a rig file, a shipped rig\'s name, or {"motor": {"torque_constant": "0.8 N*m/A"}}'
+        raise InputError("rig", f"found {short(repr(given))}", allowed)
     return load_rig(given)
 
 
-def trace_of(given: Given, rig: Rig) -> Trace:
+def trace_of(given: Given, rig: Rig, units: Units | None = None) -> Trace:
     """A recording, read as the rig says where it is a file, arrays or a frame; InputError where it is none."""
-    if isinstance(given, Trace):
-        return given
-    if isinstance(given, str | Path):
-        return read(given, rig.trace)
-    return Trace.from_arrays(given, sample_period=rig.trace.sample_period, columns=rig.trace.columns)
+    if not isinstance(given, Trace):
+        return assemble(_recorded(given, units), rig.trace)
+    if units:
+        raise InputError("units", "found with a Trace, which has units", "allowed: with a file, arrays or a frame")
+    return given
 
 
-def recordings_of(given: Given | Sequence[Given], rig: Rig) -> list[Trace]:
-    """One recording or a list (tuple) of several."""
-    every = given if isinstance(given, list | tuple) else [cast(Given, given)]
-    return [trace_of(one, rig) for one in every]
+def _recorded(given: str | Path | Arrays, units: Units | None) -> Recording:
+    return (read_recording(given) if isinstance(given, str | Path) else recording_of(given)).stated(units)
+
+
+def _drafted_for(every: Sequence[Given | Iterator[Trace]], units: Units | None) -> Rig:
+    """The rig that the first recording drafts; what it assumes is a warning of the result."""
+    if not every or isinstance(every[0], Iterator):
+        raise InputError("rig", "missing", "allowed: without one only where a whole recording is given")
+    if isinstance(every[0], Trace):
+        return Rig(name="axis", kind=every[0].axis_kind.name)
+    found, _, assumed = drafted(_recorded(every[0], units))
+    return found.model_copy(update={"assumed": (assumed,)})
 
 
 def draft(inspection: Inspection, motor: str | None = None, axis: str | None = None) -> str:
@@ -70,23 +116,24 @@ def draft(inspection: Inspection, motor: str | None = None, axis: str | None = N
     return "\n".join(lines).rstrip() + "\n"
 
 
-def drafted(path: Path, axis: str | None = None) -> tuple[Rig, str, str]:
+def drafted(recording: Recording, axis: str | None = None) -> tuple[Rig, str, str]:
     """The rig that a recording, or one axis of several in it, drafts: its text too, and what it assumes, in a line.
 
-    InputError where the file leaves open what only the user knows.
+    InputError where the recording leaves open what only the user knows.
     """
-    recording = read_recording(path)
-    found = inspect_recording(recording, GivenOptions(axis=axis))
+    name, found = Path(recording.origin).name, inspect_recording(recording, GivenOptions(axis=axis))
     text = draft(found, axis=axis)
-    rig = Rig.of(parse_toml(text, path), f"rig drafted from {path.name}")
+    rig = Rig.of(parse_toml(text, name), f"rig drafted from {name}")
     try:
         assemble(recording, rig.trace)
     except InputError as error:
-        how = f"bench inspect {path} --draft rig.toml writes a rig file to complete, for --rig"
+        if recording.format == ARRAYS:
+            raise
+        how = f"bench inspect {recording.origin} --draft rig.toml writes a rig file to complete, for --rig"
         raise InputError(error.where, error.found, f"{error.allowed}; {how}") from error
     mapped = [f"{signal} = {column}" for signal, column in rig.trace.columns.items()]
     assumed = "; ".join(filter(None, (f"a {rig.kind} axis", ", ".join(mapped), without_constant(rig))))
-    return rig, text, f"no rig was given, so one was drafted from {path.name}: {assumed}"
+    return rig, text, f"no rig was given, so one was drafted from {name}: {assumed}"
 
 
 def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]:

@@ -224,17 +224,23 @@ class Rig(RigTable):
     check: CheckTable | None = None
     joints: dict[str, JointNotes] = Field(default_factory=dict)
     source: Annotated[str, Field(exclude=True)] = "rig"
+    assumed: Annotated[tuple[str, ...], Field(exclude=True)] = ()
 
     def __init__(self, /, **table: Any) -> None:  # noqa: ANN401 - whatever a rig file holds
-        """Checked from the keys of a rig file, values with units; InputError where they are none."""
+        """Checked from the keys of a rig file, values with units, or numbers in SI; InputError where they are none."""
         source, motor = str(table.get("source", "rig")), table.get("motor")
         if isinstance(motor, dict) and "model" in motor:
             table["motor"] = {**catalogue_motor(motor["model"], f"{source}: motor.model"), **motor}
         kind = LINEAR if table.get("kind") == LINEAR.name else ROTARY
+        numbers: dict[str, str] | None = None if "source" in table else {}
         try:
-            self.__pydantic_validator__.validate_python(table, self_instance=self, context={"kind": kind})
+            context = {"kind": kind, "numbers": numbers}
+            self.__pydantic_validator__.validate_python(table, self_instance=self, context=context)
         except ValidationError as error:
             raise _input_error(source, error) from error
+        if numbers:
+            said = ", ".join(f"{name} in {unit}" for name, unit in numbers.items())
+            vars(self)["assumed"] = (f"numbers of the rig without a unit are taken in SI: {said}",)
 
     @classmethod
     def of(cls, table: Mapping[str, Any], source: str = "rig") -> Rig:

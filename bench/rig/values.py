@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Annotated, Self
 
 from pydantic import (
@@ -16,7 +17,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from bench.axis_kind import ROTARY, AxisKind
+from bench.axis_kind import ROTARY
 from bench.errors import InputError
 from bench.units import parse_with_tolerance
 
@@ -58,13 +59,18 @@ def si(unit: str, translated: bool = False) -> WrapValidator:
     """Validator that turns `"22.4 kg*cm**2"`, or `"22.4 +/- 0.5 kg*cm**2"`, into a number in an SI unit.
 
     That is the unit on a rotary axis; `translated`, a linear one has the value in metres and newtons. The kind of axis
-    comes as `kind` in the validation context.
+    comes as `kind` in the validation context. A number without a unit is SI if the context has `numbers`, a dictionary
+    of the fields that had one and their units.
     """
 
     def read(text: object, check: ValidatorFunctionWrapHandler, info: ValidationInfo) -> float:
-        kind: AxisKind = ROTARY if info.context is None or not translated else info.context["kind"]
+        context = info.context or {}
+        own = (context["kind"] if translated and context else ROTARY).translated(unit)
+        if (numbers := context.get("numbers")) is not None and isinstance(text, Real) and not isinstance(text, bool):
+            numbers[str(info.field_name)] = own
+            text = f"{float(text)!r} {own}"
         try:
-            value, tolerance = parse_with_tolerance(text, kind.translated(unit), "")
+            value, tolerance = parse_with_tolerance(text, own, "")
         except InputError as error:
             raise PydanticCustomError("unit", "{found}; {allowed}", vars(error)) from error
         try:

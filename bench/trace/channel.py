@@ -10,9 +10,11 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.errors import InputError
-from bench.names import short
+from bench.names import nearest, short
 from bench.trace.signals import unit_in_name
 
+#: Format of a recording that is given as arrays or a data frame.
+ARRAYS = "arrays"
 _ELEMENT = re.compile(r"\S\[\d+\]")
 
 
@@ -84,6 +86,27 @@ class Recording:
     metadata: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     usual_units: Mapping[str, str] = field(default_factory=dict)
+
+    def stated(self, units: Mapping[str, str] | None) -> Recording:
+        """The same with units of columns by their names, which replace those of the file.
+
+        Raises:
+            InputError: a column that is not there.
+        """
+        names = [channel.name for channel in self.channels]
+        for name in units or {}:
+            if name not in names:
+                found = f"no such column{nearest(str(name), names)}"
+                raise InputError(f"{self.origin}: unit of {name}", found, f"found: {', '.join(map(short, names))}")
+        if not units:
+            return self
+        return replace(self, channels=tuple(replace(one, unit=units.get(one.name, one.unit)) for one in self.channels))
+
+    def stating(self, signal: str, channel: Channel, unit: str) -> str:
+        """What a user writes to state the unit of a column."""
+        if self.format == ARRAYS:
+            return f'units={{"{channel.name}": "{unit}"}}'
+        return f'{signal} = "{channel.name} [{unit}]" in the rig\'s [trace.columns]'
 
 
 def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:

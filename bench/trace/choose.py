@@ -105,14 +105,14 @@ def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, SignalC
     assumption = _assumption(columns, whole, how)
     for signal, column in columns.items():
         with _fault_of(signal, faults, how):
-            chosen[signal] = column.scaled(signal, assumption)
+            chosen[signal] = column.scaled(signal, assumption, recording)
             notes += [f"{signal}: {note}"] if (note := chosen[signal].scale.note) else []
     _require(recording, chosen, faults, how)
     if "time" not in chosen and how.sample_period is not None:
         index = _index(recording, how.columns)
         chosen |= {"time": SignalColumn(index, _INDEX)} if index is not None else {}
     left = (f"{signal} left out: {fault.where} {fault.found}" for signal, fault in faults.items() if signal != "time")
-    return chosen, (*assumed_note(chosen), *notes, *left)
+    return chosen, (*assumed_note(chosen, recording), *notes, *left)
 
 
 def of_axis(recording: Recording, axis: str | None) -> tuple[Channel, ...]:
@@ -173,13 +173,13 @@ class _Chosen:
     usual: str | None
     sign: float
 
-    def scaled(self, signal: str, assumption: Assumption) -> SignalColumn:
+    def scaled(self, signal: str, assumption: Assumption, recording: Recording) -> SignalColumn:
         """The same with its scale; InputError where its unit is none of the signal's, or unknown."""
         channel, usual = self.channel, assumption.units.get(signal) or self.usual
         if channel.moments:
             return SignalColumn(channel, scale_in(signal, channel.unit or "s", channel.place()), self.sign)
         reason, example = assumption.refused.get(signal, ("", wanted_units(signal)[0]))
-        line = f'{signal} = "{channel.name} [{example}]" in the rig\'s [trace.columns]'
+        line = recording.stating(signal, channel, example)
         unit = self.unit or usual
         if unit is None:
             found = channel.open_unit or f"has no unit{f', {reason}' if reason else ''}"
@@ -238,21 +238,24 @@ def _assumption(columns: Mapping[str, _Chosen], recording: Recording, how: Readi
         for signal, column in columns.items()
         if column.channel.open_unit is None and not (signal == "time" and how.sample_period)
     }
-    units = {signal: "s" if one.channel.moments else one.unit or one.usual for signal, one in open_to.items()}
+    units = {
+        signal: (one.channel.unit or "s") if one.channel.moments else one.unit or one.usual
+        for signal, one in open_to.items()
+    }
     if time is not None and "time" in units and not time.moments:
         units["time"] = columns["time"].unit  # the usual one, unless motion determines another
     return assumed_units({signal: column.channel for signal, column in open_to.items()}, units, bare)
 
 
-def assumed_note(chosen: Mapping[str, SignalColumn]) -> tuple[str, ...]:
+def assumed_note(chosen: Mapping[str, SignalColumn], recording: Recording) -> tuple[str, ...]:
     """The note on units that were assumed, one line with what to write where one is wrong; else none."""
     taken = {signal: one for signal, one in chosen.items() if one.usual is not None}
     if not taken:
         return ()
     read = ", ".join(f"{signal} taken as {one.usual}" for signal, one in taken.items())
     signal, one = next(reversed(taken.items()))
-    line = f'{signal} = "{one.channel.name} [{one.usual}]"'
-    return (f"{read}, as the file has no unit; to state another: {line} in the rig's [trace.columns]",)
+    line = recording.stating(signal, one.channel, str(one.usual))
+    return (f"{read}, as the file has no unit; to state another: {line}",)
 
 
 def _named(recording: Recording, signal: str, name: str) -> Channel | None:

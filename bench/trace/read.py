@@ -98,18 +98,23 @@ def reader_of(source: Source) -> Reader:
     raise InputError(source.path, "not a trace in any format the bench reads", f"allowed: {formats}")
 
 
-def read(path: str | Path, columns: Mapping[str, str] | ReadingOptions | None = None) -> Trace:
+def read(
+    path: str | Path,
+    columns: Mapping[str, str] | ReadingOptions | None = None,
+    units: Mapping[str, str] | None = None,
+) -> Trace:
     """Trace of a file: signals in SI units on one regular time base.
 
     Args:
         path: file of any format, recognised by its content first and its ending second.
         columns: signal -> column name with unit, as in a rig's `[trace.columns]`, see `assemble`; or all that
             a rig's `[trace]` tells, as `rig.trace`.
+        units: units of columns by their names, which replace those of the file.
 
     Raises:
         InputError: anything about the file that keeps it from being a trace; names file, line or column.
     """
-    return assemble(read_recording(path), columns)
+    return assemble(read_recording(path).stated(units), columns)
 
 
 def read_recording(path: str | Path) -> Recording:

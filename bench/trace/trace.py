@@ -129,7 +129,8 @@ class Trace:
         Args:
             signals: name -> (n,) samples, or a data frame (pandas, polars, Arrow): `time`, and signals under the names
                 of `bench.trace.signals`. A name may carry its unit, `velocity [deg/s]`. Samples are copied.
-            units: unit of each column whose name carries none; `time` among them.
+            units: unit of each column whose name carries none; `time` among them. Where no column has one, SI is
+                assumed if physics agrees, and a note says so.
             sample_period: where there is no `time` - s, or a text with its unit such as `1 ms`.
             columns: signal -> column with unit, as in a rig's `[trace.columns]`, for foreign names.
             origin: what messages call it.
@@ -137,9 +138,10 @@ class Trace:
         Raises:
             InputError: as `assemble`; a unit for a column that is not there; neither time nor sample period, or both.
         """
-        from bench.trace.from_arrays import recording_of  # pyarrow: 0.05 s, which a trace of a simulation need not pay
+        from bench.trace.from_arrays import options_of, recording_of  # pyarrow: 0.05 s
 
-        return assemble(recording_of(signals, units or {}, sample_period, columns or {}, origin), columns)
+        recording = recording_of(signals, origin).stated(units)
+        return assemble(recording, options_of(recording, sample_period, columns or {}))
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         """Values of a signal; InputError naming it when the trace does not hold it."""
@@ -223,7 +225,7 @@ def on_time_base(
     dropped = unused(chosen, recording)
     if dropped:
         metadata["dropped_columns"] = ", ".join(dropped)
-    for note in assumed_note(chosen):
+    for note in assumed_note(chosen, recording):
         metadata[ASSUMED_UNITS] = note
     return Trace(
         time=base.time,

@@ -1,0 +1,205 @@
+"""Calls as somebody writes them who knows pandas and scikit-learn and has not read the manual.
+
+Each gives the right number, or one line that names the argument, what was found and what is allowed.
+"""
+
+import re
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import bench
+from bench.assets import asset
+from bench.baseline.observe import observe
+from bench.baseline.state import write_baseline
+from bench.friction_map import friction_map
+from bench.trace.write import write
+from tests.command import bench as command
+from tests.fit.motions import Truth, recording
+
+INERTIA, COULOMB, AMPLITUDE, HARMONIC, K_T = Truth.inertia, Truth.coulomb, 0.05, 6, 0.8
+TABLES = {"motor": {"torque_constant": "0.8 N*m/A", "rotor_inertia": "2 kg*cm**2"}}
+NUMBERS = {"motor": {"torque_constant": 0.8, "rotor_inertia": 2e-4}}
+RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
+
+
+def of_axis(seed, cogging=0.0):
+    trace = recording(np.random.default_rng(seed), duration=3.0, position=True)
+    torque = cogging * np.sin(HARMONIC * trace["position"])
+    return replace(trace, signals={**trace.signals, "current": trace["current"] + torque / K_T})
+
+
+def steady(speed):
+    """The axis at one speed."""
+    rng, time = np.random.default_rng(int(10 * abs(speed))), 1e-3 * np.arange(2000)
+    torque = Truth.viscous * speed + COULOMB * np.sign(speed) + 0.004 * rng.normal(size=time.size)
+    return {"time": time, "velocity": speed + 0.01 * rng.normal(size=time.size), "torque": torque}
+
+
+@pytest.fixture(scope="module")
+def names(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("calls")
+    (folder / "rig.toml").write_text(RIG)
+    shutil.copy(asset("data", "rigs", "sh30701p.toml"), folder / "lab.toml")
+    plain, bumpy = of_axis(1), of_axis(2, AMPLITUDE)
+    si = {"time": plain.time, **{name: np.array(plain[name]) for name in plain.units}}
+    df = pd.DataFrame(si)
+    df.to_csv(folder / "bare.csv", index=False)
+    df.add_suffix("_of_axis").to_csv(folder / "named.csv", index=False)
+    cogged = pd.DataFrame({"time": bumpy.time, **{name: np.array(bumpy[name]) for name in bumpy.units}})
+    cogged.rename(columns=lambda name: f"{name} [{ {**bumpy.units, 'time': 's'}[name] }]").to_csv(
+        folder / "cogged.csv", index=False
+    )
+    rpm = df.assign(velocity=df.velocity * 30 / np.pi, current=1e3 * df.current).drop(columns="position")
+    si_units = {"time": "s", "velocity": "rad/s", "current": "A", "position": "rad"}
+    mm = {
+        "time": plain.time,
+        "position": 0.1 * si["position"],
+        "velocity": 0.1 * si["velocity"],
+        "force": 8 * si["current"],
+    }
+    write(of_axis(3, AMPLITUDE), folder / "cogged2.csv")
+    write_baseline(folder / "axis.toml", observe(plain, bench.load_rig(folder / "rig.toml"), names=False).state)
+    known = {
+        "bench": bench, "np": np, "pd": pd, "Path": Path, "df": df, "si": si, "rpm": rpm, "cogged": cogged, "mm": mm,
+        "tables": TABLES, "numbers": NUMBERS, "si_units": si_units, "friction_map": friction_map, "steady": steady,
+        "rpm_units": {"time": "s", "velocity": "rpm", "current": "mA"}, "rig": bench.load_rig(folder / "rig.toml"),
+        "structured": df.to_records(index=False), "indexed": df.set_index("time"), "plain": plain,
+        "unnamed": pd.DataFrame({k: v for k, v in si.items() if k != "time"}, index=si["time"]),
+        "moments": df.assign(time=pd.Timestamp("2026-03-01") + pd.to_timedelta(df.time, "s")),
+        "inertia": lambda found: float(found["moment_of_inertia"]), "K_T": K_T,
+        "kept": lambda replayed: np.nanstd(replayed.torque_simulated) / np.nanstd(replayed.torque),
+        "speeds": [sign * speed for sign in (-1, 1) for speed in (4, 8, 15, 20, 30, 40, 50, 60)],
+        "added": lambda simulated: simulated.truth.effects[0].values[0][1],
+    }  # fmt: skip
+    with pytest.MonkeyPatch.context() as here:
+        here.chdir(folder)
+        done = command("diagnose", "cogged.csv", "--rig", "rig.toml", "--out", "out")
+        assert (done.status, "wrote out/diagnosis.npz" in done.out) == (0, True), done.err
+        assert command("identify", "cogged.csv", "--rig", "rig.toml", "--out", "estimated").status == 0
+    known["found"] = bench.Diagnosis.load(folder / "out")
+    return folder, known
+
+
+#: Calls, and the true value that each gives within 3 %, or what it is equal to.
+RIGHT = {
+    "inertia(bench.identify(df, tables))": INERTIA,
+    "inertia(bench.identify(df, rig=numbers))": INERTIA,
+    'inertia(bench.identify(si, rig="rig.toml"))': INERTIA,
+    'inertia(bench.identify("bare.csv", rig="rig.toml"))': INERTIA,
+    'inertia(bench.identify(Path("bare.csv"), Path("rig.toml")))': INERTIA,
+    'inertia(bench.identify("bare.csv", tables, units=si_units))': INERTIA,
+    "inertia(bench.identify(df, tables, units=si_units))": INERTIA,
+    "inertia(bench.identify(rpm, tables, units=rpm_units))": INERTIA,
+    "inertia(bench.identify([df, df.iloc[:2500]], tables, units=si_units))": INERTIA,
+    "inertia(bench.identify(df))": INERTIA / K_T,
+    'inertia(bench.identify("cogged.csv"))': INERTIA / K_T,
+    "inertia(bench.identify(plain))": INERTIA / K_T,
+    "inertia(bench.identify(structured, tables))": INERTIA,
+    "inertia(bench.identify(indexed, tables))": INERTIA,
+    "inertia(bench.identify(unnamed, tables))": INERTIA,
+    "inertia(bench.identify(moments, tables))": INERTIA,
+    "inertia(bench.identify(df.iloc[5:], tables))": INERTIA,
+    'inertia(bench.identify(df, tables, cutoff="50 Hz"))': INERTIA,
+    "inertia(bench.identify(df, tables, cutoff=50))": INERTIA,
+    'inertia(bench.identify(df.drop(columns="time"), {**tables, "trace": {"sample_period": "1 ms"}}))': INERTIA,
+    'inertia(bench.identify(df.drop(columns="time"), {**numbers, "trace": {"sample_period": 1e-3}}))': INERTIA,
+    "inertia(bench.identify(df.rename(columns=str.title), tables))": INERTIA,
+    'float(bench.identify(mm)["moving_mass"])': 100 * INERTIA,
+    'float(bench.identify(mm, {"kind": "linear"})["moving_mass"])': 100 * INERTIA,
+    'float(bench.identify(mm, {"motor": {"moving_mass": 0.01}})["moving_mass"])': 100 * INERTIA,
+    'bench.read("bare.csv", units=si_units)["velocity"].max() / df.velocity.max()': 1.0,
+    'bench.Trace.from_arrays(df)["velocity"].max() / df.velocity.max()': 1.0,
+    'bench.Trace.from_arrays(rpm, units=rpm_units)["velocity"].max() / df.velocity.max()': 1.0,
+    'float(bench.diagnose(cogged, tables, units=si_units)["cogging_torque"]["amplitude"])': AMPLITUDE,
+    'float(bench.diagnose(cogged, numbers, holdout="cogged2.csv")["cogging_torque"]["amplitude"])': AMPLITUDE,
+    'float(found["cogging_torque"]["amplitude"])': AMPLITUDE,
+    'float(bench.Diagnosis.load("out/diagnosis.json")["cogging_torque"]["amplitude"])': AMPLITUDE,
+    'inertia(bench.Estimate.load("estimated"))': INERTIA,
+    "kept(bench.replay(found, cogged, tables))": 1.0,
+    'kept(bench.replay("out", "cogged.csv", numbers))': 1.0,
+    "kept(bench.replay(found, cogged, tables, units=si_units))": 1.0,
+    'bench.check(df, tables, "axis.toml", units=si_units).result': "same",
+    'bench.check("bare.csv", rig=numbers, baseline="axis.toml").result': "same",
+    'added(bench.simulate("lab.toml", "fast_reversals", effects={"unbalance": {"amplitude": 0.1}}))': 0.1,
+    'added(bench.simulate("lab.toml", "fast_reversals", effects={"unbalance": {"amplitude": "100 mN*m"}}))': 0.1,
+    'added(bench.simulate("lab.toml", "fast_reversals", effects={"unbalance": {"amplitude": np.float32(0.1)}}))': 0.1,
+    'friction_map([steady(w) for w in speeds], {"kind": "rotary"}).plain.theta[1]': COULOMB,
+}
+
+
+@pytest.mark.parametrize("call", RIGHT)
+def test_a_natural_call_gives_the_right_number(names, monkeypatch, call):
+    folder, known = names
+    monkeypatch.chdir(folder)
+    found = eval(call, dict(known))
+    assert found == (RIGHT[call] if isinstance(RIGHT[call], str) else pytest.approx(RIGHT[call], rel=0.03))
+
+
+#: Calls, and what the one line says.
+REFUSED = {
+    "bench.identify(df, {'motor': {'torque_constant': '0.8 kg'}})": r"rig: motor\.torque_constant: found .*N\*m/A",
+    "bench.identify(df, {'motor': {'torque_constnt': 0.8}})": r"motor\.torque_constnt: unknown key, did you mean",
+    "bench.identify(df, {'motor': 0.8})": r"^rig: motor: found 0\.8; allowed",
+    "bench.identify(df, {'torque_constant': 0.8})": r"^rig: torque_constant: unknown key",
+    "bench.identify(df, 0.8)": r"^rig: found 0\.8; allowed: a Rig, a rig file, .*torque_constant",
+    "bench.identify(df, tables, units={'speed': 'rpm'})": r"unit of speed: no such column; found: time, velocity",
+    "bench.identify(rpm, tables, units={**rpm_units, 'velocity': 'A'})": r"velocity.*found unit 'A'; allowed: .*rad/s",
+    "bench.identify(df, tables, units={'velocity': 'rad/s'})": r'allowed: .*units=\{"\w+": "\w+"\}',
+    "bench.identify(plain, tables, units=si_units)": r"^units: found with a Trace",
+    "bench.identify(df.to_numpy(), tables)": r"found ndarray; allowed: arrays by their names, or a data frame",
+    "bench.identify(None, tables)": r"found NoneType; allowed: arrays by their names, or a data frame",
+    "bench.identify(df.drop(columns='time'), tables)": r"column 'time': not in the file.*sample_period",
+    "bench.identify(df, tables, cutoff='50 rad')": r"^cutoff: found '50 rad'; allowed: .*Hz",
+    "bench.identify(df, tables, cutoff='fast')": r"^cutoff: found 'fast'; allowed: .*Hz",
+    "bench.replay(found.model, cogged, tables)": r"^model: found StoredModel.*replay\(found",
+    "bench.replay('nowhere', cogged, tables)": r"nowhere: no such file",
+    "bench.simulate('lab.toml', effects={'unbalance': 0.1})": r"^effects: unbalance: found 0\.1; allowed: .*amplitude",
+    "bench.simulate('lab.toml', effects={'unbalanc': {}})": r"^effects: found 'unbalanc', did you mean 'unbalance'",
+    "bench.simulate('lab.toml', effects={'unbalance': {'amplitud': 1}})": r"did you mean 'amplitude'",
+    "bench.simulate('lab.toml', effects={'unbalance': {'amplitude': '1 A'}})": r"amplitude: found '1 A'; allowed",
+    "bench.Diagnosis.load('estimated')": r"estimated/diagnosis\.npz: no such file",
+    "bench.robot(df, 'robot.xml')": r"^logs: found DataFrame; allowed: paths of files",
+    "bench.robot([], 'robot.xml')": r"^logs: found none",
+}
+
+
+@pytest.mark.parametrize("call", REFUSED)
+def test_what_cannot_be_is_one_line_that_names_the_argument(names, monkeypatch, call):
+    folder, known = names
+    monkeypatch.chdir(folder)
+    with pytest.raises(bench.BenchError) as error:
+        eval(call, dict(known))
+    assert "\n" not in str(error.value)
+    assert re.search(REFUSED[call], str(error.value)), str(error.value)
+
+
+def test_what_is_assumed_is_said(names):
+    """Units that neither a frame nor a dictionary has, and a rig that was drafted."""
+    _, known = names
+    said = " ".join(repr(bench.identify(known["df"], NUMBERS)).split())
+    assert "velocity taken as rad/s" in said and 'units={"' in said
+    assert "without a unit are taken in SI: rotor_inertia in kg*m**2, torque_constant in N*m/A" in said
+    assert "taken" not in repr(bench.identify(known["df"], TABLES, units=known["si_units"]))
+    assert "no rig was given" in repr(bench.identify(known["df"]))
+    found = bench.diagnose(known["df"], NUMBERS)
+    assert [check.status for check in found.checks if check.name == "units"] == ["warn"]
+
+
+def test_a_rig_file_still_has_units(tmp_path):
+    (tmp_path / "rig.toml").write_text(RIG.replace('"0.8 N*m/A"', "0.8"))
+    with pytest.raises(bench.InputError, match=r"motor\.torque_constant: found 0\.8; allowed: a number with a unit"):
+        bench.load_rig(tmp_path / "rig.toml")
+
+
+def test_numbers_and_texts_make_the_same_rig():
+    one, other = bench.Rig(name="x", kind="rotary", **TABLES), bench.Rig(name="x", kind="rotary", **NUMBERS)
+    assert one.motor == other.motor
+    assert (one.assumed, len(other.assumed)) == ((), 1)
+    force = bench.Rig(name="x", kind="linear", motor={"force_constant": 2})
+    assert force.motor.force_constant == 2.0
+    assert force.assumed == ("numbers of the rig without a unit are taken in SI: force_constant in N/A",)
