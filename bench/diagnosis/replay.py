@@ -21,7 +21,7 @@ from bench.errors import InputError, SimulationError, UndeterminedError
 from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
-from bench.plant.model_file import StoredModel, load_model, read_table
+from bench.plant.model_file import LARGEST_VALUE, StoredModel, load_model, read_table
 from bench.plant.tracking import SoftTracking, Tracked, run_free, track
 from bench.rig.given import Given, GivenRig, Units, rig_of, trace_of
 from bench.rig.rig import Rig
@@ -189,8 +189,9 @@ def load_balance(path: str | Path) -> Balance:
 def _require_sound(balance: Balance, where: str) -> None:
     if not 0.0 < balance.width < math.inf:
         raise InputError(f"{where}.filter_width", f"found {balance.width:g}", "allowed: a width above zero - s")
-    if not np.isfinite(balance.theta).all():
-        raise InputError(f"{where}.coefficients", "found one that is not finite", "allowed: finite numbers")
+    if not (np.abs(balance.theta) <= LARGEST_VALUE).all():  # nor nan
+        allowed = f"allowed: finite numbers up to {LARGEST_VALUE:g}"
+        raise InputError(f"{where}.coefficients", "found one that no servo axis has", allowed)
     for term in balance.hypothesis.terms:
         size = len(term.effect.shapes)
         if len(term.shape) != size or not np.isfinite(term.shape).all():

@@ -47,6 +47,8 @@ from bench.effects.present import Present
 from bench.effects.signals import Axis, Winding
 from bench.errors import InputError
 from bench.rig.rig import Load, Rig
+from bench.rig.values import LARGEST_INERTIA, LARGEST_VISCOUS
+from bench.trace.trace import LARGEST
 from bench.units import Quantity
 
 Kind = TypeVar("Kind", bound=Effect)
@@ -128,12 +130,13 @@ class AxisParameters:
 def parameter_quantities(kind: AxisKind) -> dict[str, Quantity]:
     """What the fields of `AxisParameters` are called in files on a kind of axis, with unit there and bounds."""
     viscous, viscous_unit = kind.parameter(VISCOUS), kind.parameter_unit(VISCOUS)
+    effort, most = kind.effort_unit, LARGEST[kind.effort]
     return {
-        "inertia": Quantity(kind.inertia, "J", kind.inertia_unit, lower=0.0),
-        "viscous_friction_coefficient": Quantity(viscous, "K_w", viscous_unit, lower=0.0),
-        "coulomb_friction": Quantity(kind.parameter(COULOMB), "K_0", kind.effort_unit, lower=0.0),
-        "load_torque": Quantity(f"load_{kind.effort}", "M_L", kind.effort_unit),
-        "motor_inertia": Quantity(f"motor_{kind.inertia}", "J_m", kind.inertia_unit, lower=0.0),
+        "inertia": Quantity(kind.inertia, "J", kind.inertia_unit, 0.0, LARGEST_INERTIA),
+        "viscous_friction_coefficient": Quantity(viscous, "K_w", viscous_unit, 0.0, LARGEST_VISCOUS),
+        "coulomb_friction": Quantity(kind.parameter(COULOMB), "K_0", effort, 0.0, most),
+        "load_torque": Quantity(f"load_{kind.effort}", "M_L", effort, -most, most),
+        "motor_inertia": Quantity(f"motor_{kind.inertia}", "J_m", kind.inertia_unit, 0.0, LARGEST_INERTIA),
     }
 
 

@@ -17,7 +17,7 @@ moment_of_inertia = "0.0022 kg*m**2"
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -37,6 +37,13 @@ from bench.rig.rig import Load, Rig
 from bench.structured import read_toml
 
 SCHEMA, OF_JOINTS = "bench.model/1", "bench.effects/1"
+#: Table of the torque balance, and its key that says whether the parameters are its first coefficients.
+BALANCE, SAME = "torque_balance", "same_parameters"
+#: Share of the larger by which inertia, viscous and dry friction may differ from the coefficients: where they are the
+#: same, and where a file does not say so. Refinement moves an inertia by some percent, weak frictions by more.
+EQUAL, REFINED = (1e-9, 1e-9, 1e-9), (0.5, 0.9, 0.9)
+#: A value of a model is beyond what any axis has - SI.
+LARGEST_VALUE = 1e12
 #: Step that the exported MuJoCo model runs at - s.
 TIMESTEP = 250e-6
 
@@ -104,8 +111,16 @@ def model_xml(stored: StoredModel) -> str:
 
 
 def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:
-    """The whole model as TOML, every value with its unit; `further` are tables of the same file, by name."""
-    return tomli_w.dumps({"schema": SCHEMA, **_content(stored), **(further or {})})
+    """The whole model as TOML, every value with its unit; `further` are tables of the same file, by name.
+
+    A torque balance among them says whether its first coefficients are the parameters: values that simulation refined,
+    or of a model with fewer effects, differ.
+    """
+    content = {"schema": SCHEMA, **_content(stored), **(further or {})}
+    balance = content.get(BALANCE)
+    if isinstance(balance, dict):
+        content[BALANCE] = {SAME: not any(_differing(stored.model.parameters, balance, EQUAL)), **balance}
+    return tomli_w.dumps(content)
 
 
 def joints_toml(models: Mapping[str, StoredModel]) -> str:
@@ -139,9 +154,32 @@ def tables_toml(kind: AxisKind, tables: Mapping[str, Any]) -> str:
 def load_model(path: str | Path) -> StoredModel:
     """Read a `model.toml`.
 
-    InputError: no such file, no TOML, another schema, an unknown or missing key, or a value that is none.
+    InputError: no such file, no TOML, another schema, an unknown or missing key, a value that is none or that no axis
+    has, or parameters that contradict the torque balance.
     """
-    return _model(read_table(path, SCHEMA), str(path))
+    table = read_table(path, SCHEMA)
+    stored, balance = _model(table, str(path)), table.get(BALANCE)
+    if isinstance(balance, dict) and balance.get(SAME) is not False:
+        for name, value, other in _differing(stored.model.parameters, balance, EQUAL if SAME in balance else REFINED):
+            found = f"found {value:g}, and {other:g} among the coefficients of {BALANCE}"
+            allowed = "allowed: one value in both, as bench diagnose RECORDING --rig RIG --out DIR writes them"
+            raise InputError(f"{path}: parameters.{name}", found, allowed)
+    return stored
+
+
+def _differing(
+    parameters: AxisParameters, balance: Mapping[str, Any], shares: Sequence[float]
+) -> Iterator[tuple[str, float, float]]:
+    """Name, value and coefficient of each parameter that differs from the balance's; one below zero counts as zero."""
+    coefficients = balance.get("coefficients")
+    numbers = [one for one in coefficients if isinstance(one, int | float)] if isinstance(coefficients, list) else []
+    if len(numbers) <= len(shares):
+        return  # a misalignment follows: no balance
+    for (name, (value, _)), number, share in zip(parameters.values.items(), numbers, shares, strict=False):
+        other = max(float(number), 0.0)
+        known = share == EQUAL[0] or (value > 0.0 and other > 0.0)
+        if known and abs(value - other) > share * max(value, other):
+            yield name, value, other
 
 
 def load_joints(path: str | Path) -> dict[str, StoredModel]:
@@ -176,17 +214,21 @@ def _model(table: Mapping[str, Any], path: str) -> StoredModel:
     values = _values(table.get("parameters"), units, f"{path}: parameters")
     for field, quantity in quantities.items():
         value = values[quantity.name]
-        if value < quantity.lower or (field == "inertia" and value == 0.0):
-            raise InputError(f"{path}: parameters.{quantity.name}", f"found {value:g}", "allowed: above zero")
+        if not quantity.lower <= value <= quantity.upper or (field == "inertia" and value == 0.0):
+            allowed = f"allowed: {'above zero' if quantity.lower == 0.0 else quantity.lower} to {quantity.upper:g}"
+            raise InputError(f"{path}: parameters.{quantity.name}", f"found {value:g}", f"{allowed} {quantity.unit}")
     parameters = AxisParameters(**{field: values[quantity.name] for field, quantity in quantities.items()}, kind=kind)
+    if parameters.motor_inertia > parameters.inertia:
+        found = f"found {parameters.motor_inertia:g} in the motor, and {parameters.inertia:g} in all"
+        raise InputError(f"{path}: parameters", found, "allowed: at most as much in the motor")
     winding = None
     if "winding" in table:
         winding = Winding(**_values(table["winding"], _winding_units(kind), f"{path}: winding"))
     peak = math.inf
     if "peak_effort" in table:
-        peak = parse_value(str(table["peak_effort"]), kind.effort_unit, f"{path}: peak_effort")
+        peak = _value(table["peak_effort"], kind.effort_unit, f"{path}: peak_effort")
     effects = _effects(table.get("effects", []), kind, f"{path}: effects")
-    misalignment = parse_value(str(table.get("misalignment", 0.0)), "s", f"{path}: misalignment")
+    misalignment = _value(table.get("misalignment", 0.0), "s", f"{path}: misalignment")
     model = AxisModel(parameters, effects, peak, winding)
     mounted = table.get("mounting", {})
     given = {key: unit for key, unit in _mounted_units(kind).items() if not isinstance(mounted, dict) or key in mounted}
@@ -213,7 +255,14 @@ def _values(table: object, units: Mapping[str, str], where: str) -> dict[str, fl
     for key in units:
         if key not in table:
             raise InputError(f"{where}.{key}", "missing", "this key is required")
-    return {key: parse_value(str(table[key]), unit, f"{where}.{key}") for key, unit in units.items()}
+    return {key: _value(table[key], unit, f"{where}.{key}") for key, unit in units.items()}
+
+
+def _value(text: object, unit: str, where: str) -> float:
+    value = parse_value(str(text), unit, where)
+    if abs(value) > LARGEST_VALUE:
+        raise InputError(where, f"found {value:g}, which no servo axis has", f"allowed: up to {LARGEST_VALUE:g} {unit}")
+    return value
 
 
 def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]:
@@ -225,9 +274,7 @@ def _effects(entries: object, kind: AxisKind, where: str) -> tuple[Present, ...]
             raise InputError(where, f"found {entry!r}", "allowed: tables with a name")
         effect = named(str(entry["name"]), where)
         units = {key: kind.unit(known_quantity(effect, key, where)) for key in entry if key != "name"}
-        values = {
-            key: parse_value(str(entry[key]), unit, f"{where}: {effect.name}.{key}") for key, unit in units.items()
-        }
+        values = {key: _value(entry[key], unit, f"{where}: {effect.name}.{key}") for key, unit in units.items()}
         found.append(Present.of(effect.name, values, where))
     return tuple(found)
 

@@ -92,10 +92,12 @@ def _possible(period: float) -> float:
     return period
 
 
+#: More inertia, or viscous friction, than any axis has, telescopes and wind turbines among them - SI.
+LARGEST_INERTIA, LARGEST_VISCOUS = 1e9, 1e9
 _positive, _not_negative = Field(gt=0.0), Field(ge=0.0)
 
-Inertia = Annotated[float, _positive, si("kg*m**2")]
-Mass = Annotated[float, _positive, si("kg")]
+Inertia = Annotated[float, Field(gt=0.0, le=LARGEST_INERTIA), si("kg*m**2")]
+Mass = Annotated[float, Field(gt=0.0, le=LARGEST_INERTIA), si("kg")]
 Length = Annotated[float, _positive, si("m")]
 Density = Annotated[float, _positive, si("kg/m**3")]
 Time = Annotated[float, _positive, si("s")]
@@ -119,9 +121,9 @@ Speed = Annotated[float, _positive, si("rad/s", translated=True)]
 VelocityNoise = Annotated[float, _not_negative, si("rad/s", translated=True)]
 CurrentNoise = Annotated[float, _not_negative, si("A")]
 Resolution = Annotated[float, _not_negative, si("rad", translated=True)]
-Viscous = Annotated[float, _not_negative, si("N*m*s/rad", translated=True)]
+Viscous = Annotated[float, Field(ge=0.0, le=LARGEST_VISCOUS), si("N*m*s/rad", translated=True)]
 Coulomb = Annotated[float, _not_negative, si("N*m", translated=True)]
 Effort = Annotated[float, si("N*m", translated=True)]
 IntegralGain = Annotated[float, _not_negative, si("N*m/rad", translated=True)]
-Feedforward = Annotated[float, _not_negative, si("kg*m**2", translated=True)]
+Feedforward = Annotated[float, Field(ge=0.0, le=LARGEST_INERTIA), si("kg*m**2", translated=True)]
 Temperature = Annotated[float, si("K")]

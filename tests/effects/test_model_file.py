@@ -1,10 +1,12 @@
 """A model goes to disk and comes back as it was; what is native in it opens in MuJoCo alone."""
 
+import re
 import tomllib
 
 import mujoco
 import numpy as np
 import pytest
+import tomli_w
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -146,6 +148,9 @@ def test_xml_names_what_it_lacks():
         ("effects = [", "effects = 1\nunused = [", "found 1; allowed: a list"),
         ('"1e-05 s"', "nan", "finite"),
         ('"0.0012 kg*m**2"', '"0 kg*m**2"', "moment_of_inertia"),
+        ('"0.0012 kg*m**2"', '"1e300 kg*m**2"', "no servo axis has"),
+        ('"0.0012 kg*m**2"', '"2e9 kg*m**2"', "allowed: above zero to 1e+09 kg*m**2"),
+        ('"0.08 N*m"', '"1e200 N*m"', "no servo axis has"),
     ],
 )
 def test_bad_files_are_refused_in_one_line(tmp_path, old, new, says):
@@ -173,3 +178,44 @@ def test_a_stored_model_runs_along_a_recording(truths, tmp_path):
     effort = AXIS.torque_constant * trace["current"]
     simulated = track(SoftTracking(stored.model, trace, effort, stored.misalignment)).velocity
     assert np.sqrt(np.mean((trace["velocity"] - simulated) ** 2)) < 0.03
+
+
+def with_balance(tmp_path, text, coefficients, said=None):
+    path = tmp_path / "model.toml"
+    flag = {} if said is None else {"same_parameters": said}
+    table = {**tomllib.loads(text), "torque_balance": {**flag, "coefficients": coefficients}}
+    path.write_text(tomli_w.dumps(table), encoding="utf-8")
+    return path
+
+
+def test_a_file_says_whether_its_parameters_are_the_coefficients():
+    stored = StoredModel("axis", model("cogging_torque"), 1e-5)
+    values = [value for value, _ in list(stored.model.parameters.values.values())[:3]]
+    for coefficients, same in ((values, True), ([1.01 * values[0], *values[1:]], False)):
+        table = tomllib.loads(model_toml(stored, {"torque_balance": {"coefficients": [*coefficients, 1e-5]}}))
+        assert table["torque_balance"]["same_parameters"] is same
+
+
+@pytest.mark.parametrize("place", range(3))
+@pytest.mark.parametrize(
+    ("said", "factor", "refused"), [(True, 1.001, True), (None, 30.0, True), (None, 1.2, False), (False, 1.2, False)]
+)
+def test_parameters_that_contradict_the_torque_balance_are_refused(tmp_path, place, said, factor, refused):
+    stored = StoredModel("axis", model("cogging_torque"))
+    coefficients = [value for value, _ in list(stored.model.parameters.values.values())[:3]]
+    coefficients[place] *= factor
+    coefficients.append(0.0)
+    path = with_balance(tmp_path, model_toml(stored), coefficients, said)
+    if refused:
+        with pytest.raises(InputError, match="among the coefficients of torque_balance; allowed: one value in both"):
+            load_model(path)
+    else:
+        assert load_model(path) == stored
+
+
+def test_a_motor_has_at_most_the_whole_inertia(tmp_path):
+    path = tmp_path / "model.toml"
+    text = model_toml(StoredModel("axis", model("cogging_torque")))
+    path.write_text(re.sub('motor_moment_of_inertia = "[^"]*"', 'motor_moment_of_inertia = "1 kg*m**2"', text))
+    with pytest.raises(InputError, match="allowed: at most as much in the motor"):
+        load_model(path)
