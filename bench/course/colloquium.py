@@ -14,7 +14,6 @@ from bench.assets import asset
 from bench.course.answers import Way, Worked
 from bench.course.axis import KG_CM2, MAINS, RPM, circuit, torque_constant
 from bench.course.friction import WIDTH, in_step
-from bench.course.power import circuits
 from bench.course.recordings import LabRecordings
 from bench.course.run import LabRun
 from bench.errors import BenchError, InputError
@@ -141,11 +140,9 @@ def _of_torque(recordings: LabRecordings, right: dict[str, float]) -> dict[str, 
 
 
 def _of_corner(rig: Rig, corner: float) -> dict[str, float]:
-    """What a corner - rad/s - says of the winding, by the course's circuit and by one that balances."""
+    """What a corner - rad/s - says of the winding, by the course's circuit."""
     motor, sheet = circuit(rig), peak_curve(rig.motor, MAINS, rig.source)
     share = (sheet.no_load_speed - corner) / (sheet.no_load_speed - sheet.corner_speed)
-    other = next((curve for curve in rig.motor.peak_curves if curve is not sheet), None)
-    both = circuits(rig, other)[3].resistance_share(corner) if other is not None else math.nan
     kelvin = motor.temperature_coefficient
     return {
         "corner": corner * RPM,
@@ -153,7 +150,6 @@ def _of_corner(rig: Rig, corner: float) -> dict[str, float]:
         "share_R": share,
         "per_kelvin": 100.0 * kelvin,
         "temperature": HOT - (1.0 - share) / kelvin,
-        "share_both": both,
         "room": motor.cold_share,
     }
 

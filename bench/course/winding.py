@@ -9,17 +9,10 @@ inductance and temperature:
 dcmotor's torque is Ke*Iq; what the iron's saturation takes of it, (Ke - kT(Iq))*Iq, is applied beside it in each step.
 The drive asks for the current that its velocity loop wants, at most peak current, and its current loop sets the
 voltage U = R(T)*I_set + Ke*omega + L/T_c*(I_set - Iq).
-
-That circuit, the course's, takes more power from the terminals than heat, field and shaft get. One that balances has
-flux of both axes from one coenergy, L*Iq**2/2 + kT(Iq)*Id/p, and a drive that holds Id at zero:
-
-    psi_d = kT(Iq)/p,  psi_q = L*Iq:    u_q = R*Iq + L*dIq/dt + kT(Iq)*omega
-                                        u_d = kT'(Iq)/p*dIq/dt - p*L*Iq*omega,    u_q**2 + u_d**2 <= U_max**2
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import mujoco
@@ -58,7 +51,6 @@ class WindingModel:
         peak_current: limit of the drive - A.
         temperature: of the winding as the run starts, and of its surroundings - degC.
         inductive: whether the winding has its inductance, or current follows voltage at once.
-        across: p*L of a winding whose power balances, which has its inductance - V*s/(A*rad); None of the course's.
     """
 
     circuit: Circuit
@@ -66,7 +58,6 @@ class WindingModel:
     peak_current: float
     temperature: float
     inductive: bool
-    across: float | None = None
 
     @classmethod
     def of(cls, rig: Rig, temperature: float, inductive: bool, own: Circuit | None = None) -> WindingModel:
@@ -83,32 +74,6 @@ class WindingModel:
         """L - H; zero without."""
         return self.circuit.inductance if self.inductive else 0.0
 
-    def back_emf_constant(self, current: float) -> float:
-        """Voltage per speed in phase with a current - A - in V*s/rad."""
-        if self.across is None:
-            return self.circuit.back_emf_constant
-        return self.torque_constant.constant + self.torque_constant.curvature * current**2
-
-    def voltages(self, wanted: float, taken: float, omega: float, current: float) -> tuple[float, float]:
-        """u_q as near to the wanted as the drive's voltage allows, and u_d - V.
-
-        Args:
-            wanted: u_q that the current loop asks for - V.
-            taken: R*Iq and back-EMF - V.
-            omega, current: rad/s, A.
-        """
-        full, inductance = self.circuit.voltage, self.inductance
-        if self.across is None:
-            return min(max(wanted, -full), full), 0.0
-        bend = 2.0 * self.torque_constant.curvature * current * inductance / self.across  # d(psi_d)/dIq, p = across/L
-        steady = -self.across * omega * current
-        # (taken + L*x)**2 + (steady + bend*x)**2 <= full**2 in x = dIq/dt
-        square = inductance**2 + bend**2
-        middle = -(taken * inductance + steady * bend) / square
-        reach = math.sqrt(max(middle**2 - (taken**2 + steady**2 - full**2) / square, 0.0))
-        slope = min(max((wanted - taken) / inductance, middle - reach), middle + reach)
-        return taken + inductance * slope, steady + bend * slope
-
 
 @dataclass(frozen=True)
 class WindingRun:
@@ -118,8 +83,7 @@ class WindingRun:
         time: s.
         velocity: rad/s.
         current: Iq - A.
-        voltage: U, of two axes u_q - V.
-        across: u_d - V.
+        voltage: U - V.
         torque: kT(Iq)*Iq - N*m.
         warming: of the winding since the start - K.
         limit: U_max - V.
@@ -129,7 +93,6 @@ class WindingRun:
     velocity: Array
     current: Array
     voltage: Array
-    across: Array
     torque: Array
     warming: Array
     limit: float
@@ -138,9 +101,8 @@ class WindingRun:
     def corner(self) -> float:
         """Speed from which on full voltage no longer drives peak current, between two steps - rad/s."""
         started = int(np.argmax(self.current > 0.999 * self.current.max()))
-        voltage = np.hypot(self.voltage, self.across)
-        at = started + int(np.argmax(voltage[started:] >= self.limit * (1.0 - 1e-9)))
-        (before, last), (slower, speed) = voltage[at - 2 : at].tolist(), self.velocity[at - 2 : at].tolist()
+        at = started + int(np.argmax(np.abs(self.voltage[started:]) >= self.limit * (1.0 - 1e-9)))
+        (before, last), (slower, speed) = self.voltage[at - 2 : at].tolist(), self.velocity[at - 2 : at].tolist()
         return speed + (self.limit - last) * (speed - slower) / (last - before)
 
     @property
@@ -164,25 +126,23 @@ def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array) -> W
     circuit, constant, limit = winding.circuit, winding.torque_constant, winding.peak_current
     ke, loop_gain = circuit.back_emf_constant, winding.inductance / CURRENT_LOOP
     current_gain = VELOCITY_GAIN / constant.constant
-    record = np.zeros((demand.size, 5))
+    record = np.zeros((demand.size, 4))
     for k, wanted in enumerate(demand.tolist()):
         omega = data.qvel[0]
         target = min(max(current_gain * (wanted - omega), -limit), limit)
         resistance, before = circuit.resistance_at(winding.temperature + data.act[0]), data.act[-1]
-        own = winding.back_emf_constant(before)
-        wanted = resistance * target + own * omega + loop_gain * (target - before)
-        voltage, across = winding.voltages(wanted, resistance * before + own * omega, omega, before)
-        data.ctrl[0] = voltage - (own - ke) * omega  # dcmotor takes Ke*omega from it
+        wanted = resistance * target + ke * omega + loop_gain * (target - before)
+        voltage = data.ctrl[0] = min(max(wanted, -circuit.voltage), circuit.voltage)
         mujoco.mj_forward(model, data)
         current = data.actuator_force[0] / ke
-        record[k] = omega, current, voltage, across, data.act[0]
+        record[k] = omega, current, voltage, data.act[0]
         data.qfrc_applied[0] = constant.curvature * current**3 + (constant.constant - ke) * current
         mujoco.mj_step(model, data)
     if not np.isfinite(record).all():
         raise SimulationError(DIVERGED)
-    velocity, current, voltage, across, warming = record.T
+    velocity, current, voltage, warming = record.T
     time = STEP * np.arange(demand.size, dtype=np.float64)
-    return WindingRun(time, velocity, current, voltage, across, constant.torque(current), warming, circuit.voltage)
+    return WindingRun(time, velocity, current, voltage, constant.torque(current), warming, circuit.voltage)
 
 
 def _model(winding: WindingModel, axis: AxisParameters) -> mujoco.MjModel:

@@ -54,7 +54,7 @@ def document(results, cover=None):
 def test_report_has_every_task_number_and_figure(lab, done):
     text = (lab.folder / "here" / "lab.html").read_text(encoding="utf-8")
     assert re.findall(r'<section id="task-([^"]+)"', text) == list(done)
-    assert text.count('<figure class="chart"') == sum(len(task.charts) for task in done.values()) == 17
+    assert text.count('<figure class="chart"') == sum(len(task.charts) for task in done.values()) == 14
     for label in LABELS:
         assert label in text, label
     for task in done.values():
@@ -62,7 +62,7 @@ def test_report_has_every_task_number_and_figure(lab, done):
         assert all(f'<th scope="row">{number.name}</th>' in text.replace("&#39;", "'") for number in task.numbers)
         assert all(number.source for number in task.numbers)
     assert not re.search(r'(?:src|href)="(?!#)', text), "the page must need no other file"
-    for number in range(1, 18):
+    for number in range(1, 15):
         assert f"Figure {number}: " in text
     content = (lab.folder / "here" / "lab.pdf").read_bytes()
     assert b"/Type3" not in content
@@ -218,7 +218,7 @@ def test_the_pdf_has_every_cell_number_and_caption(lab, done, tmp_path):
     parts = [part for section in content["sections"] for part in section["blocks"]]
     by_kind = {kind: [part for part in parts if part["kind"] == kind] for kind in ("chart", "table", "equation")}
     assert [part["number"] for part in by_kind["equation"]] == [f"({k})" for k in range(1, 11)]
-    assert [part["title"].split(":")[0] for part in by_kind["chart"]] == [f"Figure {k}" for k in range(1, 18)]
+    assert [part["title"].split(":")[0] for part in by_kind["chart"]] == [f"Figure {k}" for k in range(1, 15)]
     tables = len(by_kind["table"])
     assert [part["caption"].split(":")[0] for part in by_kind["table"]] == [f"Table {k}" for k in range(2, tables + 2)]
     assert all((tmp_path / part["file"]).read_bytes().startswith(b"%PDF") for part in by_kind["chart"])
