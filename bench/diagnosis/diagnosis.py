@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from pathlib import Path
 
 import mujoco
@@ -19,7 +20,7 @@ from bench.arrays import Array, known_rms, rms
 from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, Rejected, add
-from bench.diagnosis.name import NamedEffect, name, with_interval
+from bench.diagnosis.name import NamedEffect, Suspects, name, with_interval
 from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.policy import ERRS_TWICE, POLICY, Policy
 from bench.diagnosis.probability import Probabilities
@@ -250,8 +251,7 @@ def diagnose(
     gated = [passed(each, rig) for each in traces]
     unseen = passed(trace_of(holdout, rig, units), rig).trace if holdout is not None else None
     recordings = Recordings.of([each.trace for each in gated], rig, unseen)
-    bare = fit_bare(recordings.rows)
-    suspects = name(recordings, bare, left_out, policy)
+    recordings, bare, suspects = decided(recordings, left_out, policy)
     recordings, moves = recordings.steady(suspects.searched.last)
     if recordings.rows is not bare.rows:
         bare = fit_bare(recordings.rows)
@@ -261,7 +261,25 @@ def diagnose(
     added = add(recordings, suspects)
     progress(0.9)
     shown, checks = show(bare, located, added), joined([each.checks for each in gated])
-    return replace(shown, checks=checks, warnings=[*shown.warnings, *moves])
+    return replace(shown, checks=checks, warnings=[*shown.warnings, *recordings.warnings, *moves])
+
+
+def decided(recordings: Recordings, excluded: frozenset[str], policy: Policy) -> tuple[Recordings, Fit, Suspects]:
+    """Names at the highest cut-off at which they are decided, with the fit without them.
+
+    Noise of the acceleration grows with the cut-off, and may hide an effect that a lower one shows. If none shows one,
+    the highest counts.
+    """
+    tried = []
+    for each in chain([recordings], recordings.lower()):
+        bare = fit_bare(each.rows)
+        suspects = name(each, bare, excluded, policy)
+        tried.append((each, bare, suspects))
+        if suspects.probabilities.chosen.names:
+            return tried[-1]
+        if suspects.probabilities.nothing > 0.5 or not policy.noise_hides(bare):
+            break
+    return tried[0]
 
 
 def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:

@@ -28,7 +28,7 @@ from bench.effects.present import Present
 from bench.effects.signals import Base
 from bench.errors import BenchError, InputError
 from bench.fit.fit import fit
-from bench.fit.rows import SIGN_WIDTHS
+from bench.fit.rows import sign_reach
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant
@@ -182,7 +182,7 @@ def separation(
     sign = np.where(np.abs(speed) > CLEAR * np.abs(speed).max(), np.sign(speed), 0.0)
     from scipy.ndimage import uniform_filter1d  # 0.1 s, which only an open question has to pay
 
-    reach = 2 * round(SIGN_WIDTHS * smooth.width / references.period) + 1
+    reach = 2 * round(sign_reach(smooth) / references.period) + 1
     clear = np.abs(uniform_filter1d(sign, reach)) > 1.0 - 1e-9
     if np.count_nonzero(clear) < LEAST:
         return 0.0

@@ -127,6 +127,12 @@ class Policy:
         """Whether what is left stands clearly above noise."""
         return fitted.chi > self.remainder
 
+    def noise_hides(self, bare: Fit) -> bool:
+        """Whether noise of the motion may hide an effect: the residual is near it, and exceeds the effort's."""
+        conditioning = bare.rows.conditioning
+        of_effort = conditioning.effort_noise * conditioning.filter.noise_gain(0)
+        return over_noise(bare) < self.large and bare.noise.white**2 > 2.0 * of_effort**2
+
     def leaves_room(self, fitted: Fit, effect: Replacing) -> bool:
         """Whether an effect that is tried in the place of others may be there still, as more than noise is left.
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 import numpy as np
 
@@ -15,28 +16,21 @@ from bench.effects.acting import FilteredSignal
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detectable, Detected, Effect
 from bench.errors import InputError, UndeterminedError
+from bench.fit.cutoffs import INDEPENDENT, NOISY, TELLS, TERMS, Cutoffs
 from bench.fit.determined import require_friction, require_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
-from bench.fit.hypothesis import lay_out, plain
-from bench.fit.identify import TELLS, TERMS, steady
+from bench.fit.hypothesis import plain
 from bench.fit.quantities import Uncertain
-from bench.fit.rows import Rows, clear_motion
-from bench.fit.solution import equations_of, solution_of
+from bench.fit.rows import Rows, clear_motion, sign_reach
+from bench.fit.solution import Solution, solution_of
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.trace.filter import LEAST_WIDTH
+from bench.trace.filter import LEAST_WIDTH, GaussianFilter
 from bench.trace.trace import Trace, join
 
-#: Least number of independent rows of clear motion. Of shortened shared cases, those with 25 to 70 named an absent
-#: effect in 5 of 11, those with 90 to 130 in 1 of 13 (first 0.2, 0.4 and 0.8 s of every other one).
-INDEPENDENT = 100
 #: An effect this many times smaller than the torque of the motion is small, however little friction there is.
 SMALL = 10.0
-#: Largest share of noise in the acceleration's power. Least squares underestimates inertia by it: by 27 % at 0.27, by 4
-#: % at 0.04; the shared cases have 6e-5 at most.
-NOISY = 0.1
-
 #: What is advised beyond what would just suffice.
 LONGER = 1.5
 
@@ -55,6 +49,7 @@ class Recordings:
         rows, holdout_rows: rows of both, without those faults.
         detected: effects outside the torque balance that the signals show directly.
         doubt: half widths of J, K_w and K_0 at 95 % from how they move with the filter's cut-off, by their terms.
+        warnings: what noise of the motion hides.
     """
 
     rig: Rig
@@ -65,6 +60,7 @@ class Recordings:
     holdout_rows: Rows | None
     detected: Mapping[Effect, Detected]
     doubt: Mapping[str, float] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, trace: Trace | Sequence[Trace], rig: Rig, holdout: Trace | None) -> Recordings:
@@ -81,8 +77,7 @@ class Recordings:
         if holdout is not None:
             for each in traces:
                 _require_another(each, holdout)
-        rows = Rows.of(trace, rig)
-        _require_decidable(trace, rig, rows)
+        rows, hidden = _decidable(trace, rig)
         width = rows.conditioning.filter.width
         detected: dict[Effect, Detected] = {}
         for effect in catalogue().values():
@@ -95,11 +90,10 @@ class Recordings:
                 corrected = _corrected(corrected, rig, effect, found)
                 unseen = None if unseen is None else _corrected(unseen, rig, effect, found)
         if corrected is not trace:
-            rows = Rows.of(corrected, rig)
-            _require_decidable(corrected, rig, rows)
+            rows, hidden = _decidable(corrected, rig)
         width, peak = rows.conditioning.filter.width, rows.scope.peak_effort
         holdout_rows = None if unseen is None else Rows.of(unseen, rig, width=width, peak_effort=peak)
-        return cls(rig, trace, corrected, holdout, rows, holdout_rows, detected)
+        return cls(rig, trace, corrected, holdout, rows, holdout_rows, detected, warnings=hidden)
 
     def within_tolerance(self, fitted: Fit) -> list[Fit]:
         """A balance of the whole recording, refitted with each of the rig's values at the end of its tolerance."""
@@ -109,22 +103,29 @@ class Recordings:
         rigs = self.rig.within_tolerance()
         return [fit(Rows.of(self.corrected, rig, conditioning=same), fitted.hypothesis) for rig in rigs]
 
+    def through(self, smooth: GaussianFilter) -> Recordings:
+        """The same through a filter that is no narrower."""
+        unseen = None if self.holdout_rows is None else self.holdout_rows.through(smooth)
+        return replace(self, rows=self.rows.through(smooth), holdout_rows=unseen)
+
+    def lower(self) -> Iterator[Recordings]:
+        """The same at the lower cut-offs that suit effects, too, from high to low."""
+        lower = islice(_suited(self.rows, self.rig), 1, None)
+        return (self.through(found.rows.conditioning.filter) for found in lower)
+
     def steady(self, found: Fit) -> tuple[Recordings, tuple[str, ...]]:
         """The same at the cut-off at which J, K_w and K_0 stand still beside the effects of a fit, and what moved.
 
-        Asked among the links of a robot: the noise and lags of other joints' speeds enter at high frequency, and what
-        is left of the inertia beside the links' is a small difference.
+        Among the links of a robot: the noise and lags of other joints' speeds enter at high frequency, and the rotor's
+        inertia is a small difference.
         """
         if not found.rows.stretches[0].signals.known:
             return self, ()
-        calm, chosen = steady(solution_of(found.rows, found.hypothesis, self.rig.offset), self.rig)
+        calm, chosen = Cutoffs(solution_of(found.rows, found.hypothesis, self.rig.offset), self.rig).for_inertia()
         doubt = dict(zip(TERMS, chosen.doubt.tolist(), strict=True))
         moves = tuple(warning.removesuffix(f"; {TELLS}") for warning in chosen.warnings)
-        if calm.rows is found.rows:
-            return replace(self, doubt=doubt), moves
-        smooth, unseen = calm.rows.conditioning.filter, self.holdout_rows
-        unseen = None if unseen is None else unseen.through(smooth)
-        return replace(self, rows=calm.rows, holdout_rows=unseen, doubt=doubt), moves
+        same = calm.rows is found.rows
+        return replace(self if same else self.through(calm.rows.conditioning.filter), doubt=doubt), moves
 
     def base(self, numbers: Uncertain) -> dict[str, Parameter]:
         """J, K_w and K_0 of a fit by name, as wide as they move with the cut-off."""
@@ -179,30 +180,45 @@ def _require_another(trace: Trace, holdout: Trace) -> None:
         raise InputError("holdout", f"found the recording itself ({holdout.origin})", "allowed: another recording")
 
 
-def _require_decidable(trace: Trace, rig: Rig, rows: Rows) -> None:
-    """Refuse a recording that is too short, too quiet, or whose rows determine no inertia and friction."""
-    conditioning, found = rows.conditioning, rows.effort.size / rows.correlation
-    if found < INDEPENDENT:
-        moving = rows.effort.size * conditioning.filter.stride * conditioning.filter.sample_period
+def _decidable(trace: Trace, rig: Rig) -> tuple[Rows, tuple[str, ...]]:
+    """Rows at the cut-off that suits effects best, and a warning of what a lower one than usual hides.
+
+    Raises:
+        UndeterminedError: the recording is too short or too quiet, or its rows determine no inertia and friction.
+    """
+    usual, kind = Rows.of(trace, rig), rig.axis_kind
+    if usual.independent < INDEPENDENT:
+        moving = usual.effort.size * usual.conditioning.filter.stride * usual.conditioning.filter.sample_period
         raise UndeterminedError(
             WHAT,
             f"{moving:.2g} s of {trace.time[-1] - trace.time[0]:.3g} s move clearly in one direction, "
-            f"{found:.0f} independent samples where {INDEPENDENT} are needed",
-            f"at least {moving * INDEPENDENT / found:.2g} s of such motion in both directions: "
-            f"{clear_motion(conditioning, trace.axis_kind)}",
+            f"{usual.independent:.0f} independent samples where {INDEPENDENT} are needed",
+            f"at least {moving * INDEPENDENT / usual.independent:.2g} s of such motion in both directions: "
+            f"{clear_motion(usual.conditioning, trace.axis_kind)}",
         )
-    equations = equations_of(rows, lay_out(rows, plain(rows)))
-    require_inertia(equations, rig.axis_kind)
-    require_friction(equations, rig.axis_kind)
-    base, unit = fit(rows, plain(rows)), rig.axis_kind.acceleration_unit
-    noise, moved = conditioning.acceleration_noise, rms(base.columns[:, base.owners == INERTIA])
-    if noise**2 > NOISY * moved**2:
+    source, found = usual.conditioning.source, next(_suited(usual, rig), None)
+    if found is None:
         raise UndeterminedError(
             WHAT,
-            f"acceleration is {moved:.3g} {unit} RMS, {noise:.3g} {unit} of it noise of {conditioning.source}",
-            f"accelerations above {noise / math.sqrt(NOISY):.3g} {unit} RMS, or a finer {conditioning.source}",
+            f"noise of the {source} is more than {NOISY:.0%} of the acceleration's power at every cut-off of the "
+            f"filter that leaves {INDEPENDENT} independent samples",
+            f"a finer {source}, or the same motion with higher accelerations",
         )
-    _require_above_noise(base, rig.net_effort(trace)[1])
+    rows, smooth = found.rows, found.rows.conditioning.filter
+    require_inertia(found.whole, kind)
+    require_friction(found.whole, kind)
+    _require_above_noise(fit(rows, plain(rows)), rig.net_effort(trace)[1])
+    if rows is usual:
+        return rows, ()
+    return rows, (
+        f"noise of the {source} requires a filter of {smooth.cutoff:.3g} Hz: it hides resonances above that, and "
+        f"friction within {sign_reach(smooth):.2g} s of a reversal; a finer {source} shows them",
+    )
+
+
+def _suited(rows: Rows, rig: Rig) -> Iterator[Solution]:
+    """Solutions without effects at the cut-offs that suit effects, from high to low."""
+    return Cutoffs(solution_of(rows, plain(rows), rig.offset), rig).for_effects()
 
 
 def _require_above_noise(base: Fit, unit: str) -> None:

@@ -31,6 +31,10 @@ PLAINLY = {
     COULOMB: "it hardly moves in both directions",
 }
 
+#: What the noise of position or speed hides, and what shows it.
+NOISY = {INERTIA: "acceleration", VISCOUS: "speed"}
+FINER = "a finer position or speed, or the same motion with higher accelerations and speeds"
+
 LOAD = "load_moment_of_inertia"
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
 PUSHING = (
@@ -87,14 +91,20 @@ def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, Undetermi
 def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
     """Why each term is not determined of whose column too little is independent of noise and of the others."""
     return {
-        term: UndeterminedError(
-            kind.in_words(term),
-            f"{PLAINLY[term]}: only {max(share, 0.0):.1%} of what would show it differs from other terms and noise",
-            RECORD[term],
-        )
+        term: _hidden(term, share, equations.noise_share(term), kind)
         for term, share in equations.shares_of_axis.items()
         if not share >= INDEPENDENT_SHARE
     }
+
+
+def _hidden(term: str, share: float, noise: float, kind: AxisKind) -> UndeterminedError:
+    """Why a term is not determined of whose column's power a share is independent, and a share noise."""
+    what = kind.in_words(term)
+    if term in NOISY and share + noise >= INDEPENDENT_SHARE:
+        reason = f"{min(noise, 1.0):.0%} of the measured {NOISY[term]}'s power is noise"
+        return UndeterminedError(what, reason, FINER)
+    reason = f"{PLAINLY[term]}: only {max(share, 0.0):.1%} of what would show it differs from other terms and noise"
+    return UndeterminedError(what, reason, RECORD[term])
 
 
 def refused_masses(

@@ -1,12 +1,6 @@
 """The default estimator: least squares of the torque balance without effects, of a recording or of several together.
 
-A recording's first part decides on filter and hum, all of its parts are summed up. An estimate has to be independent of
-the filter's cut-off, so a decade of cut-offs is tried. What the model of a rigid axis lacks - a drive that reacts to
-noise of its speed, coarse signals, a soft coupling - is mostly at high frequency, and biases the estimate the more of
-it the filter passes. So an estimate is accepted only if it agrees with those at all lower cut-offs within their errors
-(O. V. Lepski, Theory of Probability and its Applications 35(3), 1991, 454-466). Of the accepted ones the highest is
-taken, the most precise on sound recordings, unless another has a clearly narrower interval. If some were rejected, the
-interval includes the bias that may remain.
+A recording's first part decides on filter (`bench.fit.cutoffs`) and hum, all of its parts are summed up.
 
 Of several, what one does not determine another may:
 
@@ -29,7 +23,6 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -38,10 +31,11 @@ from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.errors import InputError, UndeterminedError
-from bench.fit.determined import left_open, remainder, require_inertia, sound
+from bench.fit.cutoffs import TELLS, TERMS, Chosen, Cutoffs
+from bench.fit.determined import remainder, require_inertia, sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
 from bench.fit.fit import by_hint
-from bench.fit.hum import mains, passes
+from bench.fit.hum import mains
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
 from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
@@ -59,20 +53,9 @@ from bench.gate.gate import PARTS, gate, joined, passed, require
 from bench.parameter import Parameter
 from bench.rig.given import Given, GivenRig, Units, given
 from bench.rig.rig import Rig
-from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
 from bench.units import parse
 
-#: Cut-offs tried below the highest, relative to it: a decade in four steps.
-BELOW = 10.0 ** -np.arange(0.25, 1.01, 0.25)
-#: Ratio to the interval at the highest accepted cut-off below which another interval counts as narrower; on 100
-#: recordings of rigid axes the smallest ratio was 0.70.
-NARROWER = 0.6
-#: Share of a value by which filters of different widths may differ without any noise.
-ROUNDING = 1e-4
-#: Terms of the axis, in whose order all numbers here stand.
-TERMS = (INERTIA, VISCOUS, COULOMB)
-TELLS = "bench diagnose searches for the cause"
 #: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
 #: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
 A_DELAY = 0.25
@@ -235,121 +218,7 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chos
     hum = mains(rows, highest.residual)
     if hum:
         highest = solution_of(rows, replace(highest.hypothesis, hum=hum), rig.offset)
-    return (highest, Chosen(0, np.zeros(3))) if cutoff is not None else steady(highest, rig)
-
-
-def steady(highest: Solution, rig: Rig) -> tuple[Solution, Chosen]:
-    """The solution at the cut-off at which J, K_w and K_0 stand still, of one at the highest and those below it."""
-    every = [(found, Tried.of(found, rig.axis_kind)) for found in (highest, *_lower(highest, rig))]
-    usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
-    if not usable:
-        return highest, Chosen(0, np.zeros(3))
-    chosen = among([tried for _, tried in usable], rig.axis_kind)
-    return usable[chosen.place][0], chosen
-
-
-def _lower(highest: Solution, rig: Rig) -> Iterator[Solution]:
-    """Solutions at lower cut-offs, until the filter is too long for the motion."""
-    rows = highest.rows
-    for share in BELOW:
-        smooth = GaussianFilter.from_cutoff(rows.conditioning.filter.cutoff * float(share), rows.scope.sample_period)
-        try:
-            through = rows.through(smooth)
-        except UndeterminedError:
-            return
-        hum = tuple(line for line in highest.hypothesis.hum if passes(line, smooth.width))
-        yield solution_of(through, replace(highest.hypothesis, step=plain(through).step, hum=hum), rig.offset)
-
-
-@dataclass(frozen=True, eq=False)
-class Tried:
-    """An estimate at one cut-off: J, K_w and K_0, nan where undetermined.
-
-    Attributes:
-        cutoff: half-power frequency - Hz.
-        theta, by_noise: values, and half widths of their intervals of 95 % as noise alone makes them (3,).
-        misfit: half widths from what stands above the noise (3,); asked only where they may decide, as they take long.
-    """
-
-    cutoff: float
-    theta: Array
-    by_noise: Array
-    misfit: Callable[[], Array]
-
-    @classmethod
-    def of(cls, found: Solution, kind: AxisKind) -> Tried:
-        """The estimate of a solution."""
-        unknown = left_open(found.whole, kind)
-        places = [found.names.index(term) for term in TERMS]
-        known = np.where([term in unknown for term in TERMS], np.nan, 1.0)
-        by_noise = found.reach * found.errors[places] * known
-        cutoff = found.rows.conditioning.filter.cutoff
-        return cls(cutoff, found.theta[places] * known, by_noise, lambda: found.misfit[places])
-
-    @cached_property
-    def half_widths(self) -> Array:
-        """Of the intervals of 95 % (3,)."""
-        return np.hypot(self.by_noise, self.misfit())
-
-    def agrees(self, other: Tried) -> bool:
-        """Whether the parameters that both determine agree within their intervals."""
-        away = np.abs(self.theta - other.theta) - ROUNDING * np.abs(self.theta)
-        if not np.any(away > np.hypot(self.by_noise, other.by_noise)):  # nan: undetermined
-            return True
-        return not np.any(away > np.hypot(self.half_widths, other.half_widths))
-
-
-@dataclass(frozen=True)
-class Chosen:
-    """The chosen of several cut-offs, and what the others imply.
-
-    Attributes:
-        place: of the chosen one.
-        doubt: possible bias of J, K_w and K_0 (3,) as the estimate moves with the cut-off; 0 at the highest.
-        warnings: that the estimate moves with the cut-off.
-    """
-
-    place: int
-    doubt: Array
-    warnings: tuple[str, ...] = ()
-
-
-def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
-    """The choice among estimates that determine the inertia, from high to low cut-off."""
-    accepted = [usable[-1]]
-    for tried in usable[-2::-1]:
-        if not all(tried.agrees(lower) for lower in accepted):
-            break
-        accepted.append(tried)
-    rejected = usable[: len(usable) - len(accepted)]
-    if not rejected and all(one.by_noise[0] >= NARROWER * usable[0].half_widths[0] for one in usable[1:]):
-        return Chosen(0, np.zeros(3))
-    beyond = rejected[-1] if rejected else accepted[-1]
-    doubts = [_doubt(tried, beyond, accepted[:k]) for k, tried in enumerate(accepted)]
-    wide = [float(np.hypot(tried.half_widths[0], off[0])) for tried, off in zip(accepted, doubts, strict=True)]
-    best = int(np.argmin(wide))
-    if not rejected and wide[best] >= NARROWER * wide[-1]:
-        best = len(accepted) - 1
-    warnings = (_moves(accepted[best], usable, kind),) if rejected else ()
-    return Chosen(len(usable) - 1 - best, doubts[best], warnings)
-
-
-def _doubt(taken: Tried, beyond: Tried, lower: Sequence[Tried]) -> Array:
-    """Possible bias of J, K_w and K_0 (3,): at most what they moved, and what lower cut-offs allow."""
-    moved = np.abs(beyond.theta - taken.theta)
-    room = [np.abs(other.theta - taken.theta) + other.half_widths for other in lower]
-    return np.nan_to_num(np.fmin.reduce([moved, *room]))
-
-
-def _moves(taken: Tried, usable: Sequence[Tried], kind: AxisKind) -> str:
-    """That a quantity moves with the cut-off, and how."""
-    away = [np.abs(tried.theta - taken.theta) / np.hypot(tried.half_widths, taken.half_widths) for tried in usable]
-    term = int(np.argmax(np.nan_to_num(away).max(axis=0)))
-    course = ", ".join(f"{tried.theta[term]:.4g} at {tried.cutoff:.3g} Hz" for tried in usable)
-    return (
-        f"{kind.parameter(TERMS[term])} moves with the filter's cut-off ({course}): taken at {taken.cutoff:.3g} Hz, "
-        f"its interval counts what it may still be off; {TELLS}"
-    )
+    return (highest, Chosen(0, np.zeros(3))) if cutoff is not None else Cutoffs(highest, rig).for_inertia()
 
 
 def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:

@@ -24,8 +24,9 @@ from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.
 WIDEST = 2e-3
-#: A row needs one sign over this many filter widths to each side, so that a lag of some widths moves no reversal in.
-SIGN_WIDTHS = 6.0
+#: Lag by which a reversal of the reported speed may precede that of the torque: this long or so many samples, but not
+#: more than so many filter widths.
+LATE, LATE_SAMPLES, LATE_WIDTHS = 5.8e-3, 2.0, 2.9
 #: Share of the motion in the weaker direction below which friction and a constant torque are one number.
 ONE_WAY = 0.02
 
@@ -80,8 +81,8 @@ class Stretch:
 
     @classmethod
     def of(cls, signals: Signals, start: int, smooth: GaussianFilter) -> Stretch:
-        """The stretch through a filter: a row is used where the direction is known over SIGN_WIDTHS to each side."""
-        wide = replace(smooth, width=smooth.width * SIGN_WIDTHS / SIGN_REACH)
+        """The stretch through a filter: a row is used where the direction is known over `sign_reach` to each side."""
+        wide = replace(smooth, width=sign_reach(smooth) / SIGN_REACH)
         size = signals.time.size
         used = np.zeros(len(range(smooth.margin, size - smooth.margin, smooth.stride)), dtype=bool)
         if size > 2 * wide.margin:
@@ -206,6 +207,11 @@ class Rows:
         """Variance of a sum of filtered noise over that of independent rows: 2*sqrt(pi)*width over their distance."""
         smooth = self.conditioning.filter
         return max(1.0, 2.0 * np.sqrt(np.pi) * smooth.width / (smooth.stride * smooth.sample_period))
+
+    @property
+    def independent(self) -> float:
+        """How many independent samples the rows are."""
+        return self._places.size / self.correlation
 
     def with_signals(self, change: Callable[[Signals], Signals], made_by: Hashable = None) -> Rows:
         """The same rows over changed signals; columns of them are kept if `made_by` tells this change from others."""
@@ -335,9 +341,19 @@ class Rows:
         return self.memory.get(key, lambda: self.table(lambda signals: columns(signals, *values), lag))
 
 
+def sign_reach(smooth: GaussianFilter) -> float:
+    """How long the speed keeps its sign before and after a row - s: what the filter spreads a reversal over, and a lag.
+
+    Both are times. A wider filter does not make a drive later, so it does not have to keep further from a reversal. A
+    width more leaves 4e-5 of a reversal.
+    """
+    late = max(LATE, LATE_SAMPLES * smooth.sample_period, smooth.width)
+    return SIGN_REACH * smooth.width + min(late, LATE_WIDTHS * smooth.width)
+
+
 def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
     """What a row of the torque balance needs: one direction over the filter's reach, at a speed above the noise."""
-    speed, reach = conditioning.sign_threshold, 2.0 * SIGN_WIDTHS * conditioning.filter.width
+    speed, reach = conditioning.sign_threshold, 2.0 * sign_reach(conditioning.filter)
     return (
         f"runs that keep one direction well over {reach:.2g} s, "
         f"at speeds well above {speed:.3g} {kind.speed_unit}, where noise no longer makes the sign"

@@ -146,6 +146,11 @@ class NormalEquations:
         beside, between = matrix[others, at[:, None]], matrix[others[:, :, None], others[:, None, :]]
         return np.diag(matrix) - np.einsum("ki,kij,kj->k", beside, symmetric_inverse(between, DEPENDENT), beside)
 
+    def noise_share(self, name: Name) -> float:
+        """Share of noise in the power of a column."""
+        place = self.names.index(name)
+        return float(self.count * self.noise[place, place] / max(self.total[place, place], 1e-300))
+
     @cached_property
     def shares_of_axis(self) -> dict[str, float]:
         """Independent shares of J, K_w and K_0 by their terms."""
@@ -428,14 +433,20 @@ def _edges(power: Array, count: int) -> NDArray[np.intp]:
 
 
 def _without_each(table: Array, edges: NDArray[np.intp]) -> Array:
-    """Reach of intervals (p,) by coefficients without each part of the rows of columns and residual (m, p + 1)."""
+    """Reach of intervals (p,) by coefficients without each part of the rows of columns and residual (m, p + 1).
+
+    A part that has nearly all power of a column, as slow rows have of friction that falls with speed, shows nothing by
+    being left out: that coefficient is held.
+    """
     count = edges.size - 1
     if count < 2:
         return np.full(table.shape[1] - 1, np.inf)
     sums = np.array([table[start:stop].T @ table[start:stop] for start, stop in pairwise(edges.tolist())])
     grams, scores = sums[:, :-1, :-1], sums[:, :-1, -1]
-    moved = np.einsum("gij,gj->gi", symmetric_inverse(grams.sum(axis=0) - grams, 1e-10), scores)
-    return scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * (moved**2).sum(axis=0))
+    free = np.einsum("gii->gi", grams) <= MOST * np.einsum("gii->i", grams)
+    others = (grams.sum(axis=0) - grams) * (free[:, :, None] & free[:, None, :])
+    moved = np.einsum("gij,gj->gi", symmetric_inverse(others + np.eye(free.shape[1]) * ~free[:, None], 1e-10), scores)
+    return scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * ((free * moved) ** 2).sum(axis=0))
 
 
 def long_run_covariance(scores: Array) -> tuple[Array, float]:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from bench.axis_kind import ARMATURE
 from bench.effects.present import named
-from bench.errors import InputError, UndeterminedError
+from bench.errors import BenchError, InputError, UndeterminedError
 from bench.export.mjcf import Armature, robot_with
 from bench.jobs.process import Failure
 from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
@@ -110,6 +110,7 @@ def robot(
     added = sought.added if sought is not None else payload
     work = carrying(work, [added]) if isinstance(added, AddedBody) else work
     found = _identified(work, lambda share: progress(SEEKING + (1.0 - SEEKING) * share))
+    _require_input(found)
     open_ = [one for one in found.values() if one.diagnosis and one.diagnosis.verdict == "unexplained_remainder"]
     links = doubt_links(work) if open_ else []
     if links:
@@ -136,6 +137,13 @@ def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:
             unknown = f"found no hinge or slide of that name{nearest(name, names)}"
             raise InputError(f"--joint {name}", unknown, f"allowed: {', '.join(names) or 'an MJCF with a named joint'}")
     return names
+
+
+def _require_input(found: Mapping[str, IdentifiedJoint]) -> None:
+    """BenchError where several joints fail, all for one reason: it is wrong with a file that they share."""
+    reasons = {joint.failed for joint in found.values()}
+    if len(found) > 1 and len(reasons) == 1 and any(reasons):
+        raise BenchError(*reasons)
 
 
 def _identified(work: Sequence[JointLogs], progress: Callable[[float], None]) -> dict[str, IdentifiedJoint]:

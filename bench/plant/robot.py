@@ -145,9 +145,10 @@ class Robot:
         joints = tuple(int(k) for k in np.flatnonzero(trees == trees[model.joint(joint).id]))
         for k in joints:
             if int(model.jnt_type[k]) not in UNITS:
+                body = model.body(int(model.jnt_bodyid[k])).name
                 found = "found a free or ball joint, whose motion no log of joints tells"
-                allowed = "allowed: hinges and slides on a base that stands"
-                raise InputError(f"{path}: joint '{names[k]}'", found, allowed)
+                allowed = "for a robot on a stand, delete this joint and the <keyframe> element from the file"
+                raise InputError(f"{path}: body '{body}'", found, allowed)
         for reason in _bound(model, model.joint(joint).id):
             found = f"found {reason}, whose torque no log tells"
             raise InputError(f"{path}: joint '{joint}'", found, "allowed: a joint that moves by its motor alone")

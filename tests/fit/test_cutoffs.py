@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from bench.arrays import rms
+from bench.fit.cutoffs import BELOW, Tried, among
 from bench.fit.estimate import RefusedEstimateError
-from bench.fit.identify import BELOW, Tried, among, choose, identify
+from bench.fit.identify import choose, identify
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from bench.trace.write import write

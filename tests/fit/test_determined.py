@@ -52,6 +52,13 @@ def test_what_is_not_shown_has_its_plain_reason_first():
         require_inertia(equations(alike(0, 1, 0.009)), ROTARY)
 
 
+def test_noise_is_the_reason_where_it_alone_hides_the_acceleration():
+    noise = np.diag([1.0, 0.0, 0.0, 0.0, 0.0])
+    with pytest.raises(UndeterminedError, match=r"100% of the measured acceleration's power is noise") as refused:
+        require_inertia(equations(np.eye(PLACES), noise=noise), ROTARY)
+    assert "hardly accelerates" not in str(refused.value) and "finer" in refused.value.record
+
+
 @pytest.mark.parametrize(("rows", "sure"), [(100, True), (99, False)])
 def test_it_takes_twenty_rows_a_column(rows, sure):
     found = equations(np.eye(PLACES), rows=rows)
