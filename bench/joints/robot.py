@@ -110,7 +110,6 @@ def robot(
     added = sought.added if sought is not None else payload
     work = carrying(work, [added]) if isinstance(added, AddedBody) else work
     found = _identified(work, lambda share: progress(SEEKING + (1.0 - SEEKING) * share))
-    _require_input(found)
     open_ = [one for one in found.values() if one.diagnosis and one.diagnosis.verdict == "unexplained_remainder"]
     links = doubt_links(work) if open_ else []
     if links:
@@ -139,15 +138,12 @@ def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:
     return names
 
 
-def _require_input(found: Mapping[str, IdentifiedJoint]) -> None:
-    """BenchError where several joints fail, all for one reason: it is wrong with a file that they share."""
-    reasons = {joint.failed for joint in found.values()}
-    if len(found) > 1 and len(reasons) == 1 and any(reasons):
-        raise BenchError(*reasons)
-
-
 def _identified(work: Sequence[JointLogs], progress: Callable[[float], None]) -> dict[str, IdentifiedJoint]:
+    """Each joint by its name; BenchError where several fail, all for one reason: a file that they share is wrong."""
     found: dict[str, IdentifiedJoint] = {}
     for asked, one in zip(work, of_each(identified, work, progress), strict=True):
         found[asked.joint] = IdentifiedJoint(asked.joint, failed=one.reason) if isinstance(one, Failure) else one
+    reasons = {joint.failed for joint in found.values()}
+    if len(found) > 1 and len(reasons) == 1 and any(reasons):
+        raise BenchError(*reasons)
     return found
