@@ -24,7 +24,6 @@ from bench.errors import InputError
 from bench.files import opened, read_bytes
 from bench.trace.readers.named_arrays import load_mat
 from bench.units import convert
-from bench.units.conversion import spelled_for_pint
 
 TEXTS = (".csv", ".txt", ".dat", ".tsv")
 ENDINGS = (*TEXTS, ".mat")
@@ -267,7 +266,7 @@ def _flights(columns: Sequence[ColumnLabel], table: Array, where: str) -> FoundF
 
 def _metres(column: ColumnLabel, values: Array, where: str) -> Array:
     try:
-        return values if column.unit is None else convert(values, spelled_for_pint(column.unit), "m")
+        return values if column.unit is None else convert(values, column.unit, "m")
     except ValueError as error:
         found = f"found the unit '{column.unit}'"
         raise InputError(f"{where}: {column.name}", found, "allowed: a unit of length") from error

@@ -10,7 +10,9 @@ from __future__ import annotations
 import importlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from datetime import datetime
 from typing import Any
 
 import numpy as np
@@ -42,6 +44,7 @@ _MOMENT = (
 )
 _PATTERN = re.compile(_MOMENT)
 _DAY = 86400.0
+_DATES = ("%Y-%m-%d", "%y-%m-%d", "%d-%m-%Y", "%d-%m-%y", "%m-%d-%Y", "%m-%d-%y")
 
 
 def _read(source: Source) -> Recording:
@@ -237,20 +240,12 @@ def _days(dates: np.ndarray) -> Array | None:
     03/01/2024 to 03/05/2024 are four days. Between points the day comes first.
     """
     texts, which = np.unique(dates, return_inverse=True)
-    parts = [re.split("[-./]", text) for text in texts.tolist()]
-    first, second, third = np.array(parts, dtype=np.int64).T
-    lengths = {(len(one), len(other)) for one, _, other in parts}
-    orders = [(first, second, third)] if all(after < 3 for _, after in lengths) else []
-    if all(before < 3 for before, _ in lengths):
-        orders += [(third, second, first)] if "." in texts[0] else [(third, second, first), (third, first, second)]
+    plain = [re.sub("[./]", "-", text) for text in texts.tolist()]
     found = []
-    for year, month, day in orders:
-        whole = year + np.where(year >= 100, 0, np.where(year < 70, 2000, 1900))
-        months = (12 * (whole - 1970) + month - 1).astype("M8[M]")
-        days = months.astype("M8[D]") + (day - 1)
-        if ((month > 0) & (month <= 12) & (day > 0) & (days.astype("M8[M]") == months)).all():
-            passed = days.astype(np.int64)[which]
-            found.append((passed - passed[0]).astype(np.float64))
+    for form in _DATES[:4] if "." in dates[0] else _DATES:
+        with suppress(ValueError):
+            days = np.array([datetime.strptime(text, form).toordinal() for text in plain])[which]
+            found.append((days - days[0]).astype(np.float64))
     return min(found, key=lambda days: ((np.diff(days) < 0).any(), np.ptp(days)), default=None)
 
 
