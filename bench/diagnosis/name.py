@@ -193,6 +193,11 @@ def alike(fitted: Fit, index: int, policy: Policy) -> tuple[str, ...]:
             other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, shape)))
             if worth(other, fitted) < policy.by_chance(fitted, len(shape)) and policy.physical(other):
                 found.append(effect.name)
+    for effect in (catalogue()[name] for name in term.effect.looks_like):
+        if effect.sought(fitted.scope) and fitted.hypothesis.without(index).admits(effect):
+            other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect)))
+            if policy.undecided(fitted, other) and policy.physical(other):
+                found.append(effect.name)
     return (*term.effect.ambiguous(fitted.scope), *found)
 
 

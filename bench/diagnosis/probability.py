@@ -49,6 +49,9 @@ BLOCKS, EXPLAINED = 32, 3.0
 #: Power over the best hypothesis' up to which a holdout says nothing, as strengths and shapes have errors: true names
 #: of the blind set left 1.8 there.
 UNSURE = 2.0
+#: Numbers that a scale of the torque counts for beyond its own, as it changes every other one: it comes before an
+#: unbalance, which has two, and after a friction that follows the torque, where a recording does not distinguish them.
+RESCALED = 0.5
 #: Candidates beyond the last step of a search that are hypotheses, too.
 NEXT = 2
 #: Least of U: what is left is no more than noise.
@@ -155,14 +158,14 @@ class Contender:
         fitted: to the recording.
         left: logarithm of what it leaves beyond noise over what the bare axis leaves.
         over: the same over BESIDE_NOISE of the noise.
-        numbers: fitted beyond those of the bare axis.
+        numbers: fitted beyond those of the bare axis, and RESCALED for a scale of the torque.
         outside: whether it has an effect that no catalogue holds.
     """
 
     fitted: Fit
     left: float
     over: float
-    numbers: int
+    numbers: float
     outside: bool
 
 
@@ -257,7 +260,8 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
     excess, claimed = (np.maximum(of - floor, 0.0) + beyond for of in (power, claimed))
     left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: what damps it leaves no less for that
     over = np.log1p(claimed / (BESIDE_NOISE * floor))
-    numbers = [freedom(each) - freedom(tried[0]) for each in physical]
+    rescaled = [RESCALED * each.layout.rescaling.size for each in physical]
+    numbers = [freedom(each) - freedom(tried[0]) + more for each, more in zip(physical, rescaled, strict=True)]
     columns = (left - left[0]).tolist(), over.tolist(), numbers, outside.tolist()
     return [Contender(*each) for each in zip(physical, *columns, strict=True)]
 

@@ -6,7 +6,8 @@ Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are s
 and says by the further types that it derives from what else it is; the rest of the bench asks `isinstance`, and knows
 no effect by name.
 
-    in the torque balance   Columns: CopiesTorque, OfSpeed, OuterTorque, Repeatable, Occasional, Coupling, Contact
+    in the torque balance   Columns: CopiesTorque, RescalesTorque, OfSpeed, OuterTorque, Repeatable, Occasional,
+                            Coupling, Contact
     over position           Wave (`bench.effects.waves`)
     in the recording        Distortion, MotionLag, EffortLag, FiltersMotion, Detectable
     in the search           Replacing
@@ -117,6 +118,7 @@ class Effect(ABC):
         derived: quantities reported too, which follow from them.
         shapes: the nonlinear quantities, in the order in which all methods take them.
         needed: share of the squared residual above noise that it must explain (see `tests.studies.blind.margins`).
+        looks_like: names of effects without a shape that some recordings cannot distinguish from it, which fits decide.
     """
 
     name: ClassVar[str]
@@ -125,6 +127,7 @@ class Effect(ABC):
     derived: ClassVar[tuple[Quantity, ...]] = ()
     shapes: ClassVar[tuple[Shape, ...]] = ()
     needed: ClassVar[float] = 0.25
+    looks_like: ClassVar[tuple[str, ...]] = ()
 
     def __reduce__(self) -> str:
         """Pickled by its name in its module: there is one object of each effect."""
@@ -215,6 +218,10 @@ class CopiesTorque(Columns):
 
     Each value of the sample in its place alone: those of a recording with holes are made at once.
     """
+
+
+class RescalesTorque(Columns):
+    """Its one strength is what the torque that acts has more than the reported one, as share of that."""
 
 
 class OfSpeed(Columns):

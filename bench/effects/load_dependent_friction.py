@@ -21,6 +21,7 @@ class LoadDependentFriction(CopiesTorque, RaisesFriction):
     name = "load_dependent_friction"
     summary = "friction grows with the magnitude of the transmitted torque"
     quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),)
+    looks_like = ("torque_scale",)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         return [[(signals.sign * np.abs(signals.torque), 0)]]

@@ -19,6 +19,7 @@ class Unbalance(OncePerRevolution, OuterTorque, LoadTorque, Native):
     name = "unbalance"
     summary = "an eccentric mass under gravity, once per revolution"
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), PHASE)
+    looks_like = ("torque_scale",)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         return once_per_revolution(signals.position, 1.0)

@@ -90,7 +90,7 @@ class Fit:
     @cached_property
     def left(self) -> Array:
         """Measured less modelled torque at all rows (m,) - N*m (N)."""
-        return self.effort - self.columns @ self.theta
+        return self.layout.left(self.theta)
 
     @cached_property
     def missing(self) -> dict[int, Array]:

@@ -46,6 +46,7 @@ from bench.effects.effect import (
     MotionLag,
     OuterTorque,
     Repeatable,
+    RescalesTorque,
     lagged,
 )
 from bench.effects.shape import is_pitch
@@ -194,6 +195,7 @@ class Layout:
         effort: (m,) what they are to explain - N*m (N).
         noise: (p, p) covariance of what the sensors' noise makes of the columns in a row.
         bounds: lowest and highest value of strengths that are not free, by their places.
+        rescaling: places of strengths that rescale the reported torque.
     """
 
     columns: Array
@@ -201,6 +203,15 @@ class Layout:
     effort: Array
     noise: Array
     bounds: Mapping[int, tuple[float, float]]
+    rescaling: NDArray[np.intp]
+
+    def acting(self, theta: Array) -> float:
+        """Torque that acts per reported torque, by coefficients (p,): 1 unless a term rescales it."""
+        return max(float(1.0 + theta[self.rescaling].sum()), 1e-9)
+
+    def left(self, theta: Array) -> Array:
+        """Measured less modelled torque (m,), as it would be reported: a scale leaves no less by itself - N*m (N)."""
+        return (self.effort - self.columns @ theta) / self.acting(theta)
 
 
 def plain(rows: Rows) -> Hypothesis:
@@ -240,7 +251,8 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | N
         # as the motion tells it, whose lag is undone; all of it of an effort that was made anew
         known = seen.kept(known_of, lag=moving)[:, 0]
         effort = effort - (known if late else known - seen.kept(known_of)[:, 0])
-    return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds)
+    rescaling = np.flatnonzero(np.isin(held_by, hypothesis.of_kind(RescalesTorque)))
+    return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds, rescaling)
 
 
 def _axis(signals: Signals) -> list[Column]:

@@ -112,14 +112,16 @@ def uncertain(fitted: Fit) -> Uncertain:
 def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) -> tuple[Array, float]:
     """Covariance (p + s, p + s) from the residual, what stands above noise included, and the reach of intervals."""
     conditioning, jacobian = fitted.rows.conditioning, _jacobian(fitted.rows, fitted, slots)
-    weight = np.ones(fitted.left.size)
+    acting = fitted.layout.acting(fitted.theta)
+    left, floor = acting * fitted.left, acting * fitted.floor
+    weight = np.ones(left.size)
     if not fitted.determined.all():  # a row that leaves more than noise counts less and less
-        weight = 1.0 / (1.0 + (fitted.left / (SCALE * fitted.floor)) ** 2)
+        weight = 1.0 / (1.0 + (left / (SCALE * floor)) ** 2)
     noise = np.pad(fitted.layout.noise, (0, len(slots)))
     numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
     edges = block_edges(fitted.time, conditioning.filter.width)
     count = np.diff(edges)
-    scores = np.add.reduceat(jacobian * (weight * fitted.left)[:, None], edges[:-1])
+    scores = np.add.reduceat(jacobian * (weight * left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers)
     shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots, known), (fitted.theta.size, 0))
     both = np.ix_(shown, shown)
@@ -128,9 +130,9 @@ def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) 
     covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
     heavy = np.sqrt(weight)
     # beside a name from the floor on: what is too weak for one leaves 1.05 to 1.2 and bends the values
-    least = fitted.floor / NOISE_ALONE if fitted.terms else fitted.floor
-    left = misfit(jacobian[:, shown] * heavy[:, None], fitted.left * heavy, least)
-    covariance[both] += np.diag((left / reach) ** 2)
+    least = floor / NOISE_ALONE if fitted.terms else floor
+    reaches = misfit(jacobian[:, shown] * heavy[:, None], left * heavy, least)
+    covariance[both] += np.diag((reaches / reach) ** 2)
     return covariance, reach
 
 

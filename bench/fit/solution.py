@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
-from bench.effects.effect import Coupling
+from bench.effects.effect import CopiesTorque, Coupling, RescalesTorque
 from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out
 from bench.fit.rows import ONE_WAY, Rows
 
@@ -516,6 +516,24 @@ class Floor:
         return self._rms(lines + white * excess / (1.0 + (self._omega / corner) ** 2))
 
     @cached_property
+    def _acting(self) -> float:
+        """Torque that acts per reported torque, on average; 1 where no torque is known, against which it would differ.
+
+        The residual is one of the reported torque, in which noise of the motion is as much larger.
+        """
+        rows, share = self.rows, 1.0
+        if not rows.stretches[0].signals.known:
+            return share
+        more = replace(rows.joined, torque=rows.joined.torque + (step := 1e-3 * rms(self.layout.effort)))
+        for index, term in enumerate(self.hypothesis.terms):
+            if isinstance(term.effect, CopiesTorque | RescalesTorque):
+                made = (term.effect.columns(signals, term.shape) for signals in (rows.joined, more))
+                strengths = self.theta[self.layout.owners == index].tolist()
+                for strength, ((low, _),), ((high, _),) in zip(strengths, *made, strict=True):
+                    share -= strength * float(np.mean(high - low)) / step
+        return max(share, 1e-9)
+
+    @cached_property
     def _omega(self) -> Array:
         return np.linspace(0.0, np.pi / self.rows.conditioning.filter.sample_period, 2048)
 
@@ -562,7 +580,7 @@ class Floor:
         rate = (1.0 + moving * s) * s
         both = 2.0 * conditioning.known_shared * (kinetic * rate.conj()).real
         known = conditioning.known_noise**2 * _square(rate)
-        return effort + np.maximum(known + both + source * _square(kinetic), 0.0)
+        return effort + np.maximum(known + both + source * _square(kinetic), 0.0) / self._acting**2
 
     def _colour(self) -> tuple[float, float]:
         """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white.

@@ -59,7 +59,7 @@ class Balance:
             if not (missing := not_reaching(self.hypothesis, layout, theta)):
                 break
             layout = lay_out(rows, self.hypothesis, missing)
-        return layout.effort - layout.columns @ theta
+        return layout.left(theta)
 
     def gap(self, rows: Rows) -> float:
         """RMS of measured less modelled torque along a recording - N*m (N)."""

@@ -10,6 +10,8 @@ from typing import TypeVar
 from bench.arrays import rms
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, VISCOUS, AxisKind
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
+from bench.effects.catalogue import catalogue
+from bench.effects.effect import RescalesTorque
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
 from bench.fit.estimate import Estimate, RefusedEstimateError
@@ -20,6 +22,7 @@ from bench.gate.gate import passed, warnings_of
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
 from bench.joints.motion import JointMotion, joint_motion
+from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
@@ -103,7 +106,26 @@ class IdentifiedJoint:
         """What a user should know before relying on it."""
         found = self.diagnosis or self.estimate
         warnings = () if found is None else (*found.warnings, *warnings_of(found.checks))
+        warnings = (*warnings, *([f"contested armature: {self.contested}"] if self.contested else []))
         return [*warnings, *(f"{log} is not used: {why}" for log, why in self.left_out.items())]
+
+    @property
+    def contested(self) -> str:
+        """What else the armature may be, as a scale of the torque looks like other links; empty if it is clear."""
+        armature = self.parameters.get(ARMATURE)
+        if armature is None:
+            return ""
+        for one in self.diagnosis or ():
+            if isinstance(one.effect, RescalesTorque):
+                (scale,) = one.values.values()
+                return (
+                    f"the torque is taken as {scale:.3g} times too large; with links {scale:.3g} times as heavy as the "
+                    f"MJCF's the armature is {scale * armature.value:.4g} {armature.unit}"
+                )
+            for name in one.ambiguous_with:
+                if isinstance(catalogue().get(name), RescalesTorque):
+                    return f"a {words(name)} looks like {words(one.name)}, and would change the armature"
+        return ""
 
     @property
     def model(self) -> StoredModel | None:

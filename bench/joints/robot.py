@@ -61,7 +61,8 @@ class IdentifiedRobot:
         models = {}
         for name, model in self.models.items():
             found = self.joints[name].parameters.get(ARMATURE)
-            armature = None if found is None else Armature(max(found.value, 0.0), "all that moved but the links")
+            origin = "; ".join(filter(None, ["all that moved but the links", self.joints[name].contested]))
+            armature = None if found is None else Armature(max(found.value, 0.0), origin)
             models[name] = model, armature
         return robot_with(self.mjcf, models, out, self.added, [name for name in self.joints if name not in models])
 

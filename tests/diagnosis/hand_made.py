@@ -46,7 +46,7 @@ def made(
     theta = np.array([inertia, 0.0, 0.0, 0.0, *([0.0] * numbers), *(strengths or [1.0] * len(terms))])
     owners = np.array([*BASE, *([HUM] * numbers), *range(len(terms))], dtype=object)
     columns = np.zeros((left.size, theta.size))
-    layout = Layout(columns, owners, left, np.zeros((theta.size, theta.size)), {})
+    layout = Layout(columns, owners, left, np.zeros((theta.size, theta.size)), {}, np.empty(0, dtype=int))
     rows = SimpleNamespace(correlation=CORRELATION, scope=_SCOPE, effort=left)
     sure = np.ones(left.size, dtype=bool) if determined is None else np.array(determined)
     fitted = Fit(rows, Hypothesis(terms), layout, theta, (), sure)  # pyright: ignore[reportArgumentType]

@@ -62,6 +62,7 @@ VALUES: dict[str, dict[str, float]] = {
     "current_gain_asymmetry": {"gain_difference": 0.15},
     "current_offset_drift": {"rate": 0.3},
     "torque_constant_drift": {"rate": -0.3},
+    "torque_scale": {"scale": 1.2},
     "directional_load_friction": {"motor_coefficient": 0.1, "load_ratio": 2.0},
 }
 

@@ -29,10 +29,12 @@ from bench.effects.effect import (
     OfSpeed,
     OuterTorque,
     Repeatable,
+    RescalesTorque,
 )
 from bench.effects.signals import Moment
 from bench.effects.waves import OncePerRevolution, Wave
 from bench.plant.axis_model import build_spec
+from bench.trace.signals import KNOWN_TORQUE
 from bench.validation.independent.effects import KINDS
 from tests.effects.axes import PARAMETERS, PERIOD, model
 from tests.effects.recording import (
@@ -62,7 +64,7 @@ def without_fault(effect, seen):
 @every
 def test_it_copies_torque_if_its_columns_are_made_of_torque(effect):
     other = np.roll(RECORDED.torque, 300)
-    assert isinstance(effect, CopiesTorque) == changed(effect, torque=other)
+    assert isinstance(effect, CopiesTorque | RescalesTorque) == changed(effect, torque=other)
 
 
 @every
@@ -145,7 +147,8 @@ def test_it_turns_only_if_it_is_a_wave_of_a_revolution(effect):
     once = isinstance(effect, OncePerRevolution)
     assert once == (isinstance(effect, Wave) and not any(slot.whole for slot in effect.shapes))
     assert not (once and effect.name in KINDS and KINDS[effect.name].on_linear_axis)
-    asked = [effect.sought(scope) for scope in SCOPES if not scope.kind.turns]
+    weighed = [replace(scope, signals=scope.signals | {KNOWN_TORQUE}) for scope in SCOPES if not scope.kind.turns]
+    asked = [effect.sought(scope) for scope in weighed]
     assert once == (not any(asked)) or not isinstance(effect, Columns)
 
 

@@ -1,0 +1,40 @@
+"""Torque scale: reported torque is a multiple of the torque that acts, as by a wrong torque constant.
+
+    M = M_reported/s
+
+s - scale - dimensionless; M - torque that acts, M_reported - reported torque - N*m (N). A scale is one with inertia and
+friction unless a torque is known: so it is sought where an MJCF gives the weight of the links, or a payload. Links that
+are s times as heavy as in the MJCF look alike, but for armature and friction, which are then s times as large.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from bench.effects.acting import MisreadEffort
+from bench.effects.effect import RescalesTorque
+from bench.effects.signals import Axis, Base, Number, Scope, Signals, Values
+from bench.trace.filter import Column
+from bench.trace.signals import KNOWN_TORQUE
+from bench.units import Quantity
+
+
+class TorqueScale(RescalesTorque, MisreadEffort):
+    name = "torque_scale"
+    summary = "reported torque is a multiple of the torque that acts"
+    quantities = (Quantity("scale", "s", "dimensionless", lower=0.2, upper=5.0, null=1.0),)
+    looks_like = ("unbalance", "load_dependent_friction")
+
+    def sought(self, scope: Scope) -> bool:
+        return KNOWN_TORQUE in scope.signals
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """-M_reported: what the reading lacks, per unit of 1/s - 1."""
+        return [[(-signals.torque, 0)]]
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        return {"scale": 1.0 / max(1.0 + strengths[0], 1e-9)}
+
+    def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
+        return effort / values["scale"]
+
+
+EFFECT = TorqueScale()
