@@ -119,8 +119,8 @@ class IdentifiedJoint:
             if isinstance(one.effect, RescalesTorque):
                 (scale,) = one.values.values()
                 return (
-                    f"the torque is taken as {scale:.3g} times too large; with links {scale:.3g} times as heavy as the "
-                    f"MJCF's the armature is {scale * armature.value:.4g} {armature.unit}"
+                    f"the reported torque counts as {scale:.3g} times the one that acts; with links {scale:.3g} times "
+                    f"as heavy as the MJCF's instead the armature is {scale * armature.value:.4g} {armature.unit}"
                 )
             for name in one.ambiguous_with:
                 if isinstance(catalogue().get(name), RescalesTorque):
