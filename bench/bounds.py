@@ -46,7 +46,7 @@ _PIECE = 1 << 22
 #: Columns, data sets or channels of a recording; a logger of a whole plant has fewer.
 MOST_COLUMNS = 4096
 #: How a user raises them.
-RAISE = "--max-size raises the bound where the file is to be trusted"
+RAISE = "`--max-size 16GB` raises the bound for a file that you trust"
 
 
 @contextmanager

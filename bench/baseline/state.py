@@ -49,7 +49,7 @@ SAME_WAVE = 0.01
 INSTANTS = 24
 
 SCHEMA = "bench.baseline/1"
-HEAD = "# What `bench check` holds the axis against. `bench check --update` writes it anew: look at the difference.\n"
+HEAD = "# The baseline of bench check; bench check --update writes it again.\n"
 #: Written instead of an unknown spread.
 NO_SPREAD = "not told by fewer than two recordings"
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?: (.+))?")
@@ -187,7 +187,7 @@ class State:
     def require_source(self, source: str, where: object = "baseline") -> None:
         """InputError where this baseline is of recordings and a model is checked, or the other way round."""
         if self.source != source:
-            raise InputError(where, f"found that of {self.source}", f"allowed: one of {source}; --update makes one")
+            raise InputError(where, f"found that of {self.source}", f"allowed: one of {source}; `--update` writes one")
 
 
 def write_baseline(path: str | Path, state: State) -> None:
@@ -251,7 +251,7 @@ def read_baseline(path: str | Path) -> State:
     """The state of a file; InputError where it is none, its schema is another, or a key is missing or wrong."""
     path = Path(path)
     if not path.exists():
-        raise InputError(path, "no such baseline", "run the same command with --update to make one of this state")
+        raise InputError(path, "no such baseline", "add `--update` to write one of this state")
     return _Table(str(path), "", read_toml(path, "a baseline that bench check wrote", SCHEMA)).state()
 
 

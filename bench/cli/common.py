@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import shlex
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -296,8 +297,8 @@ def subject(
     """
     named = [*dict.fromkeys(joints or [])]
     if len(named) > 1:
-        every = " ".join(f"--joint {name}" for name in named)
-        allowed = f"allowed: one here; several together: bench robot LOG --mjcf ROBOT {every} --out DIR"
+        every = shlex.join(word for name in named for word in ("--joint", name))
+        allowed = f"allowed: one; for several: `bench robot {trace} --mjcf {mjcf} {every} --out robot_id`"
         raise InputError("--joint", f"found {', '.join(named)}", allowed)
     warned: set[str] = set()
 
@@ -343,7 +344,7 @@ def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.
     rig, text, assumed = drafted(read_recording(trace), axis)
     if draft is not None:
         write_text(draft, text)
-    warn([f"{assumed}. {f'It is {draft} now' if draft is not None else '--draft rig.toml keeps it'}"])
+    warn([f"{assumed}. {f'It is {draft} now' if draft is not None else '`--draft rig.toml` keeps it'}"])
     return rig
 
 

@@ -158,10 +158,12 @@ def export(
 
     if [snippet, mjcf is not None, ranges is not None, to != "mjcf"].count(True) != 1:
         found = "found none or several of --mjcf, --snippet, --ranges, --to"
-        raise InputError("bench export", found, "allowed: one of them")
+        raise InputError("bench export", found, "allowed: one of them, e.g. `--snippet`")
     models, lines = load_models(model, joint or ()), []
     if mjcf is None and to == "mjcf" and len(models) > 1:
-        raise InputError(model, "found several joints", f"allowed: --joint with one of {', '.join(models)}")
+        raise InputError(
+            model, "found several joints", f"pick one: `--joint {next(iter(models))}`; the file has {', '.join(models)}"
+        )
     if ranges is not None:
         from bench.export.mjcf import ranges_json
 

@@ -257,7 +257,9 @@ def armature_of(stored: StoredModel, share: ArmatureShare | None = None) -> Arma
         share = ArmatureShare.MOTOR if stored.model.coupled or known else ArmatureShare.ALL
     if share is ArmatureShare.MOTOR:
         if parameters.motor_inertia <= 0.0:
-            raise InputError("--armature motor", "found a model without the motor's inertia", "allowed: --armature all")
+            raise InputError(
+                "--armature motor", "found a model without the motor's inertia", "allowed: `--armature all`"
+            )
         return Armature(parameters.motor_inertia * mounting.gear_ratio**2, "the motor's")
     armature = parameters.inertia * mounting.gear_ratio**2 - mounting.link_inertia
     if armature <= 0.0:

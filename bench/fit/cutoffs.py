@@ -47,7 +47,7 @@ NARROWER = 0.6
 ROUNDING = 1e-4
 #: Terms of the axis, in whose order all numbers here stand.
 TERMS = (INERTIA, VISCOUS, COULOMB)
-TELLS = "bench diagnose searches for the cause"
+TELLS = "`bench diagnose` searches for the cause"
 
 
 @dataclass(frozen=True)

@@ -39,11 +39,11 @@ LOAD = "load_moment_of_inertia"
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
 PUSHING = (
     "signals that are sound throughout: a sign that turns, a drop-out or a delay makes friction negative; "
-    "else ask bench diagnose what acts beside friction"
+    "otherwise `bench diagnose` searches for what acts in addition to friction"
 )
 LINKS = "nothing; the MJCF's links, the gear_ratio or the torque are another robot's"
 SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque constant is another one's"
-EXPLAINED = "nothing yet; run bench diagnose on this recording, which searches for what else acts"
+EXPLAINED = "nothing yet; `bench diagnose` searches this recording for what else acts"
 
 
 def require_determined(equations: NormalEquations, kind: AxisKind) -> None:

@@ -237,7 +237,7 @@ def _why(found: Plain) -> dict[str, str]:
         why["unexplained"] = "something is left that no effect of the catalogue explains"
     elif "verdict" not in found and explained is not None and explained < EXPLAINED:
         share = f"inertia and friction explain only {explained:.0%} of the effort"
-        why["unexplained"] = f"{share}; --diagnose says what is missing"
+        why["unexplained"] = f"{share}; add `--diagnose` to search for the missing effects"
     if found["checks"]:
         why["checks"] = "; ".join(f"{check['name']}: {check['found']}" for check in found["checks"])
     return why

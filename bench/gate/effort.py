@@ -89,10 +89,10 @@ def judged(fitted: Balanced, name: str) -> Check:
         advice = f"likeliest {name} is another axis', or no torque signal: check the column"
         return Check(FOLLOWS, "fail", explained, ALLOWED, advice, unanswerable=True)
     if by_position - by_motion > MORE:
-        advice = "likeliest gravity or a spring acts: tell the load in the rig, or let bench diagnose find it"
+        advice = "gravity or a spring probably acts: describe the load in the rig, or run `bench diagnose`"
         return Check(FOLLOWS, "pass" if by_position > WARNED else "warn", explained, ALLOWED, advice)
     if by_position < WARNED:
-        return Check(FOLLOWS, "warn", explained, ALLOWED, "bench diagnose may tell what else acts")
+        return Check(FOLLOWS, "warn", explained, ALLOWED, "`bench diagnose` searches for what else acts")
     return Check(FOLLOWS, "pass", explained, ALLOWED)
 
 

@@ -128,7 +128,7 @@ class Plant:
             raise InputError("simulation.timestep", f"found {self.timestep:g} s", allowed)
         friction = self.model.of_kind(Friction)
         if self.emulated and friction:
-            allowed = 'allowed: friction = "mechanics" in [simulation], where friction has its effects'
+            allowed = 'allowed: in the rig, `[simulation] friction = "mechanics"`'
             raise InputError(f"effect {friction[0].name}", "found friction made by the drive", allowed)
 
     @classmethod

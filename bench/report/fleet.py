@@ -59,8 +59,8 @@ MEANT = {
     "done": "evaluated",
     "missing": "no such file; evaluated by the next run that finds it",
     "refused": "cannot be read, or cannot answer; the column reason says what to record instead",
-    "failed": "raised what nobody foresaw, or its process was ended; --retry does it again",
-    "timed_out": "no result within the deadline; --retry does it again",
+    "failed": "stopped by an unexpected error; evaluated again with --retry",
+    "timed_out": "no result within the deadline; evaluated again with --retry",
 }
 
 

@@ -218,7 +218,7 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
         "What is left?": f"{left}.",
         "From what?": f"{basis}.",
         **polished,
-        "What next?": "bench diagnose: something is in this axis beside inertia and friction, and it says what."
+        "What next?": "`bench diagnose` searches for what acts in addition to inertia and friction."
         if _times_noise(estimate) > NOISE_ALONE
         else "Nothing stands out of the noise; a recording of other motion would confirm it.",
     }

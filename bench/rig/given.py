@@ -7,6 +7,7 @@ user knows.
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias, cast
@@ -129,7 +130,7 @@ def drafted(recording: Recording, axis: str | None = None) -> tuple[Rig, str, st
     except InputError as error:
         if recording.format == ARRAYS:
             raise
-        how = f"bench inspect {recording.origin} --draft rig.toml writes a rig file to complete, for --rig"
+        how = f"`bench inspect {shlex.quote(recording.origin)} --draft rig.toml` writes a rig to complete, for --rig"
         raise InputError(error.where, error.found, f"{error.allowed}; {how}") from error
     mapped = [f"{signal} = {column}" for signal, column in rig.trace.columns.items()]
     assumed = "; ".join(filter(None, (f"a {rig.kind} axis", ", ".join(mapped), without_constant(rig))))

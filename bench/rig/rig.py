@@ -316,7 +316,7 @@ class Rig(RigTable):
         raise InputError(
             trace.origin,
             "holds no current, torque, force or voltage",
-            "identification needs one of them; `bench inspect` tells which column may be it: map that in the rig's "
+            "identification needs one of them; `bench inspect` lists which column it may be: map that in the rig's "
             "[trace.columns]",
         )
 

@@ -217,7 +217,11 @@ def _agreeing(clock: Clock, period: float, time: Channel, notes: list[str]) -> C
     typical = mean if coarse else float(np.median(steps)) if steps.size else period
     if abs(typical - period) > slack + PERIOD * period:
         found = f"steps by {typical:.6g} s, where the rig's [trace] says sample_period = {period:.6g} s"
-        raise InputError(time.place(), found, "allowed: one of them, or both alike")
+        raise InputError(
+            time.place(),
+            found,
+            f'allowed: in the rig, `[trace] sample_period = "{typical:.6g} s"`, or a file with its period',
+        )
     if not coarse:
         return clock
     notes.append(f"times are too coarse to tell samples apart; taken every {period:g} s, as the rig says")

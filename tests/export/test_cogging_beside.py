@@ -30,7 +30,7 @@ def projection(duration, phase):
 def test_a_short_log_counts_the_bias_in_its_interval_and_warns(tmp_path, phase):
     found, warnings = armature(tmp_path, 12.0, phase)
     assert found.ci95[0] < HIDDEN.armature < found.ci95[1]
-    assert any("bench diagnose searches for the cause" in warning for warning in warnings)
+    assert any("`bench diagnose` searches for the cause" in warning for warning in warnings)
     off = found.value - HIDDEN.armature
     print(
         f"\n{100 * off / HIDDEN.armature:.2f} % off, of which {100 * projection(12.0, phase) / HIDDEN.armature:.2f} %"

@@ -1,0 +1,79 @@
+"""Commands whose messages advise something, and the files they need."""
+
+import numpy as np
+
+from tests.hostile import RIG, TABLE, columns, csv_of
+
+#: A joint that carries a link, with a second joint behind it.
+ROBOT = """<mujoco><compiler angle="radian"/><worldbody><body><joint name="shoulder" axis="0 1 0"/>
+<geom type="capsule" size="0.02" fromto="0 0 0 0 0 0.3" mass="0.5"/>
+<body pos="0 0 0.3"><joint name="elbow" axis="0 1 0"/>
+<geom type="capsule" size="0.02" fromto="0 0 0 0 0 0.2" mass="0.2"/>
+</body></body></worldbody></mujoco>
+"""
+
+
+def headed(head):
+    return csv_of(*columns(), head=head)
+
+
+def disturbed(weight=0.0, beat=0.0, push=0.0):
+    """The plain axis with a weight, a torque in time, and one along its motion - A."""
+    time, velocity, current = columns()
+    angle = 6.25 * (1.0 - np.cos(8.0 * time)) + 20.0 / 31.0 * (1.0 - np.cos(31.0 * time))
+    more = weight * np.sin(angle) + beat * np.sin(19.0 * time)
+    return csv_of(time, velocity, current + more + push * np.sign(velocity))
+
+
+#: Files by name: text.
+FILES = {
+    "log.csv": TABLE,
+    "rig.toml": RIG,
+    "robot.xml": ROBOT,
+    "no_time.csv": "\n".join(",".join(row.split(",")[1:]) for row in TABLE.splitlines()),
+    "no_effort.csv": "\n".join(",".join(row.split(",")[:2]) for row in TABLE.splitlines()),
+    "per_second.csv": headed("time [s],velocity [1/s],current [A]"),
+    "two.csv": headed("time [s],A.velocity [rad/s],A.current [A]"),
+    "no_rotor.toml": RIG.replace('rotor_inertia = "2 kg*cm**2"', ""),
+    "manifest.csv": "file,rig,axis,time\nlog.csv,rig.toml,a,2026-01-01\n",
+    "pendulum.csv": "file,rig,axis,time\nswing.csv,rig.toml,a,2026-01-01\n",
+    "swing.csv": disturbed(weight=1.0),
+    "weight.csv": disturbed(weight=3.0),
+    "beaten.csv": disturbed(beat=1.7),
+    "beaten_weight.csv": disturbed(weight=3.0, beat=4.5),
+    "pushed.csv": disturbed(push=-0.5),
+    "slow.toml": RIG + '[trace]\nsample_period = "2 ms"\n',
+}
+
+#: Commands that write further files.
+MADE = [
+    "bench diagnose log.csv --rig no_rotor.toml --out found",
+    "bench check --simulated found/model.toml --baseline model_baseline.toml --update",
+]
+
+#: Each leads to a message that advises something.
+CASES = [
+    "bench identify no_time.csv",
+    "bench identify no_effort.csv --rig rig.toml",
+    "bench identify per_second.csv",
+    "bench identify log.csv",
+    "bench identify log.csv --rig slow.toml",
+    "bench diagnose log.csv --rig rig.toml --without coging_torque",
+    "bench check log.csv --rig rig.toml --baseline axis.toml",
+    "bench check log.csv --rig rig.toml --baseline model_baseline.toml",
+    "bench identify log.csv --mjcf robot.xml --joint shoulder --joint elbow",
+    "bench identify log.csv --mjcf robot.xml --joint elbo",
+    "bench export found/model.toml --out joint.xml",
+    "bench export found/model.toml --mjcf robot.xml --joint elbow --armature motor --out joint.xml",
+    "bench export joints.toml --to mjcf --out joint.xml --snippet",
+    "bench fleet pendulum.csv --out fleet",
+    "bench simulate lab --effect 'stribeck_friction:static_friction=0.2 N*m,stribeck_velocity=3 rad/s' --out run.csv",
+    "bench identify log.csv --rig rig.toml --max-size 1kB",
+    "bench identify swing.csv --rig rig.toml",
+    "bench identify weight.csv --rig rig.toml",
+    "bench inspect beaten.csv --rig rig.toml --json -",
+    "bench inspect beaten_weight.csv --rig rig.toml --json -",
+    "bench identify pushed.csv --rig rig.toml",
+    "bench effects coging_torque",
+    "bench rigs sh30701",
+]
