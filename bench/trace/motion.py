@@ -86,16 +86,6 @@ class Conditioning:
         """Speed below which noise may have made the sign - rad/s (m/s)."""
         return SIGN_CONFIDENCE * self.speed_noise
 
-    @property
-    def velocity_noise(self) -> float:
-        """Standard deviation of noise in the filtered speed - rad/s (m/s)."""
-        return self.source_noise * self.filter.noise_gain(self.order)
-
-    @property
-    def acceleration_noise(self) -> float:
-        """Standard deviation of noise in the filtered acceleration - rad/s**2 (m/s**2)."""
-        return self.source_noise * self.filter.noise_gain(self.order + 1)
-
 
 def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Conditioning:
     """Choose source, filter and thresholds for a recording.

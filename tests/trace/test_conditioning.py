@@ -62,8 +62,12 @@ def test_thresholds_of_a_velocity_are_its_noise():
     assert found.filter.width == pytest.approx(width)
     # Parseval: (j*omega)**k*G leaves a variance of T*Gamma(k + 1/2)/(2*pi*width**(2*k + 1)); Gamma(1/2) = sqrt(pi)
     power = PERIOD * np.sqrt(np.pi) / (2.0 * np.pi * width)
-    assert found.velocity_noise == pytest.approx(found.source_noise * np.sqrt(power))
-    assert found.acceleration_noise == pytest.approx(found.source_noise * np.sqrt(0.5 * power) / width)
+    assert found.source_noise * found.filter.noise_gain(found.order) == pytest.approx(
+        found.source_noise * np.sqrt(power)
+    )
+    assert found.source_noise * found.filter.noise_gain(found.order + 1) == pytest.approx(
+        found.source_noise * np.sqrt(0.5 * power) / width
+    )
 
 
 def test_thresholds_of_a_position_are_those_of_its_central_difference():
@@ -72,7 +76,9 @@ def test_thresholds_of_a_position_are_those_of_its_central_difference():
     assert found.order == 1
     assert found.speed_noise == pytest.approx(found.source_noise / (np.sqrt(2.0) * PERIOD))
     power = PERIOD * 0.5 * np.sqrt(np.pi) / (2.0 * np.pi * found.filter.width**3)
-    assert found.velocity_noise == pytest.approx(found.source_noise * np.sqrt(power))
+    assert found.source_noise * found.filter.noise_gain(found.order) == pytest.approx(
+        found.source_noise * np.sqrt(power)
+    )
 
 
 def test_the_cutoff_is_where_effort_and_acceleration_share_half_of_their_power():
