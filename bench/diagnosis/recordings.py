@@ -26,7 +26,7 @@ from bench.fit.rows import Rows, clear_motion, sign_reach
 from bench.fit.solution import Solution, solution_of
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.trace.filter import LEAST_WIDTH, GaussianFilter
+from bench.trace.filter import LEAST_WIDTH
 from bench.trace.trace import Trace, join
 
 #: An effect this many times smaller than the torque of the motion is small, however little friction there is.
@@ -92,26 +92,27 @@ class Recordings:
         if corrected is not trace:
             rows, hidden = _decidable(corrected, rig)
         width, peak = rows.conditioning.filter.width, rows.scope.peak_effort
-        holdout_rows = None if unseen is None else Rows.of(unseen, rig, width=width, peak_effort=peak)
+        holdout_rows = None if unseen is None else Rows.of(unseen, rig, width=width, peak_effort=peak, near=True)
         return cls(rig, trace, corrected, holdout, rows, holdout_rows, detected, warnings=hidden)
 
     def within_tolerance(self, fitted: Fit) -> list[Fit]:
         """A balance of the whole recording, refitted with each of the rig's values at the end of its tolerance."""
         if fitted.rows is not self.rows:
             return []
-        same = self.rows.conditioning
+        same, near = self.rows.conditioning, self.rows.near
         rigs = self.rig.within_tolerance()
-        return [fit(Rows.of(self.corrected, rig, conditioning=same), fitted.hypothesis) for rig in rigs]
+        return [fit(Rows.of(self.corrected, rig, conditioning=same, near=near), fitted.hypothesis) for rig in rigs]
 
-    def through(self, smooth: GaussianFilter) -> Recordings:
-        """The same through a filter that is no narrower."""
-        unseen = None if self.holdout_rows is None else self.holdout_rows.through(smooth)
-        return replace(self, rows=self.rows.through(smooth), holdout_rows=unseen)
+    def like(self, rows: Rows) -> Recordings:
+        """The same with other rows of the recording, and those of the holdout through the same filter."""
+        unseen = self.holdout_rows
+        unseen = None if unseen is None else unseen.through(rows.conditioning.filter, rows.near)
+        return replace(self, rows=rows, holdout_rows=unseen)
 
     def lower(self) -> Iterator[Recordings]:
         """The same at the lower cut-offs that suit effects, too, from high to low."""
         lower = islice(_suited(self.rows, self.rig), 1, None)
-        return (self.through(found.rows.conditioning.filter) for found in lower)
+        return (self.like(found.rows) for found in lower)
 
     def steady(self, found: Fit) -> tuple[Recordings, tuple[str, ...]]:
         """The same at the cut-off at which J, K_w and K_0 stand still beside the effects of a fit, and what moved.
@@ -124,8 +125,7 @@ class Recordings:
         calm, chosen = Cutoffs(solution_of(found.rows, found.hypothesis, self.rig.offset), self.rig).for_inertia()
         doubt = dict(zip(TERMS, chosen.doubt.tolist(), strict=True))
         moves = tuple(warning.removesuffix(f"; {TELLS}") for warning in chosen.warnings)
-        same = calm.rows is found.rows
-        return replace(self if same else self.through(calm.rows.conditioning.filter), doubt=doubt), moves
+        return replace(self if calm.rows is found.rows else self.like(calm.rows), doubt=doubt), moves
 
     def base(self, numbers: Uncertain) -> dict[str, Parameter]:
         """J, K_w and K_0 of a fit by name, as wide as they move with the cut-off."""
@@ -186,7 +186,7 @@ def _decidable(trace: Trace, rig: Rig) -> tuple[Rows, tuple[str, ...]]:
     Raises:
         UndeterminedError: the recording is too short or too quiet, or its rows determine no inertia and friction.
     """
-    usual, kind = Rows.of(trace, rig), rig.axis_kind
+    usual, kind = Rows.of(trace, rig, near=True), rig.axis_kind
     if usual.independent < INDEPENDENT:
         moving = usual.effort.size * usual.conditioning.filter.stride * usual.conditioning.filter.sample_period
         raise UndeterminedError(
@@ -212,7 +212,7 @@ def _decidable(trace: Trace, rig: Rig) -> tuple[Rows, tuple[str, ...]]:
         return rows, ()
     return rows, (
         f"noise of the {source} requires a filter of {smooth.cutoff:.3g} Hz: it hides resonances above that, and "
-        f"friction within {sign_reach(smooth):.2g} s of a reversal; a finer {source} shows them",
+        f"friction within {sign_reach(smooth, near=True):.2g} s of a reversal; a finer {source} shows them",
     )
 
 

@@ -62,14 +62,14 @@ class Cutoffs:
     highest: Solution
     rig: Rig
 
-    def allowed(self, below: Array) -> Iterator[Solution]:
+    def allowed(self, below: Array, near: bool) -> Iterator[Solution]:
         """Solutions from the highest cut-off down, until the filter is too long for the motion or hides an effect."""
         highest, rows = self.highest, self.highest.rows
         yield highest
         for share in below.tolist():
             smooth = GaussianFilter.from_cutoff(rows.conditioning.filter.cutoff * share, rows.scope.sample_period)
             try:
-                through = rows.through(smooth)
+                through = rows.through(smooth, near)
             except UndeterminedError:
                 return
             hum = tuple(line for line in highest.hypothesis.hum if passes(line, smooth.width))
@@ -80,12 +80,12 @@ class Cutoffs:
 
     def for_effects(self) -> Iterator[Solution]:
         """Solutions at cut-offs at which the acceleration is hardly noise, the one that suits effects best first."""
-        enough = takewhile(lambda found: found.rows.independent >= INDEPENDENT, self.allowed(FINER))
+        enough = takewhile(lambda found: found.rows.independent >= INDEPENDENT, self.allowed(FINER, near=True))
         return (found for found in enough if found.whole.noise_share(INERTIA) <= NOISY)
 
     def for_inertia(self) -> tuple[Solution, Chosen]:
         """The solution at the cut-off at which J, K_w and K_0 stand still."""
-        every = [(found, Tried.of(found, self.rig.axis_kind)) for found in self.allowed(BELOW)]
+        every = [(found, Tried.of(found, self.rig.axis_kind)) for found in self.allowed(BELOW, near=False)]
         usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
         if not usable:
             return self.highest, Chosen(0, np.zeros(3))

@@ -24,9 +24,10 @@ from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.
 WIDEST = 2e-3
-#: Lag by which a reversal of the reported speed may precede that of the torque: this long or so many samples, but not
-#: more than so many filter widths.
-LATE, LATE_SAMPLES, LATE_WIDTHS = 5.8e-3, 2.0, 2.9
+#: A row needs one sign over this many filter widths to each side, so that a lag of some widths moves no reversal in.
+SIGN_WIDTHS = 6.0
+#: Lag of the torque that rows near reversals allow: this long or so many samples, at least a filter width.
+LATE, LATE_SAMPLES = 5.8e-3, 2.0
 #: Share of the motion in the weaker direction below which friction and a constant torque are one number.
 ONE_WAY = 0.02
 
@@ -80,9 +81,9 @@ class Stretch:
     start: int
 
     @classmethod
-    def of(cls, signals: Signals, start: int, smooth: GaussianFilter) -> Stretch:
+    def of(cls, signals: Signals, start: int, smooth: GaussianFilter, near: bool) -> Stretch:
         """The stretch through a filter: a row is used where the direction is known over `sign_reach` to each side."""
-        wide = replace(smooth, width=sign_reach(smooth) / SIGN_REACH)
+        wide = replace(smooth, width=sign_reach(smooth, near) / SIGN_REACH)
         size = signals.time.size
         used = np.zeros(len(range(smooth.margin, size - smooth.margin, smooth.stride)), dtype=bool)
         if size > 2 * wide.margin:
@@ -108,6 +109,7 @@ class Rows:
         scope: what it is able to show.
         made_by, motion: what tells its signals, and its motion alone, from those reported; () as reported.
         memory: columns made before.
+        near: whether rows as near to reversals as the filter allows are used, as effects there need.
         still: whether what follows the motion behind a coupling is kept while the motion is corrected a little.
     """
 
@@ -118,6 +120,7 @@ class Rows:
     made_by: Hashable = ()
     motion: Hashable = ()
     memory: Memory = field(default_factory=Memory, compare=False)
+    near: bool = False
     still: bool = False
 
     @classmethod
@@ -132,6 +135,7 @@ class Rows:
         every: bool = False,
         begins: float | None = None,
         peak_effort: float | None = None,
+        near: bool = False,
     ) -> Rows:
         """Lay out a recording, or a part of one.
 
@@ -143,6 +147,7 @@ class Rows:
             width: of the filter instead of the one chosen from the recording - s.
             every: whether a row stands for every sample, which a replay wants.
             begins: the recording, if this is a later part of it - s.
+            near: as of the rows.
             peak_effort: where the rig tells none, that of the recording in which a model was found - N*m (N).
 
         Raises:
@@ -164,27 +169,27 @@ class Rows:
             for part in trace.segments
             if part.stop - part.start > 4 * conditioning.filter.margin
         ]
-        return cls._through(conditioning, parts, trace.origin, _scope(trace, rig, conditioning, peak_effort))
+        return cls._through(conditioning, parts, trace.origin, _scope(trace, rig, conditioning, peak_effort), near)
 
-    def through(self, smooth: GaussianFilter) -> Rows:
+    def through(self, smooth: GaussianFilter, near: bool = False) -> Rows:
         """The same recording through a filter that is no narrower.
 
         Raises:
             UndeterminedError: it never moves clearly for as long as the filter reaches.
         """
         parts = [(part.signals, part.start) for part in self.stretches if part.signals.time.size > 4 * smooth.margin]
-        return self._through(replace(self.conditioning, filter=smooth), parts, self.origin, self.scope)
+        return self._through(replace(self.conditioning, filter=smooth), parts, self.origin, self.scope, near)
 
     @classmethod
     def _through(
-        cls, conditioning: Conditioning, parts: Iterable[tuple[Signals, int]], origin: str, scope: Scope
+        cls, conditioning: Conditioning, parts: Iterable[tuple[Signals, int]], origin: str, scope: Scope, near: bool
     ) -> Rows:
         """Stretches of raw signals, each with the place of its first sample, through a filter."""
-        stretches = tuple(Stretch.of(signals, start, conditioning.filter) for signals, start in parts)
+        stretches = tuple(Stretch.of(signals, start, conditioning.filter, near) for signals, start in parts)
         if not any(part.used.any() for part in stretches):
             reason = f"no filtered sample of {origin} moves clearly in one direction"
             raise UndeterminedError("the torque balance", reason, clear_motion(conditioning, scope.kind))
-        rows = cls(stretches, conditioning, origin, scope)
+        rows = cls(stretches, conditioning, origin, scope, near=near)
         return replace(rows, scope=rows._shown())
 
     def _shown(self) -> Scope:
@@ -341,14 +346,14 @@ class Rows:
         return self.memory.get(key, lambda: self.table(lambda signals: columns(signals, *values), lag))
 
 
-def sign_reach(smooth: GaussianFilter) -> float:
-    """How long the speed keeps its sign before and after a row - s: what the filter spreads a reversal over, and a lag.
+def sign_reach(smooth: GaussianFilter, near: bool = False) -> float:
+    """How long the speed keeps its sign before and after a row - s.
 
-    Both are times. A wider filter does not make a drive later, so it does not have to keep further from a reversal. A
-    width more leaves 4e-5 of a reversal.
+    As far as the filter spreads a reversal, and a lag of the torque: one of some filter widths, or, `near` reversals, a
+    short time, as a wider filter makes no drive later. A width more leaves 4e-5 of a reversal.
     """
     late = max(LATE, LATE_SAMPLES * smooth.sample_period, smooth.width)
-    return SIGN_REACH * smooth.width + min(late, LATE_WIDTHS * smooth.width)
+    return min(SIGN_WIDTHS * smooth.width, SIGN_REACH * smooth.width + (late if near else np.inf))
 
 
 def clear_motion(conditioning: Conditioning, kind: AxisKind) -> str:
