@@ -16,7 +16,7 @@ from bench.arrays import Array, all_finite
 from bench.errors import InputError
 from bench.names import short
 from bench.trace.channel import Channel, Recording
-from bench.trace.choose import ReadingOptions, SignalColumn, missing
+from bench.trace.choose import ENOUGH, ReadingOptions, SignalColumn, missing
 from bench.trace.signals import SI_UNITS, scale_in
 from bench.trace.wraps import Unwrapping, Wraps
 
@@ -97,6 +97,8 @@ def in_si(
             clocks[channel.time] = _clock_of(channel, chosen.get("time"), how, notes)
         clock, values = clocks[channel.time], _values(chosen[name])
         if values.size != clock.time.size:
+            if not any(name in group for group in ENOUGH):
+                continue  # left out below: what nobody needs never stops a file
             allowed = f"allowed: {clock.time.size}, as its time has"
             raise InputError(channel.place(), f"found {values.size} values", allowed)
         signals[name] = _known_samples(name, SampledSignal(clock, values), channel, notes)

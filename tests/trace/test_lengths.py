@@ -45,6 +45,14 @@ def test_side_columns_are_left_out_with_a_note(tmp_path, name):
     assert any("gains (3), limits (305)" in note for note in trace.notes)
 
 
+@pytest.mark.parametrize("name", WRITERS)
+def test_a_short_signal_that_nobody_needs_is_left_out_with_a_note(tmp_path, name):
+    WRITERS[name](tmp_path / name, {**SIGNALS, "temperature": np.array([40.0, 41.0])})
+    trace = read(tmp_path / name, {**COLUMNS, "temperature": "temperature [degC]"})
+    assert set(trace.signals) == {"velocity", "current"}
+    assert any("temperature (2)" in note for note in trace.notes)
+
+
 @pytest.mark.parametrize("size", [2, N - 1, N + 1])
 @pytest.mark.parametrize("name", WRITERS)
 def test_a_signal_of_another_length_is_an_error_that_names_both(tmp_path, name, size):
