@@ -1,4 +1,4 @@
-"""Beside the tasks, on the embedded example: estimators compared, friction emulated, gear and load torque.
+"""Two sections on the embedded example, in addition to the tasks: emulated friction, and gear with load torque.
 
 Each raises InputError where the example's rig lacks what the simulation needs.
 """
@@ -9,75 +9,24 @@ from dataclasses import replace
 
 import numpy as np
 
-from bench.arrays import Array, column_rms
 from bench.axis_kind import OFFSET
-from bench.course.axis import KG_CM2, motor_value, simulated_with, torque_constant, without_friction
+from bench.course.axis import KG_CM2, motor_value, simulated_with, torque_constant
 from bench.course.friction import identify_friction
 from bench.course.recordings import LabRecordings, run_of
 from bench.course.result import Number, TaskResult
 from bench.fit.identify import identify
-from bench.fit.lab import identify_as_in_the_lab, mean_inertia
 from bench.plant.axis_model import AxisParameters
 from bench.plant.sensing import Sensors
 from bench.plant.simulate import simulate
 from bench.rig.rig import Load, Rig
 from bench.trace.trace import Trace
 
-#: Quantities of the equation of motion as the bench names them, and the course.
-NAMES = {"moment_of_inertia": "J", "viscous_friction_coefficient": "K_fric_w", "coulomb_friction_torque": "K_fric_0"}
-#: Recordings of each motion that estimators are compared on.
-REPETITIONS = 20
-#: Ways to estimate from a recording with friction.
-STEP, LATE, BENCH = "least squares, in step", "least squares, out of step", "bench"
 #: Where friction sits, and which current is recorded.
 MECHANICS, SETPOINT, PHASES = "in the mechanics", "emulated", "emulated, phases"
 #: Motor turns per turn of the load; inertia of the gear on the motor's side - kg*m**2; load torque, behind it - N*m.
 RATIO, GEAR_INERTIA, LOAD_TORQUE = 3.0, 0.1e-4, 1.2
 #: A disk so many times as heavy as the lab's turns behind the gear.
 HEAVIER = 6.0
-
-
-def estimators(recordings: LabRecordings) -> TaskResult:
-    """RMS error of the course's estimators and the bench's over recordings of one motion with fresh sensor noise."""
-    rig = recordings.example
-    truth = AxisParameters.from_rig(rig)
-    known = np.array([truth.inertia, truth.viscous_friction_coefficient, truth.coulomb_friction])
-    bare = [run_of(trace, rig) for trace in _repeated(without_friction(rig))]
-    mean = np.array([[mean_inertia(run.acceleration, run.torque)[0]] for run in bare])
-    numbers = [Number("J, mean of M/α", _rms_error(mean, known[:1])[0], "%")]
-    traces = _repeated(rig)
-    own = [identify_friction(run_of(trace, rig)) for trace in traces]
-    found = {STEP: [[one.inertia, one.viscous, one.coulomb] for one in own]}
-    for words, estimator in ((LATE, identify_as_in_the_lab), (BENCH, identify)):
-        estimates = [estimator(trace, rig) for trace in traces]
-        found[words] = [[estimate[name].value for name in NAMES] for estimate in estimates]
-    errors = {words: _rms_error(np.array(values), known) for words, values in found.items()}
-    for words, error in errors.items():
-        numbers += [Number(f"{name}, {words}", e, "%") for name, e in zip(NAMES.values(), error, strict=True)]
-    late, step, bench = errors[LATE], errors[STEP], errors[BENCH]
-    findings = (
-        f"RMS error over {REPETITIONS} recordings of the fast run. The backward difference is half a sample late: "
-        f"taken as it is, J·α of that half sample goes into friction ({late[1]:.0f} % and {late[2]:.0f} %). In step "
-        f"(t_sync) {step[1]:.2g} % and {step[2]:.2g} % remain.",
-        f"The bench's own is better still, J within {bench[0]:.2g} % against {step[0]:.2g} %, as one filter serves "
-        "torque, speed, acceleration and sign alike: smoothing α alone shortens its peaks against the torque's, and "
-        "its noise draws J towards zero (or, in the mean of M/α, away from it, as 1/α is convex).",
-    )
-    return TaskResult(findings, tuple(numbers))
-
-
-def _repeated(rig: Rig) -> list[Trace]:
-    """One motion as the sensors record it, with noise of its own each time."""
-    simulated, sensors = simulate(rig, "fast_reversals"), Sensors.from_rig(rig)
-    return [
-        sensors.record(simulated.states, simulated.references, np.random.default_rng(seed), f"recording {seed}")
-        for seed in range(1, REPETITIONS + 1)
-    ]
-
-
-def _rms_error(found: Array, known: Array) -> list[float]:
-    """Of estimates (n, p) - percent of the truth (p,)."""
-    return (100.0 * column_rms(found / known - 1.0)).tolist()
 
 
 def record_each(rig: Rig) -> dict[str, Trace]:

@@ -45,7 +45,7 @@ def done(lab):
 
 
 #: Tasks of which nothing depends on the folder but time: simulations of the embedded example, and of the winding.
-SLOW = {"estimators", "equation", "emulation", "11"}
+SLOW = {"equation", "emulation", "11"}
 
 
 @pytest.fixture

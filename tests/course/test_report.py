@@ -133,7 +133,7 @@ def test_results_stand_as_json_beside_the_report(lab, done):
             assert (number["value"], number["unit"], number["truth"]) == (printed.value, printed.unit, printed.truth)
             assert number["source"] == printed.source != ""
     examples = {task["key"] for task in content["tasks"] if task["embedded_example"]}
-    assert examples == {"estimators", "equation", "emulation"}
+    assert examples == {"equation", "emulation"}
 
 
 @pytest.mark.parametrize("number", range(1, 12))
