@@ -69,7 +69,7 @@ def identify(
     estimator: Annotated[Estimator, Option(help="lab: as in courses.")] = "regression",
     refine: Annotated[bool, Option("--refine", help="Polish by simulation error in MuJoCo.")] = False,
     offset: Annotated[bool, Option("--offset", help="Fit a constant torque (force) too.")] = False,
-    cutoff: Annotated[float | None, Option(help="Filter's half-power frequency in Hz.", min=1e-6)] = None,
+    cutoff: Annotated[str | None, Option(help="Filter's half-power frequency: 30, or 30 Hz.")] = None,
     axis_name: common.AxisOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,
@@ -78,16 +78,18 @@ def identify(
     draft: common.DraftOption = None,
 ) -> None:
     """Identify inertia, viscous and Coulomb friction of a recording, or of several together, with 95 % intervals."""
+    from bench.effects.present import parse_value
     from bench.fit.estimate import RefusedEstimateError
     from bench.report.identification import SCHEMA, identification, identification_json, moved
 
     of = common.subject(rig, axis_name, mjcf, joint, at, traces[0], draft)
     axis = of.rig.model_copy(update={"offset": of.rig.offset or offset})
     _require_consistent(traces, estimator, refine, bool(offset or cutoff))
-    options = {"estimator": estimator, "refine": refine, "offset": axis.offset, "cutoff": cutoff}
+    hertz = None if cutoff is None else parse_value(cutoff, "Hz", "--cutoff")
+    options = {"estimator": estimator, "refine": refine, "offset": axis.offset, "cutoff": hertz}
     try:
         with common.refusal_as_json(json, SCHEMA):
-            estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, cutoff)
+            estimate, refinement = _estimate(traces, replace(of, rig=axis), estimator, refine, hertz)
     except RefusedEstimateError as error:
         known, why, basis = error.estimate, str(error), of.provenance(traces, options)
         common.write_json(json, lambda: identification_json(known, None, why, basis))

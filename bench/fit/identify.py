@@ -30,6 +30,7 @@ import numpy as np
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
+from bench.effects.present import parse_value
 from bench.errors import InputError, UndeterminedError
 from bench.fit.cutoffs import TELLS, TERMS, Chosen, Cutoffs
 from bench.fit.determined import remainder, require_inertia, sound
@@ -54,7 +55,6 @@ from bench.parameter import Parameter
 from bench.rig.given import Given, GivenRig, Units, given
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from bench.units import parse
 
 #: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
 #: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
@@ -92,7 +92,9 @@ def identify(
             trace do not fit together, or a check of a recording fails.
     """
     rig, recordings = given(trace, rig, units)
-    cutoff = parse(cutoff, "Hz", "cutoff") if isinstance(cutoff, str) else cutoff
+    cutoff = parse_value(cutoff, "Hz", "cutoff") if isinstance(cutoff, str) else cutoff
+    if cutoff is not None and not 0.0 < cutoff < math.inf:
+        raise InputError("cutoff", f"found {cutoff:g} Hz", "allowed: above 0 Hz")
     gathered = [_gather(one, rig, cutoff) for one in recordings]
     if len(gathered) == 1:
         found = _estimated_alone(gathered[0], gathered[0].solution, rig)
@@ -218,7 +220,11 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chos
     hum = mains(rows, highest.residual)
     if hum:
         highest = solution_of(rows, replace(highest.hypothesis, hum=hum), rig.offset)
-    return (highest, Chosen(0, np.zeros(3))) if cutoff is not None else Cutoffs(highest, rig).for_inertia()
+    if cutoff is None:
+        return Cutoffs(highest, rig).for_inertia()
+    used, rate = rows.conditioning.filter.cutoff, 1.0 / rows.scope.sample_period
+    lower = f"the filter's cut-off is {used:.4g} Hz instead of {cutoff:.4g} Hz: {rate:.4g} Hz of sampling allow no more"
+    return highest, Chosen(0, np.zeros(3), (lower,) * (used < cutoff * (1.0 - 1e-9)))
 
 
 def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
