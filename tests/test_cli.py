@@ -288,7 +288,7 @@ def test_without_a_rig_one_is_drafted_said_and_kept(bench, tmp_path):
     assert status == 0
     assert "no rig was given, so one was drafted from odrive.csv: a rotary axis" in err
     assert "velocity = vel_estimate [turn/s]" in err
-    assert "results stand in A instead of N*m" in err
+    assert "no torque constant is given, so torques are in A; set motor.torque_constant in the rig" in err
     assert "A·s²/rad" in out
     status, _, err = bench("identify", "odrive.csv", "--rig", "own.toml", "--json", "kept.json")
     assert (status, err) == (0, "")

@@ -188,11 +188,18 @@ def _decidable(trace: Trace, rig: Rig) -> tuple[Rows, tuple[str, ...]]:
     """
     usual, kind = Rows.of(trace, rig, near=True), rig.axis_kind
     if usual.independent < INDEPENDENT:
-        moving = usual.effort.size * usual.conditioning.filter.stride * usual.conditioning.filter.sample_period
+        smooth, whole = usual.conditioning.filter, float(trace.time[-1] - trace.time[0])
+        moving = usual.effort.size * smooth.stride * smooth.sample_period
+        needed = f"{usual.independent:.0f} independent samples where {INDEPENDENT} are needed"
+        ends = 2 * smooth.margin * smooth.sample_period
+        lengths = ((part.stop - part.start) * smooth.sample_period - ends for part in trace.segments)
+        filtered = sum(length for length in lengths if length > 0.0)
+        if usual.independent * (whole - ends) > INDEPENDENT * filtered:  # as many without holes
+            reason = f"holes between samples leave {filtered:.2g} s of {whole:.3g} s to the filter, {needed}"
+            raise UndeterminedError(WHAT, reason, "the same motion without holes")
         raise UndeterminedError(
             WHAT,
-            f"{moving:.2g} s of {trace.time[-1] - trace.time[0]:.3g} s move clearly in one direction, "
-            f"{usual.independent:.0f} independent samples where {INDEPENDENT} are needed",
+            f"{moving:.2g} s of {whole:.3g} s move clearly in one direction, {needed}",
             f"at least {moving * INDEPENDENT / usual.independent:.2g} s of such motion in both directions: "
             f"{clear_motion(usual.conditioning, trace.axis_kind)}",
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import rms
+from bench.arrays import Array, rms
 from bench.gate.check import EFFORTS, Check, Seen, absent, resolution_of
 from bench.rig.rig import Rig
 from bench.trace.noise import white_noise
@@ -15,10 +15,14 @@ MOVES, CLIPS, RESOLUTION = "signal_moves", "signal_clips", "resolution"
 MOTION = ("position", "velocity")
 #: Equal values in a row that are no chance in a signal whose noise is at least so many of its steps: 0.28**50 = 2e-28.
 IN_A_ROW, NOISY = 50, 1.0
+#: Second difference of a signal's changes over these, in the middle, below which it has no noise; white noise has 3.
+SMOOTH = 0.05
 #: Steps of a position, and share of all its travel, that its speed says it must have gone meanwhile.
 TRAVELLED, OF_ALL = 20.0, 0.02
 #: Share of all samples that stand still to be refused.
 FROZEN = 0.005
+#: Standard deviation of a position, in those of its noise or in its steps, up to which the axis stands still.
+STILL = 1.2
 #: Spread of speed, as share of its RMS, below which the axis keeps one speed.
 STEADY = 0.1
 #: Speed, as share of its RMS, above which an axis moves.
@@ -49,8 +53,11 @@ def moves(seen: Seen) -> Check:
     motion = [name for name in MOTION if name in trace]
     efforts = [name for name in EFFORTS if name in trace]
     still = [names for names in (motion, efforts) if names and not any(np.ptp(trace[name]) > 0.0 for name in names)]
+    if "position" in trace and not still and _is_noise(trace["position"]):
+        still = [motion]
     if still:
-        found = " and ".join(" and ".join(names) for names in still) + " without any change"
+        noise = " but noise" * any(np.ptp(trace[name]) > 0.0 for names in still for name in names)
+        found = f"{' and '.join(' and '.join(names) for names in still)} without any change{noise}"
         advice = "record while the axis moves, and the signal that the motor's torque follows"
         # at one speed an effort may be one number; what that leaves open, the fit says better
         status = "warn" if efforts in still and _steady(seen) else "fail"
@@ -62,6 +69,11 @@ def moves(seen: Seen) -> Check:
     found = f"{name} stands still for {frozen[name] * trace.sample_period:.3g} s while the axis moves"
     status = "fail" if frozen[name] > FROZEN * len(trace) else "warn"
     return Check(MOVES, status, found, ALLOWED_MOVES, "check the sensor, or cut the recording there")
+
+
+def _is_noise(values: Array) -> bool:
+    """Whether a position (n,) spreads no more than its noise and its steps make it: the axis stands still."""
+    return float(np.std(values)) <= STILL * max(white_noise(values), resolution_of(values))
 
 
 def _steady(seen: Seen) -> bool:
@@ -88,10 +100,18 @@ def _frozen(trace: Trace, name: str) -> int:
         gone = mean * lengths * trace.sample_period
         least = max(TRAVELLED * step, OF_ALL * float(np.ptp(values)))
         return int(lengths[moving & (gone > least)].sum()) if "velocity" in trace else 0
-    if white_noise(values) < NOISY * step:
+    if white_noise(values) < NOISY * step or _noise_free(values):
         return 0
     off_or_rail = (values[starts] == 0.0) | (values[starts] == values.max()) | (values[starts] == values.min())
     return int(lengths[moving & ~off_or_rail].sum())
+
+
+def _noise_free(values: Array) -> bool:
+    """Whether most changes (n - 1,) are as the ones before them, as those of a computed signal are."""
+    steps = np.diff(values)
+    changing = np.abs(steps[1:-1]) + np.abs(steps[:-2]) + np.abs(steps[2:]) > 0.0
+    bend = np.abs(steps[2:] - 2.0 * steps[1:-1] + steps[:-2])[changing]
+    return bend.size > 0 and float(np.median(bend)) < SMOOTH * float(np.median(np.abs(steps[1:-1][changing])))
 
 
 def _runs(standing: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

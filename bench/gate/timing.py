@@ -92,7 +92,8 @@ def rate(seen: Seen) -> Check:
         if _missed(effort) and (position is None or followed(position)[1] < ALIKE):
             found = f"{found}, at which speed changes by {changes:.0%} of its spread from one sample to the next"
             noise = "record the position too, which separates noise from fast motion, or " * (position is None)
-            return Check(RATE, "fail", found, ALLOWED_RATE, f"{noise}record faster, or {unit}", unanswerable=True)
+            advice = f"{noise}record faster; if the drive oscillates, lower its gains"
+            return Check(RATE, "fail", found, ALLOWED_RATE, advice, unanswerable=True)
         found = f"{found}; the speed contains noise: it changes by {changes:.0%} of its spread in one sample"
     heavy = _heavy(seen)
     if heavy is not None:

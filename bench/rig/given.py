@@ -148,7 +148,7 @@ def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]
         "     # of the motor alone, datasheet: tells the load apart",
     ]
     if "current" in efforts:
-        lines.append(f'# {constant} = "? {unit}"     # datasheet; without it results stand in A instead of {unit[:-2]}')
+        lines.append(f'# {constant} = "? {unit}"     # datasheet; without it results are in A instead of {unit[:-2]}')
         lines.append('# current = "effective"     # where the datasheet tells its values for Arms')
     if any("%" in text or "permille" in text for text in units):
         lines.append('# rated_torque = "? N*m"     # what 100 % of the recorded torque means, datasheet')

@@ -462,10 +462,11 @@ def lacking(rig: Rig) -> dict[str, tuple[str, ...]]:
 
 
 def without_constant(rig: Rig) -> str | None:
-    """What a rig without a torque constant means for results; None where it has one."""
-    if rig.motor.torque_per_ampere is not None:
+    """What a rig without a torque constant means for results; None where it has one, or maps a torque or force."""
+    effort = rig.axis_kind.effort
+    if rig.motor.torque_per_ampere is not None or {"torque", "force"} & rig.trace.columns.keys():
         return None
-    return f"of recorded currents, results stand in A instead of {rig.effort_unit}: the motor has no constant"
+    return f"no {effort} constant is given, so {effort}s are in A; set motor.{effort}_constant in the rig"
 
 
 def require(rig: Rig, command: str) -> None:

@@ -111,3 +111,30 @@ def test_what_is_lost_is_where_the_motion_asks_for_five_per_cent_more(more, stat
     seen = {"velocity": speed - np.linspace(0.0, speed[-1], speed.size), "current": np.minimum(plateau, 1.0)}
     trace = Trace(TIME, seen, {"velocity": "rad/s", "current": "A"}, "plateaus")
     assert signals.clips(Seen(trace, None)).status == status
+
+
+def test_a_joint_that_stands_still_is_told_to_move_and_not_to_be_recorded_faster():
+    rng, time = np.random.default_rng(3), 0.002 * np.arange(4000)
+    recorded = {
+        "position": 0.3 + 1e-4 * rng.normal(size=time.size),
+        "velocity": 0.01 * rng.normal(size=time.size),
+        "torque": 0.5 + 0.05 * rng.normal(size=time.size),
+    }
+    still = Trace(time, recorded, {"position": "rad", "velocity": "rad/s", "torque": "N*m"}, "still")
+    found = signals.moves(Seen(still))
+    assert (found.status, found.found) == ("fail", "position and velocity without any change but noise")
+    assert "record while the axis moves" in found.advice
+
+
+@pytest.mark.parametrize(("noise", "status"), [(0.0, "pass"), (1e-3, "fail")])
+def test_a_plateau_of_a_signal_without_noise_is_no_sensor_that_stands_still(noise, status):
+    """At a steady speed between two ramps friction is one number; a noisy sensor shows none fifty times in a row."""
+    time = 0.001 * np.arange(6000)
+    velocity = 10.0 * np.clip(2.5 - 3.0 * np.abs(time % 2.0 - 1.0), 0.0, 1.0) * np.sign(np.sin(0.5 * np.pi * time))
+    current = 0.2 * velocity + 0.02 * np.sign(velocity) + noise * np.random.default_rng(1).normal(size=6000)
+    current += 0.05 * np.gradient(velocity, time)
+    plateau = np.abs(time - 1.0) < 0.3
+    current[plateau] = current[1000]
+    recorded = {"velocity": velocity, "current": current}
+    trace = Trace(time, recorded, {"velocity": "rad/s", "current": "A"}, "plateau")
+    assert signals.moves(Seen(trace)).status == status
