@@ -17,7 +17,7 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detectable, Detected, Effect
 from bench.errors import InputError, UndeterminedError
 from bench.fit.cutoffs import INDEPENDENT, NOISY, TELLS, TERMS, Cutoffs
-from bench.fit.determined import require_friction, require_inertia
+from bench.fit.determined import RECORD, require_friction, require_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import plain
@@ -209,7 +209,7 @@ def _decidable(trace: Trace, rig: Rig) -> tuple[Rows, tuple[str, ...]]:
             WHAT,
             f"noise of the {source} is more than {NOISY:.0%} of the acceleration's power at every cut-off of the "
             f"filter that leaves {INDEPENDENT} independent samples",
-            f"a finer {source}, or the same motion with higher accelerations",
+            f"{RECORD[INERTIA]}, or a finer {source}",
         )
     rows, smooth = found.rows, found.rows.conditioning.filter
     require_inertia(found.whole, kind)

@@ -33,7 +33,7 @@ PLAINLY = {
 
 #: What the noise of position or speed hides, and what shows it.
 NOISY = {INERTIA: "acceleration", VISCOUS: "speed"}
-FINER = "a finer position or speed, or the same motion with higher accelerations and speeds"
+FINER = "a finer position or speed"
 
 LOAD = "load_moment_of_inertia"
 TURNED = "torque and motion counted the same way (a leading - in the rig's [trace.columns] turns one)"
@@ -102,7 +102,7 @@ def _hidden(term: str, share: float, noise: float, kind: AxisKind) -> Undetermin
     what = kind.in_words(term)
     if term in NOISY and share + noise >= INDEPENDENT_SHARE:
         reason = f"{min(noise, 1.0):.0%} of the measured {NOISY[term]}'s power is noise"
-        return UndeterminedError(what, reason, FINER)
+        return UndeterminedError(what, reason, f"{RECORD[term]}, or {FINER}")
     reason = f"{PLAINLY[term]}: only {max(share, 0.0):.1%} of what would show it differs from other terms and noise"
     return UndeterminedError(what, reason, RECORD[term])
 

@@ -140,11 +140,11 @@ def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:
 
 
 def _identified(work: Sequence[JointLogs], progress: Callable[[float], None]) -> dict[str, IdentifiedJoint]:
-    """Each joint by its name; BenchError where several fail, all for one reason: a file that they share is wrong."""
+    """Each joint by its name; BenchError where several fail, all for one reason that concerns the MJCF."""
     found: dict[str, IdentifiedJoint] = {}
     for asked, one in zip(work, of_each(identified, work, progress), strict=True):
         found[asked.joint] = IdentifiedJoint(asked.joint, failed=one.reason) if isinstance(one, Failure) else one
     reasons = {joint.failed for joint in found.values()}
-    if len(found) > 1 and len(reasons) == 1 and any(reasons):
+    if len(found) > 1 and len(reasons) == 1 and any(reason.startswith(str(work[0].mjcf)) for reason in reasons):
         raise BenchError(*reasons)
     return found
