@@ -321,6 +321,7 @@ def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
         considered=considered(added, likely),
         warnings=[
             *suspicions(recordings.trace, recordings.rig, kept.parameters),
+            *delayed(whole),
             *left_open(recordings.rows, kind),
             *impacts(whole, unit),
             *out_of_phase(added),
@@ -567,6 +568,17 @@ def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> l
         "check the units of current and speed and the torque constant",
         *clipped(trace, rig),
     ]
+
+
+def delayed(fitted: Fit) -> Iterator[str]:
+    """That torque and speed are further apart than they were taken."""
+    shift = fitted.shift
+    if fitted.hypothesis.shift:
+        way = "after" if shift < 0.0 else "before"
+        yield (
+            f"the torque acts {abs(shift) * 1e3:.3g} ms {way} it is reported, which is more than a sample "
+            f"({fitted.scope.sample_period * 1e3:.3g} ms): a delay of the drive or of its log; the model contains it"
+        )
 
 
 def left_open(rows: Rows, kind: AxisKind) -> list[str]:

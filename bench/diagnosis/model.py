@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
+from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.recordings import Recordings
 from bench.effects.acting import RaisesFriction
 from bench.effects.effect import Contact, Detected, Effect, Occasional
@@ -83,7 +83,7 @@ def stored_model(fitted: Fit, outside: Mapping[Effect, Detected], rig: Rig) -> S
     ]
     present += [Present.of(effect.name, found.values) for effect, found in outside.items()]
     model = AxisModel(base, tuple(present), fitted.scope.peak_effort, winding_of(rig))
-    return StoredModel(rig.name, model, fitted.value(MISALIGNMENT), Mounting.of(rig))
+    return StoredModel(rig.name, model, fitted.shift, Mounting.of(rig))
 
 
 def present_of(effect: Effect, values: Mapping[str, float]) -> Present:

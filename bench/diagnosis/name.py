@@ -13,19 +13,20 @@ from functools import partial
 import numpy as np
 
 from bench.arrays import NORMAL95
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.diagnosis.policy import POLICY, Policy, worth
 from bench.diagnosis.probability import Probabilities, neighbourhood, probabilities, scored
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, search
 from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detected, Effect, Occasional, Replacing, Standout
+from bench.effects.effect import Detected, Effect, Lag, Occasional, Replacing, Standout
 from bench.effects.signals import Axis
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit, hint, shaped, unbiased
-from bench.fit.hypothesis import Term
+from bench.fit.hypothesis import BASE, Term
 from bench.fit.quantities import uncertain
+from bench.fit.solution import solution_of
 from bench.names import words
 from bench.parameter import Parameter
 
@@ -86,7 +87,8 @@ class Suspects:
 def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy) -> Suspects:
     """The likeliest names of those that a search finds and their neighbours, and what the signals show directly.
 
-    An effect whose size the recording does not determine is not found: the search is repeated without it.
+    An effect whose size the recording does not determine is not found: the search is repeated without it. It is
+    repeated where torque and speed are apart by a delay, too, which is then undone.
     """
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     direct, unsized = frozenset(effect.name for effect in kept), dict[str, str]()
@@ -98,14 +100,30 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
         likely = probabilities(hypotheses, direct, policy)
         chosen = likely.fits[likely.chosen.names]
         last = with_events(chosen, effects, policy)
-        more = without_size(last, recordings)
-        if not more:
+        more, shift = without_size(last, recordings), delay(last, policy)
+        if not more and not shift:
             break
         unsized |= more
+        bare = fit(bare.rows, replace(bare.hypothesis, shift=bare.hypothesis.shift + shift))
     standing = frozenset(term.effect.name for term in last.terms[len(chosen.terms) :])
     likely = replace(likely, detected=likely.detected | standing)
     withheld = len(kept) < len(recordings.detected)
     return Suspects(searched.ending(last), likely, kept, withheld, policy, excluded, unsized)
+
+
+def delay(fitted: Fit, policy: Policy) -> float:
+    """By how much torque and speed are surely apart beyond the bound of their shift - s -; else 0.
+
+    A lag is an effect, so effects are searched within the bound first. 0 beside a lag, too, and where more than noise
+    is left without the bound: what a model lacks may look like a delay.
+    """
+    if BASE.index(MISALIGNMENT) not in fitted.held or fitted.hypothesis.of_kind(Lag):
+        return 0.0
+    free = solution_of(fitted.rows, fitted.hypothesis, offset=False)
+    if not free.delayed or free.held:
+        return 0.0
+    moved = replace(fitted.hypothesis, shift=fitted.hypothesis.shift + free.shift[0])
+    return 0.0 if policy.remains(fit(fitted.rows, moved)) else free.shift[0]
 
 
 def without_size(fitted: Fit, recordings: Recordings) -> dict[str, str]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, symmetric_inverse
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.acting import Friction
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import (
@@ -141,6 +141,11 @@ class Fit:
     def value(self, term: str) -> float:
         """Coefficient of a term of the equation of motion - SI."""
         return float(self.theta[self.owners == term][0])
+
+    @property
+    def shift(self) -> float:
+        """By how much the torque is reported late - s."""
+        return self.hypothesis.shift + self.value(MISALIGNMENT)
 
     @property
     def span(self) -> Array:

@@ -17,6 +17,7 @@ recording wherever a step could be seen. What is left is noise (see `bench.fit.s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -64,6 +65,8 @@ BASE = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT)
 HUM, DIGIT, AROUND = "hum", "last digit", "around"
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
 FREQUENCIES, REACH = 400, 4.0
+#: Terms of the series of a shift.
+SERIES = 4
 #: Share of the filtered white noise below which half a step is not seen.
 UNSEEN = 0.1
 #: Change of what copies of torque miss, as share of it, at which they are in line with what is found.
@@ -133,11 +136,13 @@ class Hypothesis:
         terms: in the order in which they were added.
         hum: frequencies of the mains in this recording's sensors - Hz.
         step: between the values of the effort, if its last digit matters; else 0 - N*m (N).
+        shift: by which the torque is taken late, beside the small one that is fitted - s.
     """
 
     terms: tuple[Term, ...] = ()
     hum: tuple[float, ...] = ()
     step: float = 0.0
+    shift: float = 0.0
 
     def plus(self, term: Term) -> Hypothesis:
         """This hypothesis and one term more."""
@@ -252,6 +257,8 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | N
         known = seen.kept(known_of, lag=moving)[:, 0]
         effort = effort - (known if late else known - seen.kept(known_of)[:, 0])
     rescaling = np.flatnonzero(np.isin(held_by, hypothesis.of_kind(RescalesTorque)))
+    if hypothesis.shift:
+        effort = effort + seen.kept(_moved, hypothesis.shift, lag=late)[:, 0]
     return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds, rescaling)
 
 
@@ -259,6 +266,12 @@ def _axis(signals: Signals) -> list[Column]:
     """Those of BASE."""
     source, order = (signals.position, 1) if signals.source == "position" else (signals.velocity, 0)
     return [[(source, order + 1)], [(source, order)], [(signals.sign, 0)], [(-(signals.effort + signals.of_motion), 1)]]
+
+
+def _moved(signals: Signals, shift: float) -> list[Column]:
+    """By how much the effort a shift later is another one: Taylor's series, as far as the filter lets anything pass."""
+    driven = signals.effort + signals.of_motion
+    return [[(shift**order / math.factorial(order) * driven, order) for order in range(1, SERIES + 1)]]
 
 
 def _cut_off(signals: Signals) -> list[Column]:

@@ -40,7 +40,6 @@ from bench.fit.hum import mains
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
 from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
-    SURE,
     NormalEquations,
     Solution,
     equations_of,
@@ -55,10 +54,6 @@ from bench.parameter import Parameter
 from bench.rig.given import Given, GivenRig, Units, given
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-
-#: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
-#: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
-A_DELAY = 0.25
 
 #: Normal equations, number of samples and checks of a part of a recording.
 Summed = tuple[NormalEquations, int, tuple[Check, ...]]
@@ -279,8 +274,8 @@ def _estimate_of(
 
 
 def _shifted(found: Solution) -> Iterator[str]:
-    (shift, error), period = found.shift, found.rows.scope.sample_period
-    if abs(shift) > period and abs(shift) > SURE * error and found.shift_explains > A_DELAY:
+    shift, period = found.shift[0], found.rows.scope.sample_period
+    if found.delayed:
         side, cause = ("behind", "a filter of the effort") if shift > 0.0 else ("ahead of", "a lag of drive or speed")
         yield (
             f"the effort is recorded {abs(shift) * 1e3:.3g} ms {side} the speed, more than a sample "

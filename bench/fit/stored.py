@@ -78,6 +78,7 @@ class Balance:
             "filter_width": self.width,
             "mains": list(self.hypothesis.hum),
             "effort_step": self.hypothesis.step,
+            "shift": self.hypothesis.shift,
             "coefficients": self.theta.tolist(),
             "effects": effects,
         }
@@ -101,7 +102,8 @@ class Balance:
             )
             for entry in table.get("effects", [])
         )
-        hypothesis = Hypothesis(terms, _floats(table.get("mains", [])), float(table.get("effort_step", 0.0)))
+        numbers = (float(table.get(name, 0.0)) for name in ("effort_step", "shift"))
+        hypothesis = Hypothesis(terms, _floats(table.get("mains", [])), *numbers)
         theta = np.array(_floats(table["coefficients"]))
         return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
 

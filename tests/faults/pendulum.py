@@ -28,9 +28,9 @@ class Swung(NamedTuple):
     drive: np.ndarray
 
 
-def swung() -> Swung:
-    """By Lagrange's equation of a pendulum."""
-    time = PERIOD * np.arange(round(SECONDS / PERIOD))
+def swung(ahead: float = 0.0) -> Swung:
+    """By Lagrange's equation of a pendulum, a time `ahead` - s."""
+    time = PERIOD * np.arange(round(SECONDS / PERIOD)) + ahead
     angle, speed, acceleration = np.zeros((3, time.size))
     for size, frequency, phase in ((0.9, 0.4, 0.0), (0.35, 1.1, 1.0), (0.1, 2.3, 2.0)):
         omega = 2.0 * np.pi * frequency

@@ -43,5 +43,5 @@ def recorded(seed: int) -> np.ndarray:
 def write(folder: Path) -> None:
     """`log.csv` and `rig.toml`."""
     header = "time [s],voltage [V],position [rad],velocity [rad/s]"
-    np.savetxt(folder / "log.csv", recorded(1), "%.8g", ",", header=header, comments="")
+    np.savetxt(folder / "log.csv", recorded(3), "%.8g", ",", header=header, comments="")
     (folder / "rig.toml").write_text(RIG, encoding="utf-8")
