@@ -141,14 +141,8 @@ def test_a_script_replaces_nothing_else(tmp_path, monkeypatch, script):
 #: Calls that open a file, and the modules that may: they open what is shipped with the bench, what they write, bytes
 #: that were read, or what `bench.files` has read before.
 OPENING = {"open", "read_text", "read_bytes", "from_xml_path", "from_file", "ParquetFile", "read_schema", "ZipFile"}
-SHIPPED = {
-    "course/axis.py",
-    "course/notebooks.py",
-    "course/report.py",
-    "course/pdf.py",
-    "course/catapult.py",
-}
-SHIPPED |= {"plant/axis_model.py", "report/html.py", "rig/motor.py"}
+SHIPPED = {"course/notebooks.py", "course/report.py", "course/pdf.py", "course/catapult.py"}
+SHIPPED |= {"plant/axis_model.py", "report/html.py"}
 WRITES = {
     "__main__.py",
     "cli/__init__.py",
@@ -176,7 +170,7 @@ def test_what_is_read_is_opened_in_one_place():
 
 def test_every_path_of_every_command_is_known_as_read_or_written():
     """An output of an unknown name would be taken for an input, and refused."""
-    read = {"file", "trace", "traces", "rig", "holdout", "model", "mjcf", "simulated", "data"}
+    read = {"file", "trace", "traces", "rig", "holdout", "model", "mjcf", "simulated", "data", "key"}
     read |= {"logs", "manifest", "recordings", "submissions", "truth", "profile", "ranges", "folders", "into"}
     for command in app.registered_commands:
         assert command.callback is not None

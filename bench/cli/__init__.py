@@ -87,7 +87,7 @@ def main() -> None:
     """Entry point of `bench`: errors become one line on standard error and an exit status."""
     try:
         if sys.stdout is None:
-            raise InputError("standard output", "is closed", "send it to a file, or to /dev/null")
+            raise InputError("standard output", "is closed", f"send it to a file, or to {os.devnull}")
         if isinstance(sys.stdout, io.TextIOWrapper):
             sys.stdout.reconfigure(errors="backslashreplace")  # as standard error is
         _add_offered()

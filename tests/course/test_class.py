@@ -199,7 +199,7 @@ def recorded(folder, count, salt=SALT):
         status, out, _ = bench("lab", "--record", folder / "class", "--students", count, "--seed", 7)
     took = process_time() - start
     assert status == 0
-    assert out.count("wrote") == count + 1
+    assert out.count("wrote") == count + 2
     students = {number: Student(folder / "class" / f"student-{number:02}") for number in range(1, count + 1)}
     return Class(folder, students, took)
 
