@@ -38,7 +38,8 @@ class Parameter:
 
     def __str__(self) -> str:
         if self.lopsided:
-            return f"{self.value:.3g} ({self.ci95[0]:.2g} to {self.ci95[1]:.2g}) {self.unit}"
+            low, high = (f"{bound:.{self.digits}g}" for bound in self.ci95)
+            return f"{self.value:.3g} ({low} to {high}) {self.unit}"
         known = math.isfinite(self.half_width) and self.half_width > 0.0
         between = f" ± {self.half_width:.2g}" if known else ""
         return f"{self.value:.6g}{between} {self.unit.replace('dimensionless', '')}".rstrip()
@@ -56,6 +57,11 @@ class Parameter:
         """Whether the interval is one of a factor, so wide that half of it says little."""
         low, high = self.ci95
         return 0.0 < low < self.value and LOPSIDED * (self.value - low) < high - self.value < math.inf
+
+    @property
+    def digits(self) -> int:
+        """Digits of the ends of the interval that show its width, two at least."""
+        return 2 + max(0, math.floor(math.log10(self.ci95[1] / (self.ci95[1] - self.ci95[0]))))
 
     @property
     def degrees(self) -> float:

@@ -77,7 +77,7 @@ def test_identify_writes_the_contracts_json(bench, trace, tmp_path):
         assert parameter["unit"] == unit
         assert parameter["ci95"][0] < parameter["value"] < parameter["ci95"][1]
         assert parameter["std_error"] > 0.0
-    assert set(found["residual"]) == {"rms", "noise_floor", "unit", "relative"}
+    assert set(found["residual"]) == {"rms", "noise_floor", "unit", "relative", "depends_on"}
     assert found["samples"]["read"] == 4000
     assert 0 < found["samples"]["used"] <= 4000
     assert found["warnings"] == []

@@ -189,6 +189,22 @@ class Comparison:
         return replace(self, result=SAME if shown else UNDECIDED)
 
     @property
+    def reason(self) -> str:
+        """Why it is undecided; empty if it is not."""
+        difference, bounds = self.difference, self.difference95
+        if self.held_back or self.result != UNDECIDED or difference is None or bounds is None:
+            return self.held_back
+        if len({each.value > 0.0 for each in self.differences}) > 1:
+            return "the effects of the baseline and those of now give differences of opposite sign"
+        if max(each.chance(self.margin) for each in self.differences) < self.chance:
+            return "stronger noise may explain the difference"
+        known = f"{0.5 * (bounds[1] - bounds[0]):.2g} {self.unit}".removesuffix(" dimensionless")
+        if self.margin <= 0.0 or abs(difference.value) <= self.margin:
+            return f"the difference is known to ± {known} only, so it may exceed the margin"
+        times = f"{abs(difference.value) / self.margin:.2g} margins, but it is known to ± {known} only"
+        return f"the difference is {times}: too uncertain for an alarm at this false-alarm rate"
+
+    @property
     def difference(self) -> Difference | None:
         """The smallest of its differences."""
         return min(self.differences, key=lambda one: abs(one.value), default=None)

@@ -53,8 +53,7 @@ from bench.plant.tracking import follow_references
 from bench.trace.motion import measured_velocity
 from bench.trace.noise import white_noise
 
-#: Largest velocity gap of a complete model on the shared cases, over the white noise of the recorded speed
-#: (docs/diagnose.md). Changes below it are insignificant, and refining such a model cannot help.
+#: Velocity gap over the white noise of the recorded speed below which a change is insignificant (docs/diagnose.md).
 NULL = 3.5
 #: Least relative reduction of the gap of held-out motion by a refined model; less is chance.
 WON = 0.02

@@ -52,6 +52,9 @@ from bench.trace.trace import Trace
 
 #: File of a saved diagnosis that holds all of it.
 PACKED = "diagnosis.npz"
+#: Speed gap of a model that matches: in noise floors, and as share of the RMS speed, which filters and the steps of the
+#: integration resolve.
+MATCH, RESOLVED = 3.5, 1e-3
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,7 @@ class Gap:
         noise_floor: expected RMS from sensor noise alone.
         identify, holdout: (before, after) over all rows; None if not available.
         judged: share of the rows that the verdict is based on, and the gap on them; None if it is all rows.
+        limit: RMS up to which a model matches the recording.
     """
 
     unit: str
@@ -70,6 +74,22 @@ class Gap:
     identify: tuple[float, float] | None
     holdout: tuple[float, float] | None = None
     judged: tuple[float, float] | None = None
+    limit: float = math.inf
+
+    @property
+    def final(self) -> tuple[float, float] | None:
+        """Before and after on the holdout where there is one, else on the recording."""
+        return self.holdout or self.identify
+
+    @property
+    def times_noise(self) -> float:
+        """The final gap over the noise floor; nan if not available."""
+        return math.nan if self.final is None else self.final[1] / max(self.noise_floor, 1e-300)
+
+    @property
+    def within(self) -> bool:
+        """Whether the model matches, as far as a gap is available."""
+        return self.final is None or self.final[1] <= self.limit
 
 
 @dataclass(frozen=True)
@@ -291,7 +311,7 @@ def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
     steps = shrinking(added, shown)
     torque, velocity = gaps(added, steps)
     likely = added.suspects.probabilities.without(frozenset(one.name for one in added.rejected))
-    comes_to, because = verdict(Shown(added, torque, velocity))
+    comes_to, because = verdict(Shown(added, likely, torque, velocity))
     return Diagnosis(
         verdict=comes_to,
         because=because,
@@ -371,27 +391,49 @@ def gaps(added: Added, steps: Sequence[Shrunk]) -> tuple[Gap, Gap]:
     velocity = zip(steps[0].velocity, steps[-1].velocity, strict=True)
     simulated = [pair if all(map(math.isfinite, pair)) else None for pair in velocity]
     judged = None if whole.determined.all() else (float(whole.determined.mean()), whole.rms)
-    floor = white_noise(measured_velocity(recordings.trace))
+    velocity = measured_velocity(recordings.trace)
+    floor = math.hypot(white_noise(velocity), shaken(whole, added.gaps.bandwidth))
+    limit = max(MATCH * floor, RESOLVED * rms(velocity))
+    remainder = added.suspects.policy.remainder * whole.floor
     return (
-        Gap(recordings.unit, whole.floor, *torque, judged=judged),
-        Gap(recordings.rig.axis_kind.speed_unit, floor, *simulated),
+        Gap(recordings.unit, whole.floor, *torque, judged=judged, limit=remainder),
+        Gap(recordings.rig.axis_kind.speed_unit, floor, *simulated, limit=limit),
     )
+
+
+def shaken(fitted: Fit, bandwidth: float) -> float:
+    """RMS speed of a model that is held at a bandwidth w - rad/s -, as noise of the recorded torque shakes it.
+
+    White noise of a deviation s at a period T through the held axis (`bench.plant.tracking.holding_cascade`),
+
+        s**2/J**2*0.55*T/w
+
+    the integral of |1/(J*i*omega + K_v + ...)|**2 (G. C. Newton, L. A. Gould, J. F. Kaiser, Analytical Design of Linear
+    Feedback Controls, 1957, appendix E).
+    """
+    noise, period = fitted.rows.conditioning.effort_noise, fitted.scope.sample_period
+    return noise / abs(fitted.base.inertia) * math.sqrt(0.55 * period / bandwidth)
 
 
 def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, ...]:
     """All effects: those accepted in the order of addition, then the others by the share they explain."""
     rounds = rounds_of(added.suspects.searched)
     kept = {one.effect: one for one in added.refined.effects}
+    alike = {name: one for one in kept.values() for name in one.ambiguous_with}
     found: dict[Effect, Considered] = {}
     for effect in catalogue().values():
         shares = [share for tried in rounds if (share := _share(tried, effect)) is not None]
+        likely, same = probabilities.names.get(effect.name, 0.0), kept.get(effect) or alike.get(effect.name)
         if effect in kept:
             figures = (f"{key.replace('_', ' ')} {value:.3g}" for key, value in kept[effect].evidence.items())
             reason = ", ".join(figures) or "named"
+        elif same is not None:
+            reason = f"this recording does not distinguish it from {words(same.name)}"
         else:
             reason = _against(effect, added, rounds)
+        if same is not None:
+            likely = probabilities.of_any((same.name, *same.ambiguous_with))
         last = _share(rounds[-1], effect) if len(rounds) > 1 and effect not in kept else None
-        likely = probabilities.names.get(effect.name, 0.0)
         found[effect] = Considered(effect, effect in kept, likely, shares[0] if shares else None, last, reason)
     taken = [found.pop(effect) for effect in kept]
     return (*taken, *sorted(found.values(), key=lambda one: -(one.alone or 0.0)))
@@ -416,16 +458,18 @@ def _against(effect: Effect, added: Added, rounds: Sequence[Step]) -> str:
     rejected = {one.name: one.reason for one in added.rejected}
     share = _share(rounds[-1], effect) if rounds else None
     reasons = {
-        "was not to be tried": effect.name in suspects.excluded,
+        "excluded": effect.name in suspects.excluded,
         rejected.get(effect.name, ""): effect.name in rejected,
-        "was taken up and let go: the others explain it too, or another set of names is likelier": any(
+        "added and removed again: the others explain it too, or another set is more likely": any(
             effect is term.effect for tried in rounds for term in tried.fitted.terms
         ),
-        "such a recording cannot show it": not effect.sought(added.recordings.rows.scope),
+        "this recording cannot show it": not effect.sought(added.recordings.rows.scope),
         "no more than chance": share is not None
         and share * rounds[-1].fitted.squares < suspects.policy.by_chance(rounds[-1].fitted, 1),
-        "too little, or with values that physics forbids": share is not None,
-        "the recording tells but one of it and what was taken": not suspects.searched.last.hypothesis.admits(effect),
+        "too weak, or physically impossible": share is not None,
+        "the recording does not distinguish it from an added effect": not suspects.searched.last.hypothesis.admits(
+            effect
+        ),
     }
     return next((reason for reason, holds in reasons.items() if holds), "nothing in the recording points to it")
 
@@ -436,10 +480,12 @@ class Shown:
 
     Attributes:
         added: the effects accepted.
+        likely: probabilities of sets of names.
         torque, velocity: gaps of the bare axis and of the model.
     """
 
     added: Added
+    likely: Probabilities
     torque: Gap
     velocity: Gap
 
@@ -467,7 +513,31 @@ def remains(shown: Shown) -> str:
     """The torque residual is clearly above noise: by what multiple of the floor."""
     if not shown.added.suspects.policy.remains(shown.whole):
         return ""
-    return f"what is left is {shown.whole.chi:.3g} times the noise"
+    return f"the torque residual is {shown.whole.chi:.3g} times the noise"
+
+
+def depends(shown: Shown) -> str:
+    """The torque residual is as small as noise, and not noise."""
+    return str(shown.whole.depends or "")
+
+
+def moves_otherwise(shown: Shown) -> str:
+    """The bare axis does not move as recorded: by what multiple of the noise floor."""
+    gap = shown.velocity
+    if shown.effects or gap.within or gap.final is None:
+        return ""
+    return f"the simulated speed differs by {gap.final[1]:.3g} {gap.unit} RMS, {gap.times_noise:.2g} times the noise"
+
+
+def likelier(shown: Shown) -> str:
+    """Something is more likely than no missing effect, and is not certain enough to be named."""
+    likely = shown.likely
+    others = {" and ".join(map(words, sorted(each.names))): each.probability for each in likely.sets if each.names}
+    name, probability = max({**others, "an unknown effect": likely.none}.items(), key=lambda one: one[1])
+    if shown.effects or remains(shown) or depends(shown) or probability < likely.nothing:
+        return ""
+    chances = (f"({100.0 * each:.0f} %)" for each in (probability, likely.nothing))
+    return "{} is more likely {} than no missing effect {}".format(name, *chances)
 
 
 def refused(shown: Shown) -> str:
@@ -479,7 +549,7 @@ def refused(shown: Shown) -> str:
 def unfinished(shown: Shown) -> str:
     """The search ended at a limit, or found an effect that was excluded."""
     stopped = shown.added.suspects.searched.stopped
-    return stopped or ("an effect that was not to be tried" if shown.added.suspects.withheld else "")
+    return stopped or ("an excluded effect was found" if shown.added.suspects.withheld else "")
 
 
 def moves_worse(shown: Shown) -> str:
@@ -535,18 +605,21 @@ def holdout_apart(shown: Shown) -> str:
     least = max(gap.identify[1], gap.noise_floor)
     if gap.holdout[1] <= shown.added.suspects.policy.holdout_gap * least:
         return ""
-    return f"the holdout stands apart: {gap.holdout[1]:.3g} {gap.unit} are left there, {least:.3g} here"
+    return f"the residual of the holdout is {gap.holdout[1]:.3g} {gap.unit}, that of the recording {least:.3g}"
 
 
 #: In the order in which they are listed.
 OBJECTIONS: tuple[Callable[[Shown], str], ...] = (
     remains,
+    depends,
     refused,
     unfinished,
+    moves_otherwise,
     moves_worse,
     undetermined,
     negative_friction,
     holdout_apart,
+    likelier,
 )
 
 

@@ -35,9 +35,8 @@ from bench.rig.rig import Rig
 from bench.trace.motion import in_stretches, measured_position, measured_velocity
 from bench.trace.trace import Trace, less_known
 
-#: Bandwidth of the cascade by which a model tracks a recording - rad/s -, and the largest that a model may need. On the
-#: shared cases the effects found reduce the gap by a median factor of 15 at 10, 16 at 20 and 14 at 40 rad/s; at 20 none
-#: fails to track (docs/diagnose.md).
+#: Bandwidth of the cascade by which a model tracks a recording - rad/s -, and the largest that a model may need
+#: (docs/diagnose.md).
 BANDWIDTH, MOST = 20.0, 100.0
 #: Phase from which on a wave of position out of phase leaves more torque than no wave, |exp(j*phase) - 1| > 1 - rad.
 OUT_OF_PHASE = math.pi / 3.0
@@ -49,9 +48,8 @@ SPEEDS, SLOWEST = 400, 1e-3
 RECORDING, HOLDOUT = "recording", "holdout"
 #: Share of a recording that is held out if there is no holdout recording.
 HELD_OUT = 1.0 / 3.0
-#: Blocks that moving rows are cut into, and reaches of the filter that a block is long at least. Of 13 shared cases and
-#: seven recordings of real axes the regime that is held out least keeps 0.20 of its rows in the median, 0.15 with 12
-#: blocks, where it has none in two; borders take 3 % of the rows at 1 kHz, 10 to 18 % at 48 Hz.
+#: Blocks that moving rows are cut into, and reaches of the filter that a block is long at least: borders take 3 % of
+#: the rows at 1 kHz, 10 to 18 % at 48 Hz.
 BLOCKS, REACHES = 24, 8
 #: Ranges of speed, and of position, of equally many rows each.
 RANGES = 3

@@ -178,8 +178,11 @@ def named(
     """Effects of a torque balance and outside of it with their quantities, and J, K_w, K_0 beside them."""
     numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)
     hinted, over_noise = hint(fitted, catalogue().values()) or fitted, unbiased(fitted)
+    moved = {} if fitted.depends is None else fitted.depends.moved
     parameters = {
-        name: found.widened(*(other.value(term) - found.value for other in others)).reaching(hinted.value(term))
+        name: found.widened(*(other.value(term) - found.value for other in others))
+        .reaching(hinted.value(term))
+        .reaching(found.value + moved.get(term, 0.0))
         for term, (name, found) in zip((INERTIA, VISCOUS, COULOMB), recordings.base(numbers).items(), strict=True)
     }
     effects = []

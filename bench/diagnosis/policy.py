@@ -40,51 +40,32 @@ class Policy:
     `python -m tests.studies.blind.thresholds` halves and doubles each number over the blind set (`docs/thresholds.md`).
 
     Attributes:
-        chance: gain over noise power, per number fitted and independent row, that is more than chance in a search over
-            some hundred candidates. Of 100 nulls the best candidate saves 6 in the middle and 116 at most per number of
-            its shape (`python -m tests.studies.blind.margins`).
-        remainder: residual over noise floor above which something is left, and the verdict says so. Nulls of the blind
-            set leave 1.095 at 95 %, 1.40 at most (the same program).
-        large: residual over noise from which on it is no noise, even if noise is louder than the signals show: encoders
-            that interpolate with an error left 1.1 to 4 without a coupling, a servo's gear behind a coarse speed 6.4 to
-            7.8. Names beside which so much is left are likelier the nearest than the right ones.
+        chance: gain over noise power, per fitted number and independent row, that is more than chance in a search over
+            some hundred candidates: on axes that lack nothing the best one saves 6 in the median and 116 at most.
+        remainder: residual over noise floor above which the residual is not noise.
+        large: residual over white noise from which on it is not noise, even if the noise is stronger than it appears.
         finalists: candidates at most whose shapes are searched before they are compared.
-        promising: of what is above noise: what a candidate takes even at a grid's shape, so that its own is searched;
-            less than any effect needs, as the grid is coarse.
-        explains: factor on the share of what is above noise that each effect states as needed of itself.
+        promising: share of what is above noise that a candidate takes at a grid's shape, so that its shape is searched.
+        explains: factor on the share of what is above noise that each effect requires of itself.
         patience: factor on the last two shares of a search for many small effects at once.
-        nearly_all: of what is above noise: what those may leave together.
-        needed: of what is above noise without it: what a name takes beside those that came after it.
-        as_good: of what a name takes: what a candidate takes in its place, both at a grid's shape.
-        odds: of a likelihood to that of what is nearly as good, beyond which that is no more weighed. At 24,000 to one
-            an eccentric encoder took half the probability of a true inertia over position (blind set, single 94).
+        nearly_all: share of what is above noise that those may leave together.
+        needed: share of what is above noise without it that a name takes in addition to later ones.
+        as_good: share of what a name takes that a candidate takes in its place, both at a grid's shape.
+        odds: ratio of likelihoods beyond which what is nearly as good is not weighed.
         exchanges: candidates at most whose shapes are searched in the place of a name.
-        undoubted: names up to which what was nearly as good as the first is not searched from: a wrong one needs others
-            beside it, as an inertia over position in the place of an eccentric encoder did (blind set, pair 36).
-        replaces: of what is above noise, on the rows that are determined: what an effect takes that is tried in the
-            place of others, with what is found beside it. By itself it takes less: a backlash took .34 beside cogging
-            (blind set, pair 47).
-        determined: share of rows whose torque the recording determines beside such an effect; where it is less, the
-            other rows have to speak for it, too. Couplings that were withheld left .17, .30 and .47 of them to the
-            backlash that they were taken for (blind sets, seeds 1 and 1001). The cleaner a recording, the fewer there
-            are: a quarter to a half of rows beside a backlash that was found within 1 %
-            (`tests/diagnosis/test_dead_zone.py`).
-        holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave. Of
-            the blind set's cases that are explained 2.5 at most, nine in ten 1.6.
-        beside_event: of the squares that an event takes which stands out of a remainder: what may be left around it.
-        periods: of a contact that an event lasts at least beside one. What doubled samples and wrong gains made of an
-            impact lasted 0.4 to 1.4 (nuisance set, seeds 31 and 32), of a train of them 4 and 6 (blind set, pair 33),
-            events of the blind set beside a backlash 20 and more.
-        left, over, number, outside, none: weights of a probability (`bench.diagnosis.probability`): of what is left,
-            over what the bare axis leaves and over noise, of a number fitted more, of an effect from outside the
-            catalogue, and of what was not tried; that last one at the upper end of those as good within .006 of log
-            loss, where fewest names are wrong if the truth is withheld. Two more, of an effect more and of an event
-            beside a remainder, made the right answers no likelier (`docs/certainty.md`).
-        beside: residual over noise floor, as share of that without a name, up to which the name is there beside an
-            effect from outside the catalogue. By their probability 99 % of the names below .5 are there and 7 % of
-            the others, of the sets that the weights come from (the same page).
+        undoubted: names up to which the search is not repeated from what was nearly as good as the first.
+        replaces: share of what is above noise, on determined rows, that an effect takes in the place of others.
+        determined: share of rows that such an effect determines; below it the other rows count, too.
+        holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave.
+        beside_event: share of the squares that an event takes which may remain around it.
+        periods: periods of a contact that an event lasts at least; shorter ones are impacts of the contact.
+        left, over, number, outside, none: weights of a probability (`bench.diagnosis.probability`): of the residual
+            over that of the bare axis and over noise, of a fitted number, of an effect from outside the catalogue, and
+            of what was not tried (`docs/certainty.md`).
+        beside: residual over noise floor, as share of that without a name, up to which the name is present together
+            with an effect from outside the catalogue.
         most: effects at most; a family of harmonics is one of them.
-        members: of a family at most: more waves or events draw anything.
+        members: of a family at most: more waves or events fit anything.
     """
 
     chance: float = 40.0
@@ -218,20 +199,14 @@ class Policy:
         return having.chi < self.beside * without.chi
 
     def leads(self, before: Fit, after: Fit) -> bool:
-        """Whether an effect in the place of others is worth the search of what else is beside it.
-
-        Of a realistic axis of seven effects a backlash took .18 beside the only one that was found, and all of it
-        beside the other five (`python -m tests.studies.injected --only realistic-007 --effect backlash`).
-        """
+        """Whether an effect in the place of others is worth the search for what else is present with it."""
         return self.physical(after) and self._saves(before, after, self.promising)
 
     def replaces_by(self, before: Fit, after: Fit, without: Fit) -> bool:
         """Whether `after`, with an effect in the place of others, leaves less by a share where it is determined.
 
         Where it is not, no more than impacts at the wrong instants would, over what `before` leaves there; less by that
-        share, too, if that is most. If it leaves nearly nothing of most rows, over what is left `without` those others:
-        beside an eccentric encoder a coupling took three quarters of the impacts of the backlash that was there, which
-        left 2.2 times as much (seed 1001, pair 9).
+        share, too, if that is most. If it leaves nearly nothing of most rows, over the residual `without` those others.
         """
         mostly = float(after.determined.mean()) > self.determined
         reference = without if mostly and self._saves(before, after, 1.0 - self.nearly_all) else before

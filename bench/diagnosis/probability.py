@@ -16,14 +16,13 @@ determines all: who claims no gap has to explain what is beside impacts, too; nu
 from outside the catalogue weighs `outside` less and, together with a constant weight for what was not tried, makes up
 "none of the catalogue"; a name beside such an effect is there if without it at least twice as much is left, as that
 makes up for what is small. The weights, of `bench.diagnosis.policy`, are those under which recordings whose truth is
-known were likeliest (`python -m tests.studies.certainty`). The likelihood of the recording itself adds nothing to U and
-V: its weight beside them came out as zero.
+known were likeliest (`python -m tests.studies.certainty`).
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -34,7 +33,7 @@ from bench.diagnosis.policy import Policy, freedom
 from bench.diagnosis.search import Candidate, Searched, backward_elimination, candidates, refined, settled
 from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Coupling, Effect, Occasional
-from bench.effects.rivals import RIVALS, WAVES, Outside
+from bench.effects.rivals import GAINS, RIVALS, WAVES, Outside
 from bench.effects.signals import Scope
 from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit
@@ -46,8 +45,7 @@ from bench.fit.stored import Balance
 BESIDE_NOISE = 0.03
 #: Blocks that a holdout is judged in, and residual over noise floor above which no hypothesis explains one.
 BLOCKS, EXPLAINED = 32, 3.0
-#: Power over the best hypothesis' up to which a holdout says nothing, as strengths and shapes have errors: true names
-#: of the blind set left 1.8 there.
+#: Power over the best hypothesis' up to which a holdout decides nothing, as strengths and shapes have errors.
 UNSURE = 2.0
 #: Numbers that a scale of the torque counts for beyond its own, as it changes every other one: it comes before an
 #: unbalance, which has two, and after a friction that follows the torque, where a recording does not distinguish them.
@@ -99,6 +97,13 @@ class Probabilities:
                 found[name] = found.get(name, 0.0) + each.probability
         found |= dict.fromkeys(self.detected, DETECTED)
         return dict(sorted(found.items(), key=lambda one: (-one[1], one[0])))
+
+    def of_any(self, names: Collection[str]) -> float:
+        """Probability that the axis has one of some effects that the recording does not distinguish."""
+        if self.detected & {*names}:
+            return DETECTED
+        beside = max((self.beside.get(name, 0.0) for name in names), default=0.0)
+        return beside + sum(each.probability for each in self.sets if each.names & {*names})
 
     @property
     def nothing(self) -> float:
@@ -198,8 +203,9 @@ def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) 
     beside_waves = [term for term in last.terms if not isinstance(term.effect, Wave)]
     several = len(last.terms) - len(beside_waves) > 1
     waveless = [fit(last.rows, last.hypothesis.with_terms(beside_waves))] if several else []
-    for beside in filter(policy.remains, (last, *less, *waveless)):
-        for rival in _promising(beside, candidates(beside, rivals)[:1], policy):
+    for beside in (last, *less, *waveless):
+        outside = rivals if policy.remains(beside) else GAINS if beside.depends else ()
+        for rival in _promising(beside, candidates(beside, outside)[:1], policy):
             yield from (rival, backward_elimination(rival, policy))
 
 
@@ -256,6 +262,10 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
     white[outside] = np.minimum(white[outside], white[~outside].max())  # its inertia may be any, and noise with that
     nearest = physical[int(np.argmin(power / white))]
     floor = white * (nearest.floor / nearest.noise.white) ** 2
+    if tried[0].depends is not None:  # noise is no more than what explains the dependence leaves
+        floor = np.minimum(floor, power.min())
+    elif len(physical) == 1 and not policy.remains(tried[0]):  # noise, whose level is known no better
+        floor = np.maximum(floor, claimed)
     beyond = _on_holdout(physical, holdout, floor) if holdout is not None else 0.0
     excess, claimed = (np.maximum(of - floor, 0.0) + beyond for of in (power, claimed))
     left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: what damps it leaves no less for that

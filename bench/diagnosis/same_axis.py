@@ -26,8 +26,7 @@ from bench.parameter import Parameter
 #: Factors by which J, K_w and K_0 of one axis may differ between recordings without a warning.
 REPORTED = (1.01, 1.3, 1.1)
 #: Factors beyond which it is another axis. From day to day inertia varies with the torque constant, by a few percent
-#: between cold and warm magnets, dry and viscous friction with the temperature of the lubricant. On the shared cases J
-#: of two recordings of an axis agrees within 0.6 %, K_0 within 15 %; of two axes only one pair in 39 within 2 %.
+#: between cold and warm magnets, dry and viscous friction with the temperature of the lubricant.
 FOREIGN = (1.03, 3.0, 1.5)
 #: Standard errors in addition to these factors.
 SURE = 3.0

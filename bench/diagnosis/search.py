@@ -89,8 +89,7 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
         if policy.leaves_room(found.last, effect):
             found = replacement(found, effect, effects, policy) or found
     if policy.remains(found.last) and found.stopped is None:
-        # Of seven small effects at once the last four took 11 to 18 % each, and all of it together. Where they do not
-        # end it, as on real axes, each may be anything.
+        # many small effects take little each and nearly all together; where they do not, each may be anything
         further = selected(found, effects, policy.patient)
         found = further if further.last.excess < policy.nearly_all * found.last.excess else found
     return found
@@ -111,8 +110,7 @@ def selected(found: Searched, effects: Sequence[Effect], policy: Policy) -> Sear
 def from_rivals(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
     """The search, or that from what was nearly as good as its first name, if that leaves less.
 
-    Names that came later bend their shapes to a wrong first one: an inertia over position took .988 of what an
-    eccentric encoder left, which takes .989 itself, and needed a ripple of torque beside it (blind set, pair 36).
+    Later names adapt their shapes to a wrong first one.
     """
     if len(set(found.last.hypothesis.names)) <= policy.undoubted:
         return found
@@ -174,10 +172,7 @@ def refined(current: Fit, term: Term) -> Fit:
 
 
 def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit:
-    """With an earlier name in the form that no recording tells from it, where beside the last only that is physical.
-
-    Friction that differs by direction was taken up beside too much friction: beside a backlash the same is an offset.
-    """
+    """With an earlier name in a form that no recording distinguishes, where only that is physical with the last one."""
     if policy.physical(fitted):
         return fitted
     for index, term in enumerate(fitted.terms[:-1]):
@@ -254,8 +249,7 @@ def _repeats_a_step(fitted: Fit, steps: Sequence[Step], policy: Policy) -> bool:
 def instead_of_each(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> list[Fit]:
     """The hypothesis with each of its earlier names exchanged for what saves nearly as much in its place.
 
-    What was nearest when nothing stood beside it need not be so among the others (sequential replacement: A. J. Miller,
-    Journal of the Royal Statistical Society A 147, 1984, 389-425).
+    Sequential replacement: A. J. Miller, Journal of the Royal Statistical Society A 147, 1984, 389-425.
     """
     instead = []
     for index, term in enumerate(fitted.terms[:-1]):

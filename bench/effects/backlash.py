@@ -64,9 +64,8 @@ SCALE, REWEIGHTED = 3.0, 6
 TOGETHER = 4_000_000
 #: Factors e**x around a shape that are compared for its spread: of gap, frequency and damping.
 AROUND = (np.linspace(-0.12, 0.12, 7), np.linspace(-0.6, 0.6, 5), np.linspace(-0.5, 0.5, 3))
-#: Gap over what the contact yields to the peak torque - 1 -, below which it is a damped spring. Gaps of drawn and
-#: injected axes came to .04 and more (`tests.studies.blind --only backlash` and `tests.studies.injected --effect
-#: backlash`, seed 1001); what damps a motor without a load, taken for one, to .002 (`laas_anticogging/acc_current`).
+#: Gap over what the contact yields to the peak torque - 1 -, below which it is a damped spring: real gaps are .04 and
+#: more, what damps a motor without a load is .002.
 OF_YIELDING = 0.005
 #: Length of what is drawn: longer than a load rings after an impact - s.
 STRETCH = 0.2

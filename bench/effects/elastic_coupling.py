@@ -32,9 +32,8 @@ from bench.units import Quantity
 #: Antiresonances - rad/s - and damping ratios that a search tries first.
 ANTIRESONANCES = tuple(2.0 * np.pi * float(f) for f in np.geomspace(8.0, 110.0, 28))
 DAMPINGS = (0.01, 0.04, 0.12)
-#: Damping ratio from which a coupling no longer rings, so that nothing tells it from a lag, and the one from which its
-#: quality 1/(2*D) is below one, so that hardly anything does; those of the blind set have 0.04 at most. On the way to
-#: another coupling a search may pass the latter.
+#: Damping ratio from which a coupling no longer rings, so that nothing distinguishes it from a lag, and the one from
+#: which its quality 1/(2*D) is below one, which a search may pass but not end with.
 OVERDAMPED, DULL = 1.0, 0.5
 #: Turns in which the load's motion and what acts on it are brought in line, the change that ends them and the one that
 #: no load beyond belief would make - shares of the twist under the load's own inertia.

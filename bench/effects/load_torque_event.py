@@ -37,8 +37,7 @@ ALIKE = 1.0 - 1e-9
 RESOLVED = 2.355
 #: Lengths of short events that are tried: from so many widths of the filter to a time - s -, each by a factor longer.
 SHORT, LONG, LONGER = 10.0, 0.15, 1.1
-#: What an event takes over what any other stretch does from which on it stands out. In 98 fits of the blind set, its
-#: effects withheld, that leave a remainder and hold no event it is 5.3 at most; of pushes beside such, 100 to 300.
+#: What an event takes over what any other stretch does from which on it stands out: 5.3 at most without an event.
 STANDS_OUT = 9.0
 #: Short events at most: more are no occasions.
 FEW = 4

@@ -123,6 +123,20 @@ class FrictionalMemory(Outside):
         return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
 
 
+class VaryingGain(Outside, CopiesTorque):
+    """A torque per ampere that changes with current or speed, M*(1 + c*M**2 + d*omega**2), in either direction."""
+
+    name = "outside_gain"
+    summary = "a torque per ampere that changes with current or speed"
+    quantities = ()
+
+    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
+        """The torque, times the squares of itself and of speed as shares of a peak."""
+        fastest = np.max(np.abs(signals.velocity), initial=1e-300)
+        squares = (signals.torque / signals.peak_effort) ** 2, (signals.velocity / fastest) ** 2
+        return [[(signals.torque * square, 0)] for square in squares]
+
+
 class OtherWave(Outside, CopiesTorque):
     """A wave of position of one number, times what a torque may hang on: one of FACTORS, or all of them.
 
@@ -156,6 +170,8 @@ def _lowpass(values: Array, keep: float) -> Array:
     return recursive_filter([1.0 - keep], [1.0, -keep], values)
 
 
+#: Where a residual as small as noise depends on torque or speed, and where more than noise remains.
+GAINS: tuple[Effect, ...] = (VaryingGain(),)
 RIVALS: tuple[Effect, ...] = (Vibration(), Notch(), Smooth(), SlowMemory(), FrictionalMemory())
 #: Waves of another form: of any first, then of one each.
 WAVES = (OtherWave(tuple(FACTORS)), *(OtherWave((name,)) for name in FACTORS))

@@ -26,8 +26,8 @@ from bench.trace.trace import Trace
 #: sample period where what is recorded as speed is the difference of the recorded positions.
 LEAST_SHARE = 0.6
 #: Distance from the lag of a mean over the sample, of whose ticks the middle is late by (sample period - tick)/2, below
-#: which a lag is that of a recorder that averages, beside its error - share of the sample period: of means over 1 and
-#: 4 ms 0.001 at most, of lags of the blind set 0.02 at least (nuisance set, `averaged`).
+#: which a lag is that of a recorder that averages, beside its error - share of the sample period: 0.001 at most of
+#: means, 0.02 at least of lags.
 AVERAGED = 0.005
 #: Share of the noise of differences of position that they leave of a speed which is made of them.
 OF_POSITION = 0.5

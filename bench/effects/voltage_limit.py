@@ -28,9 +28,8 @@ BEHIND = 0.02
 #: Share of the top within which the voltage counts as standing at it, which an eccentric encoder modulates; share of
 #: the samples behind that do, and samples.
 TOP, STANDING, SAMPLES = 0.045, 0.5, 20
-#: Samples above the top that are not behind, over those behind: what reaches more and keeps up has voltage left. Of the
-#: blind sets of seeds 1, 31 and 41 0.10 at most where the voltage ends, else 0.18 at least; without it four of seed 1
-#: are said to run out of voltage that do not (`python -m tests.studies.blind.margins`).
+#: Samples above the top that are not behind, over those behind: 0.10 at most where the voltage ends, else 0.18 at least
+#: (`python -m tests.studies.blind.margins`).
 BEYOND = 0.13
 #: Share of the top speed below which an axis rests.
 RESTING = 0.02

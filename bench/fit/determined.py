@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, OFFSET, VISCOUS, AxisKind
 from bench.errors import UndeterminedError
+from bench.fit.dependence import Dependence
 from bench.fit.estimate import Estimate, RefusedEstimateError
 from bench.fit.solution import INDEPENDENT_SHARE, NOISE_ALONE, NormalEquations
 from bench.names import words
@@ -155,11 +156,14 @@ def _share(estimate: Estimate, kind: AxisKind) -> str:
     return f"inertia and friction explain {estimate.explained:.0%} of the {kind.effort}'s variance"
 
 
-def remainder(estimate: Estimate, kind: AxisKind, hint: str) -> tuple[str, ...]:
-    """How much is explained, and how large the residual is, where that is more than noise; `hint`: what explains it."""
+def remainder(estimate: Estimate, kind: AxisKind, hint: str, depends: Dependence | None) -> tuple[str, ...]:
+    """How much is explained, and how large the residual is, where that is more than noise; `hint`: what explains it.
+
+    Where it is as small as noise: on what it depends.
+    """
     residual = estimate.residual
     if not residual.rms > NOISE_ALONE * residual.noise_floor:
-        return ()
+        return () if depends is None else (f"{depends}. The intervals include its influence",)
     times = f"the residual is {residual.rms / residual.noise_floor:.3g} times the sensor noise"
     return _share(estimate, kind), f"{times}, {hint}" if hint else times
 

@@ -34,12 +34,14 @@ class Residual:
         noise_floor: expected RMS from sensor noise alone - unit; nan if the estimator has none.
         relative: norm of the residual over the norm of the effort.
         unit: of the effort.
+        depends_on: what it depends on where its RMS is that of noise; None if it is noise, or more than noise.
     """
 
     rms: float
     noise_floor: float
     relative: float
     unit: str
+    depends_on: str | None = None
 
 
 @dataclass(frozen=True)

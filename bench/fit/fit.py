@@ -29,6 +29,7 @@ from bench.effects.effect import (
     Proposal,
 )
 from bench.effects.signals import Base, Scope, Signals
+from bench.fit.dependence import Dependence, dependence
 from bench.fit.hypothesis import (
     Hypothesis,
     Layout,
@@ -41,7 +42,7 @@ from bench.fit.hypothesis import (
     updated,
 )
 from bench.fit.rows import Rows
-from bench.fit.solution import Floor, bounded, solved
+from bench.fit.solution import NOISE_ALONE, Floor, bounded, solved
 from bench.names import words
 from bench.trace.filter import Column
 
@@ -127,6 +128,13 @@ class Fit:
     def chi(self) -> float:
         """RMS residual over noise floor: 1 where the model explains all but noise."""
         return self.rms / self.floor
+
+    @cached_property
+    def depends(self) -> Dependence | None:
+        """On what a residual depends whose RMS is that of noise; None where it is noise, or more than noise."""
+        if self.chi > NOISE_ALONE or not self.determined.all():
+            return None
+        return dependence(self.rows, self.layout, self.theta)
 
     @property
     def excess(self) -> float:

@@ -27,12 +27,13 @@ from itertools import combinations
 
 import numpy as np
 
-from bench.arrays import NORMAL95, Array
+from bench.arrays import NORMAL95, Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.effects.present import parse_value
 from bench.errors import InputError, UndeterminedError
 from bench.fit.cutoffs import TELLS, TERMS, Chosen, Cutoffs
+from bench.fit.dependence import Dependence, dependence
 from bench.fit.determined import remainder, require_inertia, sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
 from bench.fit.fit import by_hint
@@ -40,6 +41,7 @@ from bench.fit.hum import mains
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
 from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
+    NOISE_ALONE,
     NormalEquations,
     Solution,
     equations_of,
@@ -108,6 +110,7 @@ class Gathered:
         samples_read: of all parts.
         measured: sum of the squares of the measured effort over all rows - its unit squared -, and its sum.
         doubt: possible bias of J, K_w and K_0, as they move with the filter's cut-off.
+        depends: on what the residual depends where its RMS is that of noise; None if on nothing.
         hint: what the effect that the recording hints at would explain of the residual; empty without one.
         hinted: by how much that effect would move J, K_w and K_0.
         tolerance: half widths of coefficients from the rig's tolerances.
@@ -120,6 +123,7 @@ class Gathered:
     samples_read: int
     measured: tuple[float, float]
     doubt: Mapping[str, float]
+    depends: Dependence | None
     hint: str
     hinted: Mapping[str, float]
     tolerance: Mapping[Name, float]
@@ -154,12 +158,16 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
         equations = join([found.whole, *(each for each, _, _ in others)])
         offset = rig.offset and equations.one_way is None
         whole = solve(found.rows, found.hypothesis, found.laid, equations, offset)
+    depends = None
+    if rms(found.residual) <= NOISE_ALONE * found.floor.coloured:
+        depends = dependence(found.rows, found.laid, found.theta, OFFSET in found.names)
     return Gathered(
         solution=whole,
         effort_unit=rig.net_effort(first)[1],
         samples_read=len(first) + sum(read for _, read, _ in others),
         measured=_measured(whole.whole, None if others else found.rows),
         doubt=dict(zip(TERMS, chosen.doubt.tolist(), strict=True)),
+        depends=depends,
         hint=told,
         hinted=hinted,
         tolerance=_by_tolerance(first, rig, found),
@@ -229,9 +237,12 @@ def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
     for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
         margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
         parameter = _parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
-        parameters[kind.parameter(term)] = parameter.reaching(parameter.value + gathered.hinted.get(term, 0.0))
+        depends = gathered.depends
+        for moved in (gathered.hinted, {} if depends is None else depends.moved):
+            parameter = parameter.reaching(parameter.value + moved.get(term, 0.0))
+        parameters[kind.parameter(term)] = parameter
     estimate = _estimate_of([gathered], [found], parameters, found.power, rig)
-    remaining = remainder(estimate, kind, gathered.hint)
+    remaining = remainder(estimate, kind, gathered.hint, gathered.depends)
     told = [f"{'; '.join(remaining)}; {TELLS}"] if remaining else []
     estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *told))
     return sound(estimate, gathered.solution.whole, rig, (*gathered.warnings, *remaining))
@@ -260,10 +271,12 @@ def _estimate_of(
     count = int(counts.sum())
     floor = math.sqrt(float(counts @ np.square([found.floor.coloured for found in solutions])) / count)
     filters = [one.solution.rows.conditioning.filter for one in gathered]
+    size, relative, unit = math.sqrt(left / count), math.sqrt(left / squares), gathered[0].effort_unit
+    on = next((one.depends.on for one in gathered if one.depends is not None), None)
     return Estimate(
         estimator="regression",
         parameters={**parameters, **load_inertia(parameters, rig)},
-        residual=Residual(math.sqrt(left / count), floor, math.sqrt(left / squares), gathered[0].effort_unit),
+        residual=Residual(size, floor, relative, unit, on),
         samples_read=sum(one.samples_read for one in gathered),
         samples_used=int(counts @ [smooth.stride for smooth in filters]),
         cutoff=min(smooth.cutoff for smooth in filters),

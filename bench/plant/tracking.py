@@ -44,7 +44,7 @@ FREE = 1e-9
 #: Longest step of the integration - s.
 LONGEST_STEP = 0.5e-3
 #: Longest step beside a contact, times its damping rate or its frequency: explicit steps overshoot from 1 on, and
-#: diverge from 2. A true contact of 1900 rad/s, found with 5.6 times its damping, diverged (blind set, single 201).
+#: diverge from 2.
 CONTACT_STEP = 0.5
 
 

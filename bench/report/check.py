@@ -69,7 +69,7 @@ def _(one: Comparison) -> dict[str, Any]:
         **picked(one, "name", "unit", "baseline", "now", "difference95"),
         "std_error": None if one.difference is None else one.difference.std_error,
         **picked(one, "margin", "chance", "result"),
-        "because": one.held_back or None,
+        "because": one.reason or None,
     }
 
 
@@ -85,7 +85,7 @@ def _effect(effect: NamedHere, one: Comparison) -> dict[str, Any]:
         "parameters": parameters,
         "ambiguous_with": effect.ambiguous_with,
         "result": one.result,
-        "because": one.held_back or None,
+        "because": one.reason or None,
         "evidence": {"torque": torque, "chance": one.chance, "gain": known(effect.gain)},
     }
 
@@ -138,15 +138,10 @@ def described(one: Comparison, checked: Checked, brief: bool = False) -> str:
 
 def _why(one: Comparison) -> str:
     """Why a comparison is undecided, or how certain it is that an effect appeared."""
-    if one.held_back:
-        return f", but {one.held_back}"
-    if one.effect == "appeared" and one.differences:
+    if one.effect == "appeared" and one.differences and not one.held_back:
         seen = "would have shown" if one.result == CHANGED else "may have hidden"
         return f" ({shown(one.now or 0.0, one.unit)} RMS, where the baseline {seen} {shown(one.margin, one.unit)})"
-    if one.result == UNDECIDED and one.difference95 is not None:
-        low, high = one.difference95
-        return f", known to ± {shown(0.5 * (high - low), one.unit)} against a margin of {shown(one.margin, one.unit)}"
-    return ""
+    return f", but {one.reason}" if one.reason else ""
 
 
 def _values(effect: NamedHere) -> str:
@@ -191,10 +186,7 @@ def _answers(checked: Checked) -> dict[str, str]:
     else:
         kept = ", ".join(words(effect.label) for effect in checked.now.effects)
         came = f"No effect; {kept} as in the baseline." if kept else "No effect: none is named in either state."
-    sure = (
-        f"Of axes that differ by no margin at most {share(checked.false_alarm_rate)} are called changed, all "
-        f"{checked.family} comparisons together."
-    )
+    sure = f"False-alarm rate: at most {share(checked.false_alarm_rate)} over all {checked.family} comparisons."
     count = ", ".join(f"{results.count(result)} {result}" for result in TONES if result in results)
     held_up = "rig" if checked.rig else "conditions" if checked.conditions else UNDECIDED
     return {
@@ -225,9 +217,9 @@ def _compared(checked: Checked) -> Iterator[doc.AnyPart]:
             limits=(-reach, reach),
             spans=tuple(spans),
         )
-    because = any(one.held_back for one in checked.comparisons)
+    because = any(one.reason for one in checked.comparisons)
     headings = ("quantity", "baseline>", "now>", "difference (95 %)>", "margin>", "unit", "result")
-    rows = ((*_cells(one), *([one.held_back] if because else [])) for one in checked.comparisons)
+    rows = ((*_cells(one), *([one.reason] if because else [])) for one in checked.comparisons)
     marked = (k for k, one in enumerate(checked.comparisons) if one.result == CHANGED)
     yield doc.table("Worst first", (*headings, *(["because~"] if because else [])), rows, marked)
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from bench.axis_kind import ARMATURE, KINDS, AxisKind
-from bench.diagnosis.add import NULL
 from bench.diagnosis.diagnosis import PACKED, Course, Diagnosis, Gap, Shrunk
+from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.where import Where
@@ -56,7 +56,7 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
             "name": each.name,
             "kind": "measurement" if isinstance(each.effect, Sensing) else "physics",
             **picked(each, "parameters", "ambiguous_with", "evidence"),
-            "probability": likely.names[each.name],
+            "probability": likely.of_any((each.name, *each.ambiguous_with)),
             "alternatives": [{"name": one, "probability": p} for one, p in likely.instead_of(each.name).items()],
         }
         for each in found.effects
@@ -105,7 +105,9 @@ def _before_after(result: object, *names: str) -> dict[str, Any]:
 
 @as_json.register
 def _(gap: Gap) -> dict[str, Any]:
-    content = picked(gap, "unit", "noise_floor") | _before_after(gap, "identify", "holdout")
+    content = (
+        picked(gap, "unit", "noise_floor") | {"limit": known(gap.limit)} | _before_after(gap, "identify", "holdout")
+    )
     return content if gap.judged is None else content | {"judged": {"share": gap.judged[0], "after": gap.judged[1]}}
 
 
@@ -217,18 +219,24 @@ def verdict_sentence(found: Diagnosis) -> str:
     gap, unit, effort = found.torque, unit_text(found.torque.unit), effort_word(found.torque.unit)
     before, after = gap.identify or (math.nan, math.nan)
     if not found.effects:
-        left = f"{number(after, digits=3)} {unit} of the {effort}"
-        noise = f"the noise floor is {number(gap.noise_floor, digits=3)} {unit}"
+        residual = f"the {effort} residual is {number(after, digits=3)} {unit}"
+        noise = f"the noise floor {number(gap.noise_floor, digits=3)} {unit}"
         if found.verdict == "nothing_missing":
-            return f"Nothing is missing: inertia and friction leave {left}, {noise}."
-        return f"Something is missing that no effect of the catalogue explains: {left} are left, {noise}."
+            return f"No missing effect found: {residual}, {noise}."
+        return f"An unknown effect is likely: {found.because[0]} ({residual}, {noise})."
     were, them = ("were", "them") if len(found.effects) > 1 else ("was", "it")
-    names = sentence(listed(dict.fromkeys(words(effect.name) for effect in found.effects)))
+    names = sentence(listed(dict.fromkeys(map(called, found.effects))))
     where = "wrong in the measurement" if len(_sensors(found)) == len(found.effects) else "missing"
-    gone = f"{names} {were} {where}; with {them} {share(1.0 - after / before)} of the {effort} gap is gone"
+    gone = f"{names} {were} {where}; adding {them} removes {share(1.0 - after / before)} of the {effort} gap"
     if found.verdict == "explained":
-        return f"{gone}, and what is left is noise."
+        times = f", but the simulated speed differs by {number(found.velocity.times_noise, digits=2)} × the noise"
+        return f"{gone}, and the {effort} residual is noise{'' if found.velocity.within else times}."
     return f"{gone}, but {words(found.because[0])}."
+
+
+def called(effect: NamedEffect) -> str:
+    """Its name in words, with those of the effects that the recording does not distinguish from it."""
+    return " or ".join(map(words, (effect.name, *effect.ambiguous_with)))
 
 
 def _sensors(found: Diagnosis) -> list[str]:
@@ -237,10 +245,10 @@ def _sensors(found: Diagnosis) -> list[str]:
 
 def _answers(found: Diagnosis) -> dict[str, str]:
     of_axis, missing = _kind(found).inertia, []
-    for effect in found.effects:  # a phase says nothing to a reader
+    for effect in found.effects:  # the zero of a phase is arbitrary
         angles = {quantity.name for quantity in effect.effect.quantities if quantity.angle}
         values = [f"{words(name)} {brief(one)}" for name, one in effect.parameters.items() if name not in angles]
-        missing.append(words(effect.name) + (f" ({', '.join(values)})" if values else ""))
+        missing.append(called(effect) + (f" ({', '.join(values)})" if values else ""))
     inertia = ARMATURE if ARMATURE in found.parameters else of_axis
     value = found.parameters.get(inertia)
     return {
@@ -249,46 +257,53 @@ def _answers(found: Diagnosis) -> dict[str, str]:
         "Does it move like the axis now?": _moves(found),
         f"{sentence(words(inertia))}?": f"{brief(value)} (95 %)"
         if value
-        else f"Not determined beside what is missing: {found.refused[of_axis]}",
-        "What next?": following(found) or "Nothing is left open that another motion would tell.",
+        else f"Not determined together with the missing effects: {found.refused[of_axis]}",
+        "What next?": following(found) or "No further recording is needed.",
     }
 
 
 def _sure(found: Diagnosis) -> str:
-    """What bears the verdict out, and what speaks against it."""
+    """What confirms the verdict, and what speaks against it."""
     gap, lines, effort = found.torque, [likely_names(found)], effort_word(found.torque.unit)
     if found.because[1:]:
-        lines.append(f"Against it, too: {'; '.join(map(words, found.because[1:]))}.")
+        lines.append(f"Also against it: {'; '.join(map(words, found.because[1:]))}.")
     if gap.holdout is not None:
         before, after = gap.holdout
-        goes = f"goes from {number(before, digits=3)} to" if found.effects else "is"
+        changes = f"falls from {number(before, digits=3)} to" if after < before else "is"
         lines.append(
-            f"On the recording that was not fitted the {effort} gap {goes} {number(after, gap.unit, 3)}, where noise "
-            f"alone leaves {number(gap.noise_floor, digits=3)}."
+            f"On the holdout, which the fit did not use, the {effort} gap {changes} {number(after, gap.unit, 3)}; the "
+            f"noise floor is {number(gap.noise_floor, digits=3)}."
         )
     elif found.effects:
-        lines.append("A third of the recording, kept from the fit, bears it out; no holdout was given.")
+        lines.append(
+            "Confirmed on a third of the recording that the fit did not use. Give a second recording with --holdout "
+            "for a stronger test."
+        )
     if found.holdout.same is False:
-        lines.append("The holdout is of another axis, or of this one changed.")
+        lines.append("The holdout is of another axis, or this axis has changed.")
     lines += [
-        f"{sentence(words(effect.name))} and {' or '.join(map(words, effect.ambiguous_with))} look alike here."
+        f"This recording does not distinguish {called(effect).replace(' or ', ' from ', 1)}."
         for effect in found.effects
         if effect.ambiguous_with
     ]
-    if len(lines) == 1:
-        chi = math.nan if gap.identify is None else gap.identify[1] / gap.noise_floor
-        lines.append(f"What is left of the {effort} is {number(chi, digits=3)} times what noise alone leaves.")
+    if len(lines) == 1 and gap.identify is not None:
+        chi = number(gap.identify[1] / gap.noise_floor, digits=3)
+        lines.append(f"The {effort} residual is {chi} × the noise floor.")
     return " ".join(lines)
 
 
 def likely_names(found: Diagnosis) -> str:
-    """How likely each name is and what it may be instead: `Cogging torque 99 % (or load torque event 0.6 %).`"""
+    """How likely each name is and what it may be instead: `Cogging torque: 99 % (or load torque event: 0.6 %).`"""
     likely, parts = found.probabilities, []
-    for name in dict.fromkeys(effect.name for effect in found.effects):
-        others = {other: share for other, share in likely.instead_of(name).items() if other is not None}
-        parts.append(f"{_chances({name: likely.names[name]})}{f' (or {_chances(others)})' if _chances(others) else ''}")
-    beside = {} if found.effects else likely.names | {"nothing": likely.nothing}
-    none = "something beside it that none of the catalogue is" if likely.detected else "none of the catalogue"
+    for effect in {effect.name: effect for effect in found.effects}.values():
+        alike = effect.name, *effect.ambiguous_with
+        others = {
+            other: share for other, share in likely.instead_of(effect.name).items() if other not in (None, *alike)
+        }
+        instead = f" (or {_chances(others)})" if _chances(others) else ""
+        parts.append(f"{_chances({called(effect): likely.of_any(alike)})}{instead}")
+    beside = {} if found.effects else likely.names | {"no missing effect": likely.nothing}
+    none = "an unknown effect in addition" if likely.detected else "an unknown effect"
     parts.append(_chances({**beside, none: likely.none}))
     return f"{sentence(', '.join(filter(None, parts)))}."
 
@@ -296,22 +311,20 @@ def likely_names(found: Diagnosis) -> str:
 def _chances(shares: Mapping[str, float]) -> str:
     """The likeliest few of several names, with their probabilities."""
     ranked = sorted(shares.items(), key=lambda one: -one[1])
-    return ", ".join(f"{words(name)} {chance(share)}" for name, share in ranked[:MOST_SHOWN] if share > LEAST_SHOWN)
+    return ", ".join(f"{words(name)}: {chance(share)}" for name, share in ranked[:MOST_SHOWN] if share > LEAST_SHOWN)
 
 
 def _moves(found: Diagnosis) -> str:
     """Whether the simulation moves as the axis does: wholly only where nothing speaks against the model."""
     gap = found.velocity
-    pair = gap.holdout or gap.identify
-    if pair is None:
-        return "Not known: MuJoCo cannot have the model, or it diverged."
-    times = pair[1] / gap.noise_floor
-    like = "Not wholly" if times > NULL else "Nearly" if found.because else "Yes"
-    before = f" ({number(pair[0], digits=3)} before)" if found.effects else ""
-    where = "on the recording that was not fitted" if gap.holdout else "on the recording"
+    if gap.final is None:
+        return "Not known: MuJoCo cannot simulate the model, or the simulation diverged."
+    like = "Nearly" if found.because else "Yes"
+    before = f" ({number(gap.final[0], digits=3)} before)" if found.effects else ""
+    where = " on the holdout" if gap.holdout else ""
     return (
-        f"{like}: simulated speed is off by {number(pair[1], gap.unit, 3)} RMS {where}{before}, "
-        f"{number(times, digits=2)} times the sensor's noise; up to {NULL:g} times is as good as a model gets."
+        f"{like if gap.within else 'No'}: the simulated speed{where} differs by {number(gap.final[1], gap.unit, 3)} "
+        f"RMS{before}; a match is below {number(gap.limit, gap.unit, 2)}."
     )
 
 
@@ -321,7 +334,7 @@ def following(found: Diagnosis) -> str:
     if experiment is not None:
         return (
             f"Record {words(experiment.profile)} up to {number(experiment.speed, found.velocity.unit, 3)}, "
-            f"{experiment.repetitions} times: it tells {' from '.join(map(words, experiment.tells_apart))} "
+            f"{experiment.repetitions} times: it distinguishes {' from '.join(map(words, experiment.tells_apart))} "
             f"({number(experiment.separation, digits=2)} times the noise); {experiment.reason}."
         )
     return " ".join(remainder(found))
@@ -355,7 +368,7 @@ def _over_time(found: Diagnosis, course: Course) -> doc.TimeGraph:
         Plotted(effort, found.torque.unit, course.time[course.rows], course.torque, torque_left, "modelled"),
     ]
     alternative = (
-        f"Speed and {effort} of {Path(course.origin).name} as measured and as the model has them. RMS of what is left "
+        f"Speed and {effort} of {Path(course.origin).name}, measured and modelled. RMS residuals "
         f"with inertia and friction alone, then with all that was found: speed "
         f"{number(first.velocity[place], digits=3)}, {number(last.velocity[place], found.velocity.unit, 3)}; {effort} "
         f"{number(first.torque[place], digits=3)}, {number(last.torque[place], found.torque.unit, 3)}. "
@@ -408,21 +421,21 @@ def _suspects(found: Diagnosis) -> doc.Section:
         )
         for one in found.considered
     )
-    caption = "Every effect of the catalogue: the share it would explain, and why it was taken or was not"
-    headings = ("effect", "taken", "probability>", "of the gap, alone>", "of what is left, beside the others>", "why~")
+    caption = "Every effect of the catalogue: the share that it explains, and why it was or was not added"
+    headings = ("effect", "added", "probability>", "of the gap, alone>", "of the residual, with the others>", "why~")
     marked = (k for k, one in enumerate(found.considered) if one.taken)
     return doc.section("suspects", "Suspects", doc.table(caption, headings, rows, marked), detail=True)
 
 
 def _next(found: Diagnosis) -> doc.Section:
     """What to record next, and what is unexplained."""
-    text = following(found) or "Nothing is left open that another motion of this rig would tell."
+    text = following(found) or "No further recording is needed."
     blocks: list[doc.Paragraph | doc.Points] = [doc.Paragraph(text=text)]
     if found.because:
-        blocks += [doc.Paragraph(text="What speaks against this being all:"), doc.points(map(words, found.because))]
+        blocks += [doc.Paragraph(text="Evidence of a further effect:"), doc.points(map(words, found.because))]
     if found.unexplained_where:
         left = (
-            f"{share(one.share)} of what is left hangs on {coordinate_word(one.coordinate, one.unit)}, most of it "
+            f"{share(one.share)} of the residual depends on {coordinate_word(one.coordinate, one.unit)}, most of it "
             f"between {number(one.region[0])} and {number(one.region[1], one.unit)}"
             for one in found.unexplained_where
         )

@@ -34,7 +34,7 @@ def at_a_glance(found: Diagnosis) -> tuple[doc.Chart, ...]:
     """The axis and what models make of it over a stretch that shows the gap, and the gap with what was found in it."""
     over, most = gap_chart(found, [found.profiles[0].coordinate]), found.profiles[0]
     panels = tuple(panel.model_copy(update={"note": ""}) for panel in over.panels)
-    title = f"{share(most.share)} of the gap hangs on {panels[0].x_label}."
+    title = f"{share(most.share)} of the gap depends on {panels[0].x_label}."
     over = over.model_copy(update={"title": title, "alternative": "", "panels": panels})
     return tuple(filter(None, (_stretch_chart(found), over)))
 
@@ -112,7 +112,7 @@ def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
     return doc.Chart(
         title="The gap, and what was found in it.",
         alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate. "
-        f"Most of it hangs on {most.coordinate}, {share(most.share)} of its variance.",
+        f"Most of it depends on {most.coordinate}, {share(most.share)} of its variance.",
         y_label="gap",
         y_unit=unit_text(found.torque.unit),
         panels=tuple(panels),
@@ -196,11 +196,15 @@ def remainder(found: Diagnosis) -> Iterator[str]:
     if not found.unexplained_where:
         return
     shapes = [f"{shape(one)} ({share(one.share)} of it)" for one in found.unexplained_where]
-    yield f"What is left: {'; '.join(shapes)}."
+    yield f"Remaining residual: {'; '.join(shapes)}."
     parts = [(one.beside if found.effects else one.alone, one) for one in found.considered if not one.taken]
     near = sorted(((part, one) for part, one in parts if part), key=lambda pair: -pair[0])[:NEAREST]
     nearest = [f"{words(one.effect.name)}, {share(part)} of it, but {one.reason}" for part, one in near]
-    yield f"Nearest of the catalogue: {'; '.join(nearest)}." if nearest else "No effect of the catalogue comes near it."
+    yield (
+        f"Closest effects of the catalogue: {'; '.join(nearest)}."
+        if nearest
+        else "No effect of the catalogue explains much of it."
+    )
     record, command = DECIDES.get(found.unexplained_where[0].coordinate, OTHERWISE)
     yield f"To decide, record {record}: bench {command} --rig RIG."
 

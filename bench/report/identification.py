@@ -63,7 +63,7 @@ def identification_json(
         "residual": {
             "rms": residual.rms,
             "noise_floor": known(residual.noise_floor),
-            **picked(residual, "unit", "relative"),
+            **picked(residual, "unit", "relative", "depends_on"),
         },
         "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
         "filter": {"cutoff": known(estimate.cutoff), "unit": "Hz", "source": estimate.source},
@@ -151,7 +151,7 @@ def identification(
         title=title,
         subject=f"Identification of {title}",
         verdict=_verdict(estimate, kind),
-        tone="open" if _times_noise(estimate) > NOISE_ALONE else "sure",
+        tone="sure" if _noise(estimate) else "open",
         answers=_answers(estimate, refinement, kind),
         sections=tuple(sections),
         origin=origin(provenance),
@@ -175,6 +175,11 @@ def _times_noise(estimate: Estimate) -> float:
     return estimate.residual.rms / estimate.residual.noise_floor
 
 
+def _noise(estimate: Estimate) -> bool:
+    """Whether nothing shows that the residual is more than noise."""
+    return estimate.residual.depends_on is None and not _times_noise(estimate) > NOISE_ALONE
+
+
 def _verdict(estimate: Estimate, kind: AxisKind) -> str:
     effort, chi = effort_word(estimate.residual.unit), _times_noise(estimate)
     line = f"The {kind.in_words(INERTIA)} is {interval(estimate[kind.parameter(INERTIA)])}"
@@ -184,8 +189,10 @@ def _verdict(estimate: Estimate, kind: AxisKind) -> str:
     if not math.isfinite(chi):
         return f"{line}."
     if chi > NOISE_ALONE:
-        return f"{line}, but what is left is {number(chi, digits=2)} times the noise."
-    return f"{line}, and what is left is noise."
+        return f"{line}, but the residual is {number(chi, digits=2)} times the noise."
+    if estimate.residual.depends_on is not None:
+        return f"{line}, but the residual depends on the {estimate.residual.depends_on}."
+    return f"{line}, and the residual is noise."
 
 
 def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) -> dict[str, str]:
@@ -201,7 +208,7 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
     of = f"{share(residual.relative)} of the {effort_word(residual.unit)}"
     left = f"{number(residual.rms, residual.unit, 3)} RMS, {of}"
     if math.isfinite(residual.noise_floor):
-        left += f"; noise alone would leave {number(residual.noise_floor, digits=3)}"
+        left += f"; the noise floor is {number(residual.noise_floor, digits=3)}"
     basis = f"{estimate.samples_used} of {estimate.samples_read} samples"
     if math.isfinite(estimate.cutoff):  # of the filter that they went through
         basis += f"; cut-off {number(estimate.cutoff, 'Hz', 3)}, speed from {estimate.source}"
@@ -215,12 +222,12 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
         f"{words(inertia).capitalize()}?": f"{interval(estimate[inertia])} (95 %)",
         "Friction?": "; ".join(friction) or "not determined",
         "How sure?": sure,
-        "What is left?": f"{left}.",
+        "Residual?": f"{left}.",
         "From what?": f"{basis}.",
         **polished,
-        "What next?": "`bench diagnose` searches for what acts in addition to inertia and friction."
-        if _times_noise(estimate) > NOISE_ALONE
-        else "Nothing stands out of the noise; a recording of other motion would confirm it.",
+        "What next?": "The residual is noise. A recording of another motion can confirm it."
+        if _noise(estimate)
+        else "`bench diagnose` searches for what acts in addition to inertia and friction.",
     }
 
 
@@ -260,7 +267,7 @@ def _rest(estimate: Estimate, motions: Sequence[Moved]) -> doc.Chart:
         band = [noise_band(dots.x, floor)] if math.isfinite(floor) else []
         panels.append(doc.Panel(x_label=name, x_unit=unit_text(of), series=(*band, dots)))
     return doc.Chart(
-        title="What is left.",
+        title="Residual.",
         alternative=f"Mean of measured less modelled {effort_word(unit)} in bins; what stands out of the noise floor "
         "has a cause beside inertia and friction.",
         y_label="left",

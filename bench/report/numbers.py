@@ -43,7 +43,7 @@ def interval(found: Parameter, unit: bool = True) -> str:
     """A parameter with half of its interval of 95 %, to the second digit of that, or the ends of one of a factor."""
     shown = unit_text(found.unit) if unit else ""
     if found.lopsided:
-        low, high = (number(float(f"{bound:.2g}")) for bound in found.ci95)
+        low, high = (number(float(f"{bound:.{found.digits}g}")) for bound in found.ci95)
         return f"{number(found.value, digits=3)}{SPACE}({low}{SPACE}to{SPACE}{high}){SPACE}{shown}".strip()
     half = found.half_width
     if not math.isfinite(half) or half <= 0.0:

@@ -42,8 +42,7 @@ STEPS = 16
 #: Steps in which what drives the axis is found, and the share of it that it is found to.
 TRIES, EXACT = 200, 1e-9
 #: Severities between which an effect of a wanted size is sought, the ratio at which the search ends, and the one by
-#: which the size may fall short where physics ends before it. The last severity is four times the strongest of the
-#: blind set: beyond it is no axis any more, as with warm-up of five times the friction.
+#: which the size may fall short where physics ends before it.
 SEVERITIES, CLOSE, SHORT = (1e-4, 3.0), 1.03, 1.1
 
 

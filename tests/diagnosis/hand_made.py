@@ -51,6 +51,7 @@ def made(
     sure = np.ones(left.size, dtype=bool) if determined is None else np.array(determined)
     fitted = Fit(rows, Hypothesis(terms), layout, theta, (), sure)  # pyright: ignore[reportArgumentType]
     fitted.__dict__["noise"] = SimpleNamespace(coloured=floor, white=floor if white is None else white)
+    fitted.__dict__["depends"] = None
     return fitted
 
 

@@ -80,7 +80,7 @@ def test_it_is_reported_in_json_on_the_terminal_and_on_the_page(lacking):
     assert "moment_of_inertia" not in content["parameters"]
     assert content["gap"]["velocity"]["identify"] is None
     shown = diagnosis(lacking, "axis")
-    assert "Not determined beside what is missing: its interval" in shown.answers["Moment of inertia?"]
+    assert "Not determined together with the missing effects: its interval" in shown.answers["Moment of inertia?"]
     (beside,) = (section for section in shown.sections if section.key == "beside")
     assert any("refused: moment of inertia, its interval" in item for item in beside.blocks[0].items)
 

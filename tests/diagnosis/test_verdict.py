@@ -10,8 +10,11 @@ from bench.diagnosis.diagnosis import (
     OBJECTIONS,
     Gap,
     Shown,
+    depends,
     diagnose,
     holdout_apart,
+    likelier,
+    moves_otherwise,
     moves_worse,
     negative_friction,
     out_of_phase,
@@ -23,12 +26,13 @@ from bench.diagnosis.diagnosis import (
 )
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.policy import Policy
+from bench.diagnosis.probability import NameSet, Probabilities
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
+from bench.fit.dependence import Dependence
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from tests.diagnosis.constructed import COULOMB, RIG, bare, moved, offset, recorded
-from tests.diagnosis.hand_made import level, made
 
 NONE = frozenset(catalogue())
 MOTION = moved(4.0)
@@ -53,6 +57,8 @@ def shown(
     withheld=False,
     in_phase=True,
     refused=None,
+    unknown=0.1,
+    on=None,
 ):
     """What a diagnosis shows, with what a test does not ask for as it is where all is well."""
     quiet = Gap("SI", 0.01, (0.1, 0.01), None)
@@ -62,7 +68,8 @@ def shown(
         velocity=velocity or quiet,
         torque=torque or quiet,
         friction={"coulomb_friction_torque": (parameter(*friction), 1.0)},
-        whole=made(level(100.0 * chi**2)),
+        whole=SimpleNamespace(chi=chi, depends=on),
+        likely=Probabilities((NameSet(frozenset(), 1.0 - unknown),), unknown),
         added=SimpleNamespace(
             recordings=SimpleNamespace(trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
             suspects=SimpleNamespace(policy=Policy(), searched=searched, withheld=withheld),
@@ -146,7 +153,7 @@ def test_the_torque_of_friction_is_that_of_its_own_column():
         extension=SimpleNamespace(fitted=fitted),
         refined=SimpleNamespace(parameters=parameters),
     )
-    friction = Shown(added, None, None).friction  # pyright: ignore[reportArgumentType]
+    friction = Shown(added, None, None, None).friction  # pyright: ignore[reportArgumentType]
     speed = rms(fitted.rows.values(lambda signals: signals.velocity))
     for name, torque in (("viscous_friction_coefficient", speed), ("coulomb_friction_torque", 1.0)):
         assert friction[name][0] is parameters[name]
@@ -164,7 +171,7 @@ def test_friction_resists():
     ("stopped", "withheld", "said"),
     [
         (None, False, ""),
-        (None, True, "an effect that was not to be tried"),
+        (None, True, "an excluded effect was found"),
         ("limit", False, "limit"),
         ("limit", True, "limit"),
     ],
@@ -173,15 +180,15 @@ def test_a_search_that_was_cut_or_kept_from_a_name_explains_nothing(stopped, wit
     assert unfinished(shown(stopped=stopped, withheld=withheld)) == said
 
 
-@pytest.mark.parametrize(("chi", "said"), [(1.11, ""), (1.13, "what is left is 1.13 times the noise")])
+@pytest.mark.parametrize(("chi", "said"), [(1.11, ""), (1.13, "the torque residual is 1.13 times the noise")])
 def test_twelve_hundredths_above_the_floor_remain(chi, said):
     assert remains(shown(chi=chi)) == said
 
 
-def test_a_holdout_at_three_times_what_is_left_here_stands_apart():
+def test_a_holdout_residual_of_three_times_that_of_the_recording_is_an_objection():
     near, far = (Gap("N*m", 0.01, (0.1, 0.008), (0.1, after)) for after in (0.029, 0.031))
     assert holdout_apart(shown(torque=near)) == ""
-    assert "stands apart" in holdout_apart(shown(torque=far))
+    assert "residual of the holdout is 0.031" in holdout_apart(shown(torque=far))
 
 
 def test_a_holdout_with_half_as_much_friction_again_is_no_proof_that_nothing_is_missing():
@@ -190,7 +197,7 @@ def test_a_holdout_with_half_as_much_friction_again_is_no_proof_that_nothing_is_
     assert (same.verdict, same.because) == ("nothing_missing", [])
     other = diagnose(recorded(MOTION), RIG, more, excluded=NONE)
     assert other.verdict == "unexplained_remainder"
-    assert any("holdout stands apart" in said for said in other.because)
+    assert any("residual of the holdout" in said for said in other.because)
 
 
 def test_friction_that_drives_is_reported():
@@ -199,8 +206,22 @@ def test_friction_that_drives_is_reported():
     assert any("Coulomb friction torque" in said and "negative" in said for said in found.because)
 
 
+def test_no_missing_effect_needs_the_speed_gap_within_its_limit():
+    assert moves_otherwise(shown(velocity=Gap("rad/s", 0.01, (0.03, 0.03), limit=0.035))) == ""
+    assert "4 times the noise" in moves_otherwise(shown(velocity=Gap("rad/s", 0.01, (0.04, 0.04), limit=0.035)))
+    assert moves_otherwise(shown(velocity=Gap("rad/s", 0.01, None, limit=0.035))) == ""
+
+
+def test_no_missing_effect_needs_nothing_to_be_the_likeliest_answer():
+    assert likelier(shown(unknown=0.49)) == ""
+    assert "unknown effect is more likely (60 %) than no missing effect (40 %)" in likelier(shown(unknown=0.6))
+
+
 AGAINST = {
     remains: shown(SPRING, chi=1.2),
+    depends: shown(SPRING, on=Dependence("torque", {})),
+    moves_otherwise: shown(velocity=Gap("rad/s", 0.01, (0.1, 0.1), limit=0.035)),
+    likelier: shown(unknown=0.6),
     unfinished: shown(SPRING, stopped="limit of effects reached"),
     moves_worse: shown(SPRING, velocity=Gap("rad/s", 0.01, (0.1, 0.2), None)),
     undetermined: shown(named("torsion_spring", stiffness=(0.1, 0.11))),

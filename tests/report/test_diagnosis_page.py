@@ -77,7 +77,7 @@ def test_every_effect_is_reported_with_a_reason(diagnosed):
     taken = [one.effect.name for one in diagnosed.considered if one.taken]
     assert taken == [effect.name for effect in diagnosed.effects] == ["unbalance"]
     reasons = {one.effect.name: one for one in diagnosed.considered}
-    assert reasons["torsion_spring"].reason == "was not to be tried"
+    assert reasons["torsion_spring"].reason == "excluded"
     assert reasons["unbalance"].alone > 0.9
     assert reasons["quadratic_drag"].alone < 0.2
     assert all(0.0 <= one.alone <= 1.0 for one in diagnosed.considered if one.alone is not None)
@@ -97,15 +97,16 @@ def test_profiles_and_courses_agree_with_the_steps(diagnosed):
 
 def test_the_verdict_fits_what_was_found(diagnosed):
     assert "was missing" in verdict_sentence(diagnosed)
-    assert "what is left is noise" in verdict_sentence(diagnosed)
-    unsure = replace(diagnosed, verdict="unexplained_remainder", because=["something is left"])
-    assert verdict_sentence(unsure).endswith("but something is left.")
+    assert "the torque residual is noise" in verdict_sentence(diagnosed)
+    unsure = replace(diagnosed, verdict="unexplained_remainder", because=["something remains"])
+    assert verdict_sentence(unsure).endswith("but something remains.")
     page = diagnosis(unsure, "t")
     assert page.tone == "open"
     assert page.answers["Does it move like the axis now?"].startswith("Nearly: ")
     nothing = replace(diagnosed, effects=[], verdict="nothing_missing")
-    assert verdict_sentence(nothing).startswith("Nothing is missing")
-    assert "no effect of the catalogue explains" in verdict_sentence(replace(nothing, verdict="unexplained_remainder"))
+    assert verdict_sentence(nothing).startswith("No missing effect found")
+    unknown = replace(unsure, effects=[])
+    assert verdict_sentence(unknown).startswith("An unknown effect is likely: something remains")
 
 
 def test_a_fault_of_a_sensor_is_no_missing_physics(diagnosed):

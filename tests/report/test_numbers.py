@@ -49,6 +49,8 @@ def test_of_what_is_known_up_to_a_factor_both_ends_are_given(shown):
     found = Parameter(740.57, "N*m/rad", 583.5, (119.7, 4581.8))
     assert plain(shown(found)) == "741 (120 to 4600) N·m/rad"
     assert str(found) == "741 (1.2e+02 to 4.6e+03) N*m/rad"
+    near = Parameter(1.46e-3, "kg*m**2", 1e-5, (1.457e-3, 1.512e-3))
+    assert plain(shown(near)) == "0.00146 (0.00146 to 0.00151) kg·m²"
     little = Parameter(740.57, "N*m/rad", 58.0, (661.0, 829.7))  # a factor of 1.12
     assert "±" in shown(little) and "±" in str(little)
 
