@@ -26,7 +26,7 @@ from typer.exceptions import TyperException
 
 from bench import __version__
 from bench.cli.check import check
-from bench.cli.common import guarded, say
+from bench.cli.common import NOTES, guarded, say, warn
 from bench.cli.lab import lab
 from bench.cli.model import compensate, export, replay, view
 from bench.cli.recording import diagnose, fleet, friction, identify, inspect, limits, robot
@@ -91,9 +91,12 @@ def main() -> None:
         if isinstance(sys.stdout, io.TextIOWrapper):
             sys.stdout.reconfigure(errors="backslashreplace")  # as standard error is
         _add_offered()
+        NOTES.clear()
         status = app(standalone_mode=False)
         sys.stdout.flush()
+        warn(NOTES)
     except BenchError as error:
+        warn(NOTES if error.exit_status == 1 else ())
         sys.exit(_failed(str(error), error.exit_status))
     except TyperException as error:
         sys.exit(_failed(error.format_message(), 2))

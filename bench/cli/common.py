@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "video"})
 #: Those of them that name folders, which may be there.
 FOLDERS = frozenset({"out", "synthetic", "notebooks"})
+#: Notes on the recordings of this run, in order. Bad input is one line, without them.
+NOTES: dict[str, None] = {}
 #: Parameters of commands whose file is read, and replaced with `--update`.
 REPLACED = frozenset({"baseline"})
 
@@ -259,7 +261,7 @@ class Subject:
     Attributes:
         files: of the rig and of the robot, where they are given.
         read: how its recordings are read whole.
-        reported: a recording, after a warning for each of its notes that none had before.
+        reported: a recording, whose notes are printed with the result, or with why there is none.
         along: the robot along a log.
         options: of the command that say which joint it is.
     """
@@ -300,12 +302,10 @@ def subject(
         every = shlex.join(word for name in named for word in ("--joint", name))
         allowed = f"allowed: one; for several: `bench robot {trace} --mjcf {mjcf} {every} --out robot_id`"
         raise InputError("--joint", f"found {', '.join(named)}", allowed)
-    warned: set[str] = set()
 
     def reported(trace: bench.Trace) -> bench.Trace:
         of_gate = trace.metadata.get("assumed_units")
-        warn(note for note in trace.notes if note not in warned and note != of_gate)
-        warned.update(trace.notes)
+        NOTES.update(dict.fromkeys(note for note in trace.notes if note != of_gate))
         return trace
 
     joint = next(iter(named), None)

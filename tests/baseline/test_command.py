@@ -203,6 +203,10 @@ def test_models_are_held_against_each_other(bench):
     key = 'viscous_friction_coefficient = "'
     heavier = Path("a/model.toml").read_text(encoding="utf-8").replace(key, f"{key}1")
     Path("c.toml").write_text(heavier, encoding="utf-8")
+    status, _, error = bench("check", "--simulated", "c.toml", "--baseline", "a/model.toml")
+    assert status == 2
+    assert "c.toml" in error
+    Path("c.toml").write_text(heavier.replace("same_parameters = true", "same_parameters = false"), encoding="utf-8")
     status, printed, _ = bench("check", "--simulated", "c.toml", "--baseline", "a/model.toml")
     assert status == 3
     assert "Changed: Viscous friction coefficient rose" in printed
