@@ -14,7 +14,7 @@ from bench.course.axis import Sources, embedded, lab_rig
 from bench.course.causes import refusals
 from bench.course.flights import Flights, contradiction, find_flights, read_flights
 from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
-from bench.course.run import LabRun, in_words_of_the_course, run_of
+from bench.course.run import LabRun, run_of
 from bench.errors import BenchError, InputError
 from bench.files import read_text
 from bench.names import nearest
@@ -141,7 +141,7 @@ class LabRecordings:
         """
         path, others = self.files(name)
         columns = self.rig.trace.columns
-        recording = in_words_of_the_course(read_recording(path), columns)
+        recording = read_recording(path)
         chosen, _ = choose(recording, reading_options(columns))
         if missing := [name for name in NEEDED if name not in chosen]:
             labels = ", ".join(f"'{channel.label}'" for channel in recording.channels)

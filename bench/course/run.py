@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,19 +14,10 @@ from bench.course.axis import torque_constant
 from bench.errors import InputError, UndeterminedError
 from bench.fit.lab import backward_difference
 from bench.rig.rig import Rig
-from bench.trace.channel import Recording
-from bench.trace.signals import signal_of
 from bench.trace.trace import Trace
 
 #: A shorter recording is no run of the course.
 LEAST = 100
-#: Names of columns in the course's own words, and how it writes their units: `n / (1/min)`, `Strom in A`.
-_WORDS = {
-    "time": ("t", "time", "zeit"),
-    "velocity": ("n", "drehzahl", "omega", "ω", "w", "speed", "geschwindigkeit", "velocity"),
-    "current": ("i", "iq", "i_q", "strom", "current"),
-}
-_LABEL = re.compile(r"([^\W\d]+)\s*(?:/\s*|\s+in\s+|\s*(?=\())(?:\((.+)\)|(\S+))")
 
 
 @dataclass(frozen=True)
@@ -102,19 +92,3 @@ def run_of(trace: Trace, rig: Rig, truth: Mapping[str, float] | None = None, not
         notes += (f"The recording has holes; of {len(trace)} samples the longest {velocity.size} in a row are taken.",)
     hole = float(trace.time[min(segment.stop for segment in trace.segments) - 1])
     return replace(run, truth=truth or {}, notes=notes, missing=(1.0 - velocity.size / len(trace), hole))
-
-
-def in_words_of_the_course(recording: Recording, mapped: Collection[str]) -> Recording:
-    """The same with columns that are named as the course writes them, `Drehzahl in U/min`, by the bench's names.
-
-    Signals that the rig file has `mapped`, or that the bench knows by another column, stay as they are.
-    """
-    settled = {*mapped, *(signal_of(channel.name) for channel in recording.channels)}
-    channels = []
-    for channel in recording.channels:
-        match = _LABEL.fullmatch(channel.name.strip()) if channel.unit is None else None
-        name, unit = (match[1], match[2] or match[3]) if match else (channel.name, channel.unit)
-        known = next((signal for signal, words in _WORDS.items() if name.strip().lower() in words), None)
-        renamed = known is not None and unit and (known not in settled or (match and signal_of(name) == known))
-        channels.append(replace(channel, name=known, unit=unit) if renamed else channel)
-    return replace(recording, channels=tuple(channels))

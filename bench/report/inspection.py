@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -105,7 +106,8 @@ def _changes(channel: Channel) -> bool:
 def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, doc.Tone]:
     """What the recording is good for, in a sentence, and how that is meant."""
     if found.asks is not None or found.duration is None or found.rate is None:
-        return "It is not read as a recording yet: its signals have to be named first.", "refused"
+        several = f"It has {len(found.axes)} axes: pick one with --axis {found.axes[0]}." if _of_axes(found) else ""
+        return several or "It cannot be read yet: the rig has to say what its columns are.", "refused"
     names = ", ".join(words(signal.name) for signal in found.signals)
     held = f"It holds {number(found.duration, 's', 4)} of {names} at {number(found.rate, 'Hz', 6)}"
     failed, warned = (
@@ -172,10 +174,19 @@ def _columns(columns: Sequence[ColumnSummary]) -> doc.Table:
     return doc.table("In the file's units", ("column", "unit", "least>", "most>", "resolution>", "likely~"), rows)
 
 
+def _of_axes(found: Inspection) -> bool:
+    """Whether all that is asked is which of several axes to read."""
+    return len(found.axes) > 1 and "--axis" in (found.asks or "")
+
+
 def _what_to_write(found: Inspection) -> Iterator[doc.AnyPart]:
-    """What keeps the file from being read, if anything, and the lines of a rig that would help."""
+    """What keeps the file from being read, if anything, and the command or the lines of a rig that help."""
     if found.asks is not None:
         yield doc.Paragraph(text=f"{found.asks}.")
-        if found.suggestions:
+        if _of_axes(found):
+            yield doc.Code(
+                text=f"bench inspect {shlex.quote(readable(found.origin))} --axis {shlex.quote(found.axes[0])}"
+            )
+        elif found.suggestions:
             yield doc.Paragraph(text="Likely, for the rig file:")
             yield doc.Code(text="\n".join(("[trace.columns]", *found.suggestions)))

@@ -160,9 +160,9 @@ def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]
 def _trace(inspection: Inspection, axis: str | None) -> list[str]:
     """`[trace]` and its columns: those that are plain, and as comments those whose unit only the user knows."""
     settings = [f"axis = {json.dumps(axis)}"] if axis is not None else []
-    timed = inspection.rate is not None
-    if not (timed or any(one.signal == "time" or one.rate is not None for one in inspection.columns)):
-        settings.append('# sample_period = "? ms"     # the file holds no time: how often was it sampled?')
+    timed = any(one.signal == "time" or one.rate is not None for one in inspection.columns)
+    if (inspection.rate is None and not timed) or "sample_period" in (inspection.asks or ""):
+        settings.append('# sample_period = "? ms"     # the file has no usable time: how often was it sampled?')
     lines = ["[trace]", *settings, ""] if settings else []
     several = axis is None and len(inspection.axes) > 1
     columns = _columns(one for one in inspection.columns if not several or one.axis is None)

@@ -102,11 +102,18 @@ class Recording:
             return self
         return replace(self, channels=tuple(replace(one, unit=units.get(one.name, one.unit)) for one in self.channels))
 
+    def column(self, channel: Channel) -> str:
+        """What `[trace.columns]` calls a column: its name, or its number where another has the same name."""
+        if sum(one.name == channel.name for one in self.channels) < 2:
+            return channel.name
+        numbers = (one.number or place for place, one in enumerate(self.channels, 1) if one is channel)
+        return f"column {next(numbers)}"
+
     def stating(self, signal: str, channel: Channel, unit: str) -> str:
         """What a user writes to state the unit of a column."""
         if self.format == ARRAYS:
             return f'units={{"{channel.name}": "{unit}"}}'
-        return f'{signal} = "{channel.name} [{unit}]" in the rig\'s [trace.columns]'
+        return f'{signal} = "{self.column(channel)} [{unit}]" in the rig\'s [trace.columns]'
 
 
 def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:

@@ -1,4 +1,4 @@
-"""Which channel of a recording is which signal: by the rig's columns first, by well-known names second."""
+"""Which channel of a recording is which signal: by the rig's columns first, by what else speaks for it second."""
 
 from __future__ import annotations
 
@@ -13,12 +13,17 @@ import numpy as np
 from bench.errors import InputError
 from bench.names import nearest, short
 from bench.trace.assumed import Assumption, assumed_units
+from bench.trace.candidates import MAYBE, SURE, LikelySignal, candidates
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of, wanted_units
 from bench.units.conversion import UnitScale, scale_or_none
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
+#: Signals of which a rig that names one names all that are read; other columns then count by a well-known name only.
+GROUPS = (("velocity", "position", "acceleration"), ENOUGH[1])
+#: Weight by which one column has to be preferred to another.
+PLAIN = 0.5
 #: Difference of two columns of one signal, as share of its spread, up to which they are one: a filter, a resolution.
 SAME = 0.1
 _INDEX = UnitScale("samples", 1.0)
@@ -94,15 +99,16 @@ def choose(recording: Recording, how: ReadingOptions) -> tuple[dict[str, SignalC
             allowed = f"allowed: time, {', '.join(SI_UNITS)}"
             raise InputError(f"columns: {signal}", f"not a signal{nearest(signal, [*SI_UNITS])}", allowed)
     whole, recording = recording, replace(recording, channels=of_axis(recording, how.axis))
+    known = likely(recording, how.columns)
     columns: dict[str, _Chosen] = {}
     chosen: dict[str, SignalColumn] = {}
     faults: dict[str, InputError] = {}
     notes: list[str] = []
     for signal in ("time", *SI_UNITS):
         with _fault_of(signal, faults, how):
-            column = _column(recording, whole, signal, how.columns, notes)
+            column = _column(recording, whole, signal, how.columns, known, notes)
             columns |= {signal: column} if column is not None else {}
-    assumption = _assumption(columns, whole, how)
+    assumption = _assumption(columns, whole, how, known)
     for signal, column in columns.items():
         with _fault_of(signal, faults, how):
             chosen[signal] = column.scaled(signal, assumption, recording)
@@ -157,6 +163,26 @@ def _require(
             raise found[0]
 
 
+def likely(recording: Recording, columns: Mapping[str, str]) -> dict[Channel, LikelySignal]:
+    """The columns that are read in addition to those that a rig names, the best first."""
+    found = candidates(recording.channels)
+    several = len(axes_of(recording.channels)) > 0
+    sure = {one.signal for one in found.values() if one.known or one.weight >= SURE}
+    named = {signal for signal in columns if signal != "time"}
+
+    def is_read(channel: Channel, one: LikelySignal) -> bool:
+        group = next((group for group in GROUPS if one.signal in group), ())
+        if one.known:
+            return True
+        if one.signal == "time":
+            return one.weight >= SURE
+        if named.intersection(group) if group else named or (several and channel.axis is None):
+            return False
+        return one.weight >= (MAYBE if group and sure.isdisjoint(group) else SURE)
+
+    return {channel: one for channel, one in found.items() if is_read(channel, one)}
+
+
 @dataclass(frozen=True)
 class _Chosen:
     """A channel that was chosen for a signal.
@@ -203,14 +229,19 @@ def _fault_of(signal: str, faults: dict[str, InputError], how: ReadingOptions) -
 
 
 def _column(
-    recording: Recording, whole: Recording, signal: str, columns: Mapping[str, str], notes: list[str]
+    recording: Recording,
+    whole: Recording,
+    signal: str,
+    columns: Mapping[str, str],
+    known: Mapping[Channel, LikelySignal],
+    notes: list[str],
 ) -> _Chosen | None:
     """The channel of a signal, by a column's name of the whole recording's; None where there is none."""
     given, named, unit = columns.get(signal), None, None
     if given is not None:
         name, unit = split_label(given.strip().removeprefix("-"))
         named = _named(recording, signal, name) or _named(whole, signal, name)
-    channel = named or _known(recording, signal)
+    channel = named or _known(recording, signal, known)
     if channel is None:
         if given is not None:
             raise missing(recording, f"column '{given.strip().lstrip('-')}'")
@@ -220,23 +251,35 @@ def _column(
         unit = None
     if channel.defect is not None:
         raise channel.defect
+    candidate = None if named is not None else known[channel]
     own, stated = unit_of(channel.unit), unit_of(unit or channel.unit)
     scales = [scale_or_none(one or "", wanted_units(signal)) for one in (own, stated)]
     if named is not None and unit is not None and not channel.moments and own is not None and scales[0] != scales[1]:
         notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
     inverted = named is not None and str(given).strip().startswith("-")
-    usual = recording.usual_units.get(signal) if stated is None and not channel.moments else None
+    stated, usual = stated or (candidate.unit if candidate is not None else None), None
+    if stated is None and not channel.moments:
+        usual = candidate.usual if candidate is not None else None
+        usual = recording.usual_units.get(signal, usual) if candidate is None or candidate.known else usual
     return _Chosen(channel, stated, usual, -1.0 if inverted else 1.0)
 
 
-def _assumption(columns: Mapping[str, _Chosen], recording: Recording, how: ReadingOptions) -> Assumption:
-    """Units of the columns without one; none where the file names a unit and leaves it open."""
+def _assumption(
+    columns: Mapping[str, _Chosen], recording: Recording, how: ReadingOptions, known: Mapping[Channel, LikelySignal]
+) -> Assumption:
+    """Units of the columns without one; none where the file names a unit and leaves it open.
+
+    Nor where the format has units of its own: variables of a PLC program are in whatever its author chose.
+    """
+    own = {one for one, of in known.items() if recording.usual_units and not of.known}
     time = columns["time"].channel if "time" in columns else None
     bare = all(unit_of(one.unit) is None for one in recording.channels if one is not time)
     open_to = {
         signal: column
         for signal, column in columns.items()
-        if column.channel.open_unit is None and not (signal == "time" and how.sample_period)
+        if column.channel.open_unit is None
+        and column.channel not in own
+        and not (signal == "time" and how.sample_period)
     }
     units = {
         signal: (one.channel.unit or "s") if one.channel.moments else one.unit or one.usual
@@ -274,14 +317,16 @@ def _without_marks(name: str) -> str:
     return name.strip("#%/ ").removesuffix(".data").replace("/", ".").lower()
 
 
-def _known(recording: Recording, signal: str) -> Channel | None:
-    alike = [channel for channel in recording.channels if signal_of(channel.name) == signal]
-    matches = [channel for channel in recording.channels if channel.name == signal] or alike
-    matches = matches or [channel for channel in recording.channels if channel.signal == signal]
+def _known(recording: Recording, signal: str, known: Mapping[Channel, LikelySignal]) -> Channel | None:
+    """The column that is most likely a signal; None where there is none. InputError where several are as likely."""
+    matches = {channel: one.weight for channel, one in known.items() if one.signal == signal}
     if not matches:
         return None
-    chosen = _one(recording, signal, matches)
-    return _one(recording, signal, [chosen, *(channel for channel in alike if _differ(signal, chosen, channel))])
+    best = max(matches, key=lambda channel: (matches[channel], channel.name == signal))
+    alike = [channel for channel, weight in matches.items() if matches[best] - weight < PLAIN]
+    others = (one for one in alike if one is not best)
+    unlike = [one for one in others if one.axis != best.axis or one.name == best.name or _differ(signal, best, one)]
+    return _one(recording, signal, [best, *unlike])
 
 
 def _differ(signal: str, one: Channel, other: Channel) -> bool:
@@ -300,12 +345,12 @@ def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:
     if len(matches) == 1:
         return matches[0]
     where, axes = f"{recording.origin}: {signal}", axes_of(matches)
-    if len(axes) > 1 and not any(channel.signal for channel in matches):
-        advice = f"pick one: --axis {axes[0]}, or axis in the rig's [trace]"
-        raise InputError(where, f"found {len(axes)} axes ({', '.join(axes)})", advice)
+    if len(axes) > 1:
+        found = f"found {len(axes)} axes ({', '.join(map(short, axes))})"
+        raise InputError(where, found, f'pick one: --axis {axes[0]}, or axis = "{axes[0]}" in the rig\'s [trace]')
     names = ", ".join(f"'{channel.label}'" for channel in matches)
-    pick = f"pick one: --axis {axes[0]}, or " if len(axes) > 1 else ""
-    raise InputError(where, f"found several columns for it ({names})", f"{pick}name one in the rig's [trace.columns]")
+    line = recording.stating(signal, matches[0], matches[0].unit or wanted_units(signal)[0])
+    raise InputError(where, f"found several columns for it ({names})", f"name one: {line}")
 
 
 def _index(recording: Recording, columns: Mapping[str, str]) -> Channel | None:

@@ -1,12 +1,10 @@
-"""The signals a trace may hold: their names, SI units on rotary and linear axes, and how recorders call them.
-
-Conservative: only whole and unambiguous names are recognised; everything else goes through the rig's `[trace.columns]`.
-"""
+"""The signals a trace may hold: their SI units on rotary and linear axes, and the names that recorders give them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import cache
 
 from bench.axis_kind import KINDS, AxisKind
@@ -50,23 +48,51 @@ ALIASES: dict[str, str] = {
     "velocity_reference": "reference velocity|velocity demand value",
     "torque_reference": "reference torque|torque demand value",
 }
-#: Words in column names, in the languages of drives, and letters of the field.
+#: Words in column names, in the languages of drives.
 WORDS: dict[str, str] = {
-    "time": r"time|zeit|temps|tempo|tiempo|timestamp|stamp|ms_today|clock|uhrzeit|t",
-    "velocity": r"vel|velo|velocit(?:y|ies)|speeds?|spd|geschw\w*|drehzahl\w*|vitesse|velocidad|velocita|omega|rpm|"
-    r"erpm|dq|qd|qvel|qdot|n_?ist|nact|v_?ist|606c|60:?6c|vact|actvel\w*|r63|r0063|vl|w",
-    "position": r"pos|position\w*|angles?|qpos|winkel|theta|enc|encoder|lage\w*|phi|weg|6064|actpos\w*|pl|q|x",
-    "current": r"cur|curr|currents?|iq|i_q|isq|strom\w*|courant|corriente|amps?|r78|r0078|il|q_axis_current|i",
-    "torque": r"torques?|trq|tq|moment|drehmoment\w*|effort\w*|taus?|couple|coppia|m_?ist|6077|r80|r0080|force|kraft",
-    "voltage": r"volt\w*|spannung|uq|vq|vbus|udc|tension|u",
-    "temperature": r"temp\w*|motor_temp",
+    "time": r"time|zeit|temps|tempo|tiempo|timestamp|stamp|clock|uhrzeit",
+    "velocity": r"vel|velo|velocit(?:y|ies)|speeds?|spd|\w*geschw\w*|drehzahl\w*|vitesse|velocidad|velocita|omega|rpm|"
+    r"erpm|dq|qd|qvel|qdot|actvel\w*|vl|ω",
+    "position": r"pos|position\w*|angles?|qpos|winkel|theta|lage\w*|phi|weg|actpos\w*|pl|θ|ϑ|φ|ϕ",
+    "current": r"cur|curr|currents?|iq|isq|strom\w*|courant|corriente|amps?|il",
+    "torque": r"torques?|trq|tq|moment|drehmoment\w*|efforts?|taus?|couple|coppia|force|kraft|τ",
+    "voltage": r"volt\w*|spannung|uq|vq|tension",
+    "temperature": r"temp\w*",
     "acceleration": r"acc|accel\w*|beschl\w*",
 }
-REFERENCE = re.compile(
-    r"set|action|soll\w*|ref|reference|cmd|command\w*|demand|target|goal|input|setpoint|sp|des|desired|consigne|"
-    r"r62|r0062|607a|60ff",
+#: What is a signal where no word tells one: an encoder, `q`, and letters of the field where no word is with them.
+LETTERS: dict[str, str] = {"q": "position", "enc": "position", "encoder": "position"}
+_WITH_WORDS = frozenset(LETTERS)
+LETTERS |= {"x": "position", "w": "velocity", "i": "current", "u": "voltage", "t": "time"}
+#: Letters that mean something else as often: signals where their unit agrees.
+VAGUE = {"v": "velocity", "n": "velocity", "m": "torque"}
+LETTERS |= VAGUE
+_SETPOINT = re.compile(
+    r"set|action|soll\w*|ref|reference|referenz|cmd|command\w*|demand\w*|target|goal|input|setpoint|sp|des|desired|"
+    r"consigne",
     re.I,
 )
+_MEASURED = re.compile(r"meas|measured|act|actual|act(?:pos|vel)\w*|present|feedback|fb|raw|ist", re.I)
+#: Words for what is no signal of an axis; of currents and voltages, those of its supply.
+_FOREIGN = re.compile(
+    r"daxis|err|errors?|following|deviation|abweichung|schlepp\w*|limits?|lim|max\w*|power|leistung|efficiency|"
+    r"utili[sz]ation|auslastung|wirkungsgrad|inertia|checksum|hours?|energy|energie|used|charged?",
+    re.I,
+)
+_SUPPLY = re.compile(r"dc|bus|vbus|udc|link|dclink|in|batt?|battery|supply|mos", re.I)
+#: Where a log keeps its joints: words that tell no joint from another.
+_PLACE = re.compile(r"observations?|obs|states?|joint_?states?|joints|field|data|msg|log", re.I)
+#: Words in compounds, as `Drehzahlsollwert` and `nist`, and other spellings of the currents of the q and the d axis.
+_STEM = r"drehzahl|lage|moment|strom|geschwindigkeits?|winkel|positions?|kraft|spannungs?"
+_COMPOUNDS = (
+    (re.compile(rf"({_STEM})(soll|ist)(?:werte?)?", re.I), r"\1_\2"),
+    (re.compile(rf"(?<![^\W\d_])(soll|ist)(?:wert)?(?={_STEM})", re.I), r"\1_"),
+    (re.compile(r"(?<![^\W_])([nvmiqxw])(soll|ist|act|ref|cmd|set|des)(?![^\W\d_])", re.I), r"\1_\2"),
+    (re.compile(r"(?<![^\W_])([iuv])_([qd])(?![^\W\d_])", re.I), r"\1\2"),
+    (re.compile(r"(?<![^\W_])(d)[_\s-](axis)(?![^\W_])", re.I), r"\1\2"),
+)
+_PATH, _WORD = re.compile(r"[\s./()\[\],;:|]+"), re.compile(r"0x[0-9a-f]+|[^\W\d_]+|\d+", re.I)
+_CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD_OF = {signal: re.compile(rf"(?:{words})\d*", re.I) for signal, words in WORDS.items()}
 #: Units in a name: in round or curly brackets; behind a slash, a comma, a dash or `in`; parts of a name.
 _BRACKETS = re.compile(r"(.*?)\s*[({]([^(){}]*(?:\([^()]*\))?[^(){}]*)[)}]\s*")
@@ -136,9 +162,9 @@ def unit_in_name(name: str) -> tuple[str, str | None]:
 
 def _signals_in(text: str) -> list[str]:
     """Signals that a name's words speak of, without its unit."""
-    known = _BY_ALIAS.get(plain_name(text))
-    words = [part[0] for part in _PART.finditer(text)]
-    return [known] if known else [name for name, known in _WORD_OF.items() if any(map(known.fullmatch, words))]
+    known, name = _BY_ALIAS.get(plain_name(text)), read_name(text)
+    told = name.told if name.told or name.letter is None else {LETTERS[name.letter]}
+    return [known] if known else [signal for signal in WORDS if signal in told]
 
 
 def _spellings(parts: list[str]) -> Iterator[str]:
@@ -183,6 +209,86 @@ def _suits(unit: str, signal: str) -> bool:
 def is_index(name: str) -> bool:
     """Whether a column's name says that it counts samples."""
     return _INDEX.fullmatch(plain_name(name)) is not None
+
+
+@dataclass(frozen=True)
+class ColumnName:
+    """What the words of a column's name mean.
+
+    Attributes:
+        told: signals that its words stand for, more than one where they leave it open.
+        letter: of LETTERS, where no word stands for a signal.
+        setpoint, measured: whether a word says so.
+        foreign, supply: whether it is of something else than the axis, or of its supply.
+        joint: the other words, by which joints differ.
+        words: those that have a meaning, in lower case.
+    """
+
+    told: frozenset[str]
+    letter: str | None
+    setpoint: bool
+    measured: bool
+    foreign: bool
+    supply: bool
+    joint: str
+    words: frozenset[str]
+
+
+def read_name(text: str) -> ColumnName:
+    """What the words of a column's name, without its unit, mean."""
+    text = text[:LONGEST_NAME]
+    for pattern, apart in _COMPOUNDS:
+        text = pattern.sub(apart, text)
+    parts = [part for part in _PATH.split(text) if part]
+    places = {part for part in parts if _PLACE.fullmatch(part)}
+    words = {part: [piece for word in _WORD.findall(part) for piece in _pieces(word)] for part in parts}
+    every = [word for part in parts for word in words[part]]
+    told = _unambiguous(set().union(*map(_signals_of, every)))
+    letters = [] if told else [word for part in parts for word in words[part] if _is_letter(word, words[part])]
+    meaning, joint = {word for word in every if _signals_of(word)} | {*letters[-1:]}, list[str]()
+    for part in parts:
+        plain = not meaning.isdisjoint(words[part]) or sum(not word.isdigit() for word in words[part]) == 1
+        gone = {word for word in words[part] if word in meaning or (plain and _is_modifier(word))}
+        others = [word for word in words[part] if word not in gone]
+        meaning |= gone
+        if others and part not in places:
+            joint.append("_".join(others) if gone else part.strip("_"))
+    return ColumnName(
+        told=told,
+        letter=letters[-1].lower() if letters else None,
+        setpoint=any(map(_SETPOINT.fullmatch, meaning)),
+        measured=any(map(_MEASURED.fullmatch, meaning)),
+        foreign=any(map(_FOREIGN.fullmatch, every)),
+        supply=any(map(_SUPPLY.fullmatch, every)),
+        joint=".".join(joint),
+        words=frozenset(word.lower() for word in meaning | places),
+    )
+
+
+def _pieces(word: str) -> list[str]:
+    """A word, or where one of them stands for a signal, the words that capital letters join in it."""
+    pieces = [] if _signals_of(word) else _CAMEL.split(word)
+    return pieces if any(map(_signals_of, pieces)) else [word]
+
+
+def _signals_of(word: str) -> set[str]:
+    return set() if word.isdigit() else {signal for signal, pattern in _WORD_OF.items() if pattern.fullmatch(word)}
+
+
+def _is_modifier(word: str) -> bool:
+    return _SETPOINT.fullmatch(word) is not None or _MEASURED.fullmatch(word) is not None
+
+
+def _is_letter(word: str, part: list[str]) -> bool:
+    """Whether a word of a part of a name is the letter of a signal."""
+    others = (one for one in part if one is not word and not one.isdigit() and not _is_modifier(one))
+    return word.lower() in LETTERS and (word.lower() in _WITH_WORDS or not any(others))
+
+
+def _unambiguous(told: set[str]) -> frozenset[str]:
+    """Signals less those that other words make something else: an angular speed, the current position."""
+    motion = [signal for signal in ("acceleration", "velocity", "position") if signal in told]
+    return frozenset(told - {*motion[1:]} - ({"current"} if motion else set()))
 
 
 def unit_of(text: str | None) -> str | None:

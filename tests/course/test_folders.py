@@ -82,15 +82,21 @@ def group_suffixes(folder):
         (folder / f"{name}.trace").rename(folder / f"{name}{suffix}.trace")
 
 
-def unknown_names(folder):
+def foreign_names(folder):
     for name in NAMES:
         time, velocity, current = signals(folder, name)
         table(folder / f"{name}.csv", "time [s];rOmega [rad/s];rI [A]", time, velocity, current)
 
 
+def unknown_names(folder):
+    for name in NAMES:
+        time, velocity, current = signals(folder, name)
+        table(folder / f"{name}.csv", "time [s];ch2;ch3", time, velocity, current)
+
+
 def unknown_names_in_the_advice(folder):
     unknown_names(folder)
-    (folder / "rig.toml").write_text('[trace.columns]\nvelocity = "rOmega [rad/s]"\ncurrent = "rI [A]"\n')
+    (folder / "rig.toml").write_text('[trace.columns]\nvelocity = "ch2 [rad/s]"\ncurrent = "ch3 [A]"\n')
 
 
 def a_full_rig(folder):
@@ -192,7 +198,8 @@ STATES = [
     (one_way, {"9", "tracking"}, ["one way only"]),
     (german_names, set(), []),
     (group_suffixes, set(), []),
-    (unknown_names, RECORDED - {"1"}, ["[trace.columns]", "'rOmega [rad/s]'"]),
+    (foreign_names, set(), []),
+    (unknown_names, RECORDED - {"1"}, ["[trace.columns]", "'ch2'"]),
     (unknown_names_in_the_advice, set(), []),
     (a_full_rig, set(), []),
     (a_rig_of_another_motor, {"3", "4", "10", "11", "range", "tracking"}, ["rotor_inertia", "kT(Iq)"]),

@@ -79,7 +79,7 @@ def test_a_table_that_is_no_recording_yet_says_what_to_write(bench, tmp_path):
     status, out, _ = bench("inspect", "odd.csv", "--report", "odd.html")
     assert (status, out.splitlines()[-1]) == (0, "wrote odd.html")
     text = (tmp_path / "odd.html").read_text(encoding="utf-8")
-    assert "It is not read as a recording yet" in text
+    assert "It cannot be read yet" in text
     assert 'class="refused"' in text
     assert "Iq" in text
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
+from bench.trace.candidates import candidates
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.choose import GivenOptions
-from bench.trace.inspect import likely_signals
 from bench.trace.trace import assemble, require_plausible
 
 
@@ -193,7 +193,7 @@ def test_a_column_that_correlates_by_09_with_anothers_rate_is_its_derivative(oth
     """A share k of another sine beside the rate leaves a correlation of 1/sqrt(1 + k**2): 0.912 and 0.887."""
     time = np.arange(4000.0)
     angle, rate = -np.cos(time / 100.0) * 100.0, np.sin(time / 100.0)
-    found = likely_signals(recording(t=time, a=angle, b=rate + other * np.sin(time / 37.0)).channels)
+    found = candidates(recording(t=time, a=angle, b=rate + other * np.sin(time / 37.0)).channels)
     guesses = {channel.name: guess.signal for channel, guess in found.items() if channel.name != "t"}
     assert guesses == ({"a": "position", "b": "velocity"} if derivative else {})
 
