@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from scipy.signal import lsim
@@ -13,7 +14,8 @@ from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant, States
 from bench.plant.run import run
-from bench.validation.independent.effects import KINDS, Effect
+from bench.validation.independent.effects import KINDS, Effect, Rows
+from bench.validation.independent.rig import Axis
 from bench.validation.independent.sensors import Sensors
 from bench.validation.independent.simulate import simulate
 from tests.independent.axes import PLAIN
@@ -72,9 +74,25 @@ def present(name: str) -> Present:
     return Present.of(name, VALUES[name])
 
 
+@dataclass(frozen=True)
+class TorqueScale(Effect):
+    """One ampere that acts is read as `scale`. KINDS are hidden without a known weight, so it is none of them."""
+
+    scale: float
+
+    @classmethod
+    def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
+        return cls(float(np.exp(rng.choice([-1.0, 1.0]) * 0.3 * severity)))
+
+    def true_current(self, rows: Rows, reading: np.ndarray) -> np.ndarray:
+        return reading / self.scale
+
+
 def independent(name: str) -> Effect:
     """The same for the independent axis."""
     values = dict(VALUES[name])
+    if name == TorqueScale.name:
+        return TorqueScale(**values)
     if name == "direction_dependent_friction":
         ratio = values.pop("viscous_difference") / AXIS.viscous
         values["viscous_share"] = ratio * AXIS.coulomb / values["coulomb_difference"]
