@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,7 +21,10 @@ from bench.arrays import Array, rms
 from bench.bounds import read_bounded
 from bench.errors import InputError
 from bench.files import opened, read_bytes
+from bench.trace.channel import Channel
 from bench.trace.readers.named_arrays import load_mat
+from bench.trace.readers.table import TABLE
+from bench.trace.source import source_of
 from bench.units import convert
 
 TEXTS = (".csv", ".txt", ".dat", ".tsv")
@@ -32,15 +34,10 @@ NAMES = ("catapult", "katapult", "flights", "fluege", "flüge")
 _ABOUT = re.compile(r"(read[ _-]?me|lies[ _-]?mich|license|notes?|notiz(en)?|info|hinweise?)\b.*", re.IGNORECASE)
 #: Lengths without a unit are metres; no ball of the lab flies further than this - m.
 FARTHEST = 20.0
-#: How the cells of a line may be separated, and the decimal sign in them; the first that fits a table is taken.
-_BLANKS = r",?\s+"
-_LAYOUTS = ((";", ","), ("\t", ","), (",", "."), (_BLANKS, ","))
-_NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|nan", re.IGNORECASE)
-_NAN, _LETTER = re.compile(r"\bnan\b", re.IGNORECASE), re.compile(r"[^\W\dEe_]")
 #: Name of a column, with the flight's number where several stand side by side, and its unit.
 _LABEL = re.compile(r"\W*([^\W\d_]+)[ _]*(\d*)\s*(?:(?:[\[(/]|\bin\b)\s*([^\])]*?)[\])]?)?\W*")
-#: Between the names of columns that blanks separate; a unit belongs to the name before it.
-_BETWEEN_NAMES = re.compile(r"\s+(?![\[(/]|in\b)(?<!in\s)(?<!/\s)")
+#: How a line of numbers begins.
+_NUMBER_FIRST = re.compile(r"\s*[+-]?[.,]?\d")
 #: Names of a column that numbers the flights.
 _FLIGHT_NUMBERS = ("flight", "experiment", "versuch", "flug", "nr", "no", "wurf")
 #: A path has at least so many points: a parabola through fewer is no fit.
@@ -67,16 +64,6 @@ MISTAKES: dict[str, Callable[[Array], Array]] = {
 
 #: Points of each flight, (n, 2) y and z - m, and whether the file states their unit.
 FoundFlights = tuple[list[Array], bool]
-
-
-def text_of(content: bytes) -> str:
-    """A file that a student saved as text: UTF-16 with a byte order mark, UTF-8, else Latin-1."""
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return content.decode("utf-16", errors="replace")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
 
 
 @dataclass(frozen=True)
@@ -160,116 +147,71 @@ def _files(path: Path) -> Iterator[tuple[str, bytes]]:
         yield str(path), read_bytes(path, "a table of points")
 
 
-class ColumnLabel(NamedTuple):
-    """Name in lower case, number of the flight or an empty text, and unit or None."""
-
-    name: str
-    number: str = ""
-    unit: str | None = None
-
-
 def _of_text(content: bytes, where: str) -> FoundFlights:
-    text = text_of(content).splitlines()
-    lines = [(k, line.strip("\r\n")) for k, line in enumerate(text, 1) if line.strip(" ;,\t\r")]
-    header = next((k for k, (_, line) in enumerate(lines) if not _LETTER.search(_NAN.sub("", line))), None)
-    if header is None:
-        raise InputError(where, "found no line of numbers", f"allowed: at least three points, {_ADVICE}")
-    separator, table = _cells(lines[header:], where)
-    names = [line for _, line in lines[:header]][-2:]
-    columns = _columns(names, separator, table.shape[1], where) or _unnamed(table, where)
-    return _flights(columns, table, where)
+    """Flights of a table: columns y and z, of one flight or numbered; or below each other, numbered by a column."""
+    channels = _channels(content, where)
+    matches = (_LABEL.fullmatch(channel.name) for channel in channels)
+    labels = [(match[1].lower(), match[2]) if match else ("", "") for match in matches]
+    if not {"y", "z"} <= {name for name, _ in labels}:
+        labels = [(name, "") for name in _unnamed(channels, where)]
+    sides = [(place, label) for place, label in enumerate(labels) if label[0] in ("y", "z")]
+    values, stated = {}, True
+    for place, label in sides:
+        values[label], has_unit = _metres(channels[place])
+        stated &= has_unit
+    numbers = list(dict.fromkeys(number for _, number in values))
+    if len(values) < len(sides) or {(side, number) for number in numbers for side in "yz"} != set(values):
+        allowed = "allowed: y1,z1,y2,z2, ... or one y and one z"
+        raise InputError(where, "found columns y and z that do not pair", allowed)
+    points = [np.stack([values["y", number], values["z", number]], axis=1) for number in numbers]
+    numbering = [channels[place].values for place, (name, _) in enumerate(labels) if name in _FLIGHT_NUMBERS]
+    if numbering and len(points) == 1:
+        flight = numbering[0]
+        points = [points[0][flight == one] for one in dict.fromkeys(flight[np.isfinite(flight)].tolist())]
+    return _checked(points, where), stated
+
+
+def _channels(content: bytes, where: str) -> Sequence[Channel]:
+    """Columns of a table; InputError where a line of numbers is not like the others."""
+    try:
+        source = source_of(where, content)
+        channels = TABLE.read(source).channels
+    except InputError as error:
+        raise InputError(error.where, error.found, f"allowed: at least three points, {_ADVICE}") from error
+    if defect := next((channel.defect for channel in channels if channel.defect), None):
+        raise defect
+    above = list(enumerate(source.text().splitlines(), 1))[: (channels[0].line or 1) - 1]
+    number, last = next((one for one in reversed(above) if one[1].strip()), (0, ""))
+    if _NUMBER_FIRST.match(last):
+        found = f"found other cells than below ({last[:40]!r})"
+        raise InputError(f"{where}: line {number}", found, f"allowed: {_ADVICE}")
+    return channels
+
+
+def _unnamed(channels: Sequence[Channel], where: str) -> str:
+    """Names of columns without: two are y and z, of three the first is a time that runs evenly."""
+    width, steps = len(channels), np.diff(channels[0].values)
+    even = steps.size > 0 and steps.min() > 0.0 and np.ptp(steps) <= 0.02 * steps.max()
+    unnamed = all(channel.name.startswith("column ") for channel in channels)
+    if width == 2 or (width == 3 and even and unnamed):
+        return "tyz"[-width:]
+    names = ", ".join(channel.label for channel in channels)
+    raise InputError(where, f"found no columns y and z ({names[:60]})", f"allowed: {_ADVICE}")
+
+
+def _metres(channel: Channel) -> tuple[Array, bool]:
+    """Values of a column, and whether its unit is stated, as `y [mm]`, `y / mm` or `y in mm`."""
+    match = _LABEL.fullmatch(channel.name)
+    unit = channel.unit or (match[3] if match else None)
+    try:
+        return convert(channel.values, unit or "m", "m"), bool(unit)
+    except ValueError as error:
+        raise InputError(channel.place(), f"found the unit '{unit}'", "allowed: a unit of length") from error
 
 
 def _of_mat(content: bytes, where: str) -> FoundFlights:
     arrays = {name: value for name, value in load_mat(content, where).items() if not name.startswith("__")}
     return _checked(_matrices(arrays), where), False
-
-
-def _split(line: str, separator: str) -> list[str]:
-    return re.split(separator, line.strip() if separator == _BLANKS else line)
-
-
-def _cells(lines: Sequence[tuple[int, str]], where: str) -> tuple[str, Array]:
-    """What separates cells, and their values, (n, columns); NaN where a cell is empty.
-
-    Every layout is tried; that which reads all lines alike is the table's.
-    """
-    complaints = []
-    for separator, decimal in _LAYOUTS:
-        rows = [[cell.strip().replace(decimal, ".") for cell in _split(line, separator)] for _, line in lines]
-        width = max(len(row) for row in rows)
-        if width < 2:
-            continue
-        wrong = [k for k, row in enumerate(rows) if not all(cell == "" or _NUMBER.fullmatch(cell) for cell in row)]
-        ragged = [k for k, row in enumerate(rows) if len(row) != width]
-        if wrong or ragged:
-            complaint = "a cell that is no number" if wrong else f"other than {width} cells"
-            complaints.append(((wrong or ragged)[0], complaint))
-            continue
-        return separator, np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
-    if not complaints:
-        raise InputError(where, "found one column", f"allowed: {_ADVICE}")
-    place, complaint = max(complaints, key=lambda one: one[0])
-    number, text = lines[place]
-    raise InputError(f"{where}: line {number}", f"found {complaint} ({text[:40]!r})", f"allowed: {_ADVICE}")
-
-
-def _columns(names: Sequence[str], separator: str, width: int, where: str) -> list[ColumnLabel] | None:
-    """Columns by the line of names and a line of units under it; None without names."""
-    found: list[list[ColumnLabel]] = []
-    for line in names:
-        cells = _split(line, separator)
-        cells = cells if len(cells) == width else [cell for cell in _BETWEEN_NAMES.split(line.strip()) if cell]
-        if len(cells) == width:
-            matches = map(_LABEL.fullmatch, cells)
-            found.append(
-                [
-                    ColumnLabel(m[1].lower(), m[2], (m[3] or "").strip() or None) if m else ColumnLabel("")
-                    for m in matches
-                ]
-            )
-    labels = next((columns for columns in reversed(found) if {"y", "z"} <= {column.name for column in columns}), None)
-    if labels is None:
-        if names and width > 2:
-            raise InputError(where, f"found no columns y and z ({names[-1][:60]!r})", f"allowed: {_ADVICE}")
-        return None
-    if found[-1] is not labels:  # a row of units
-        units = [cell.strip(" []()") for cell in _split(names[-1], separator)]
-        labels = [label._replace(unit=label.unit or unit) for label, unit in zip(labels, units, strict=True)]
-    return labels
-
-
-def _unnamed(table: Array, where: str) -> list[ColumnLabel]:
-    """Two columns are y and z, of three the first is a time that runs evenly."""
-    steps = np.diff(table[:, 0])
-    even = steps.size > 0 and steps.min() > 0.0 and np.ptp(steps) <= 0.02 * steps.max()
-    if table.shape[1] == 2 or (table.shape[1] == 3 and even):
-        return [ColumnLabel(name) for name in "tyz"[-table.shape[1] :]]
-    raise InputError(where, f"found {table.shape[1]} columns without names", f"allowed: {_ADVICE}")
-
-
-def _flights(columns: Sequence[ColumnLabel], table: Array, where: str) -> FoundFlights:
-    values = {(c.name, c.number): (c, table[:, k]) for k, c in enumerate(columns) if c.name in ("y", "z")}
-    expected = sum(column.name in ("y", "z") for column in columns)
-    numbers = list(dict.fromkeys(number for _, number in values))
-    lonely = [number for number in numbers if ("y", number) not in values or ("z", number) not in values]
-    if len(values) != expected or lonely:
-        allowed = "allowed: y1,z1,y2,z2, ... or one y and one z"
-        raise InputError(where, "found columns y and z that do not pair", allowed)
-    points = [np.stack([_metres(*values[name, number], where) for name in "yz"], axis=1) for number in numbers]
-    numbering = [table[:, k] for k, column in enumerate(columns) if column.name in _FLIGHT_NUMBERS]
-    if numbering and len(points) == 1:  # flights below each other, parted by their numbers
-        flight = numbering[0]
-        points = [points[0][flight == one] for one in dict.fromkeys(flight[np.isfinite(flight)].tolist())]
-    return _checked(points, where), all(c.unit is not None for c, _ in values.values())
-
-
-def _metres(column: ColumnLabel, values: Array, where: str) -> Array:
-    try:
-        return values if column.unit is None else convert(values, column.unit, "m")
-    except ValueError as error:
-        found = f"found the unit '{column.unit}'"
-        raise InputError(f"{where}: {column.name}", found, "allowed: a unit of length") from error
 
 
 def _pairs(arrays: Mapping[str, np.ndarray]) -> list[Array]:
@@ -352,12 +294,14 @@ def _wrong(flights: Sequence[Array]) -> Iterator[tuple[int, str]]:
 def _why(flights: Sequence[Array], k: int) -> str:
     """The mistake without which flight k is like the others."""
     flight, others = flights[k], [one for j, one in enumerate(flights) if j != k]
+
+    def fits(one: Array) -> bool:
+        return all(place < len(others) for place, _ in _wrong([*others, one]))
+
     for words, undo in MISTAKES.items():
-        if not [found for found in _wrong([*others, undo(flight)]) if found[0] == len(others)]:
+        if fits(undo(flight)):
             return words
-    for j in range(len(flight)):
-        rest = np.delete(flight, j, axis=0)
-        if not [found for found in _wrong([*others, rest]) if found[0] == len(others)]:
-            y, z = flight[j].tolist()
+    for j, (y, z) in enumerate(flight.tolist()):
+        if fits(np.delete(flight, j, axis=0)):
             return f"its point {j + 1}, ({y:.4g}, {z:.4g}) m, is an outlier"
     return "no known mistake explains it"

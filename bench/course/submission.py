@@ -6,25 +6,17 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.course.flights import text_of
 from bench.errors import InputError
 from bench.files import read_bytes
 from bench.names import nearest
 from bench.structured import parse_json
-from bench.units.conversion import spelled_for_pint
+from bench.trace.source import source_of
 
 #: Name of the form, and endings of filled ones.
 FORM, ENDINGS = "answers.csv", (".csv", ".json")
 #: How a form begins; the table of grades that an earlier run wrote begins with student,task.
 _FORM = re.compile(r'\W*"?(quantity|student(?!\W*task)|schema)', re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-#: Powers and products as people write them.
-_SIGNS = str.maketrans({"²": "**2", "³": "**3", "·": "*", "^": "**", "Ω": "ohm"})
-
-#: Units that are written without a sign between them: kgcm², kgm^2, kgcm2, Nms/rad, mNm.
-_JOINED = re.compile(r"\b(kg|g|[mkµ]?N)(c?m)(s?)(?=\b|\d)")
-_POWER = re.compile(r"(?<=[a-z])(?=[23]\b)")
-
 #: Where a row stands, and its quantity, value and unit as they were written.
 Entry = tuple[str, str, str, str]
 
@@ -110,9 +102,9 @@ def _is_form(path: Path) -> bool:
     """Whether it looks like one; what cannot be read is reported as a form that cannot."""
     try:
         content = read_bytes(path, "a filled form", replaced=True)
+        return bool(content.strip() and _FORM.match(source_of(path, content).text()[:200]))
     except InputError:
         return True
-    return bool(_FORM.match(text_of(content)[:200]))
 
 
 def read_submission(path: Path) -> Submission:
@@ -120,7 +112,7 @@ def read_submission(path: Path) -> Submission:
 
     Raises InputError where a row cannot be read, a quantity is not asked for or given twice, or there is no student.
     """
-    text = text_of(read_bytes(path, "a filled form"))
+    text = source_of(path, read_bytes(path, "a filled form")).text()
     entries = _of_json(text, path) if path.suffix.lower() == ".json" else _of_csv(text, path)
     names = {question.name.lower(): question.name for question in QUESTIONS}
     student, answers = "", {}
@@ -140,7 +132,7 @@ def read_submission(path: Path) -> Submission:
             if not _NUMBER.fullmatch(plain):
                 allowed = "allowed: a number, and its unit in a column of its own"
                 raise InputError(where, f"found the value '{value}'", allowed)
-            answers[name] = GivenAnswer(float(plain), _unit(unit))
+            answers[name] = GivenAnswer(float(plain), "1" if unit == "-" else unit.strip("[] "))
     if not student:
         raise InputError(f"{path}: student", "missing", "allowed: the row student,NUMBER as the form has it")
     return Submission(student.zfill(2) if student.isdigit() else student, answers, str(path))
@@ -174,11 +166,3 @@ def _of_json(text: str, path: Path) -> list[Entry]:
         allowed = 'allowed: {"student": "07", "answers": {"J": {"value": 22.4, "unit": "kg*cm**2"}, ...}}'
         raise InputError(path, f"is no filled form ({error!r})", allowed) from error
     return entries
-
-
-def _unit(text: str) -> str:
-    plain = text.strip().strip("[]")
-    if plain in ("1", "-", "dimensionless"):
-        return "dimensionless"
-    written = spelled_for_pint(plain).translate(_SIGNS)
-    return _JOINED.sub(lambda match: "*".join(filter(None, match.groups())), _POWER.sub("**", written))

@@ -110,8 +110,12 @@ def open_source(path: str | Path) -> Source:
         InputError: not there, not a file, not readable, empty, or a damaged gzip.
     """
     path = marker(Path(path))
-    content = read_bytes(path, "a trace")
-    name = path.name.lower()
+    return source_of(path, read_bytes(path, "a trace"))
+
+
+def source_of(path: str | Path, content: bytes) -> Source:
+    """Content of a file that was read already, under its name; InputError where it is empty or a damaged gzip."""
+    name = str(path).lower()
     if content.startswith(_GZIP):
         try:
             with gzip.GzipFile(fileobj=io.BytesIO(content)) as packed:

@@ -270,12 +270,3 @@ def is_unit(text: str) -> bool:
     except ValueError:
         return False
     return bool(unit.powers)
-
-
-def spelled_for_pint(text: str) -> str:
-    """A unit in pint's spelling, e.g. `N*m` for `Nm`; unchanged if it is no unit or has a factor."""
-    try:
-        unit = parse_unit(text)
-    except UnitError:
-        return text
-    return str(unit) if unit.factor == 1.0 else text

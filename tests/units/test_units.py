@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from bench.errors import InputError
 from bench.names import nearest
 from bench.units import convert, dimensionality, parse
-from bench.units.conversion import scale_of, spelled_for_pint
+from bench.units.conversion import scale_of
 from bench.units.grammar import UnitError
 
 
@@ -116,10 +116,3 @@ def test_a_temperature_has_its_own_zero_and_no_factor():
     assert parse("68 °F", "K", "x") == pytest.approx(293.15)
     with pytest.raises(UnitError, match=r"found '0\.1 degC'; allowed: degC without a factor, or K"):
         scale_of("0.1 degC", ("K",))
-
-
-@pytest.mark.parametrize(
-    ("text", "spelled"), [("Nm", "N*m"), ("1/min", "1/min"), ("0.01 Nm", "0.01 Nm"), ("no unit", "no unit")]
-)
-def test_a_unit_without_a_factor_is_spelled_for_pint(text, spelled):
-    assert spelled_for_pint(text) == spelled

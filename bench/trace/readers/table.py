@@ -44,7 +44,7 @@ MOST_JOINTS, IN_TURN = 64, 0.9
 #: seconds to the ns.
 TYPES = {"number": pa.float64(), "exact": pa.decimal128(30, 9), "text": pa.string(), "list": pa.string()}
 
-_NUMBER = re.compile(r"[+-]?(?:\d[\d.,'’\u00a0\u202f]*|[.,]\d+)(?:[eE][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?(?:\d[\d.,'’\u00a0\u202f]*(?<!,)|[.,]\d+)(?:[eE][+-]?\d+)?")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?|[+-]?\d{1,3}(?:[.'’\u00a0\u202f]\d{3})+,\d*")
 _WORDS = frozenset(("true", "false", "inf", "-inf", "+inf", "infinity", "-infinity"))
 _LEADING = re.compile(r"^\s*(?:#+|//+|!+|%+(?=\s))\s*")
@@ -57,6 +57,8 @@ _PAIR = re.compile(
     r"([+-]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][+-]?\d+)?|nan|NaN)(?![.\d:])"
     r"(?:\s?([^\W\d][^\s:=,;|\[]*|[%°][^\s:=,;|\[]*)(?!\s*[:=\[]|[^\s,;|]))?"
 )
+#: Blanks before a name; a unit in brackets, behind a slash or behind `in` belongs to the name before it.
+_BEFORE_A_NAME = re.compile(r"\s+(?![\[(/]|in\s)(?<!/\s)(?<!\sin\s)")
 _COMMENT = re.compile(rb"^[ \t]*(?:#|//)")
 
 
@@ -521,11 +523,11 @@ def _header_row(line: str, separator: str, width: int, numbered: bool) -> list[s
 
 
 def _cuts(line: str, separator: str) -> list[list[str]]:
-    """A line cut in the ways in which headers are: as the samples, at other marks, at blanks before no bracket."""
+    """A line cut in the ways in which headers are: as the samples, at other marks, at blanks before a name."""
     cuts = [cells_of(line, separator)]
     cuts += [cells_of(line, other) for other in SEPARATORS[:3] if other != separator and other in line]
     if separator in (BLANKS, "\t"):
-        cuts += [re.split(r"\s{2,}", line.strip()), re.split(r"\s+(?![\[(])", line.strip())]
+        cuts += [re.split(r"\s{2,}", line.strip()), _BEFORE_A_NAME.split(line.strip())]
     return cuts
 
 
