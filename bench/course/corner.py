@@ -23,6 +23,7 @@ from bench.rig.rig import Rig
 TIME_CONSTANTS = (1e-3, 2e-3, 3e-3, 5e-3, 8e-3)
 #: Shares of the peak torque at which speeds with and without inductance are compared.
 SHARES = (0.98, 0.9, 0.7, 0.5)
+FASTER = "with inductance faster at {:.0%} of the torque by"
 #: One of so many steps of a run is drawn.
 EVERY = 40
 
@@ -45,7 +46,7 @@ class Split:
     @classmethod
     def of(cls, rig: Rig, axis: AxisParameters) -> Split:
         """Of a rig's motor that runs up an axis."""
-        own, (_, demand) = circuit(rig), full_speed(rig, axis)
+        own, demand = circuit(rig), full_speed(rig, axis)
 
         def simulated(temperature: float, inductive: bool, winding: Circuit = own) -> WindingRun:
             return run_winding(WindingModel.of(rig, temperature, inductive, winding), axis, demand)
@@ -54,51 +55,32 @@ class Split:
         others = {tau: simulated(COLD, True, replace(own, time_constant=tau)) for tau in TIME_CONSTANTS}
         return cls(*runs, others)
 
-    @property
-    def by_temperature(self) -> float:
-        """Shift of the corner - rad/s."""
-        return self.cold.corner - self.hot.corner
-
-    @property
-    def by_inductance(self) -> float:
-        """Shift of the corner - rad/s."""
-        return self.inductive.corner - self.cold.corner
-
-    @property
-    def faster(self) -> dict[float, float]:
-        """By how much inductance raises the speed of the same share of the peak torque - rad/s, by the share."""
-        return {share: self.inductive.speed_at(share) - self.cold.speed_at(share) for share in SHARES}
-
 
 def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
     """State how many rpm of the corner's shift each of the two causes is, and what inductance does instead."""
     rig = recordings.rig
-    axis = identified_axis(recordings)
-    found = Split.of(rig, axis)
+    found = Split.of(rig, identified_axis(recordings))
     assumed = recordings.sources("motor", "electrical_time_constant")
-    faster = ", ".join(f"{speed * RPM:.0f} rpm at {share:.0%}" for share, speed in found.faster.items())
-    sheet = peak_curve(rig.motor, MAINS, rig.source).corner_speed
+    numbers = _numbers(found, joined(SIMULATED, f"L/R: {assumed}"))
+    rpm = {number.name: number.value for number in numbers}
+    faster = ", ".join(f"{rpm[FASTER.format(share)]:.0f} rpm at {share:.0%}" for share in SHARES)
+    hot, sheet = rpm["corner, hot, quasi-static"], peak_curve(rig.motor, MAINS, rig.source).corner_speed * RPM
     findings = (
         "The corner is the speed at which the torque starts to decline, as full voltage no longer drives peak current: "
         "U = R·Imax + Ke·ω. The current is still constant there, dIq/dt = 0, so no inductance can move it.",
-        f"Simulated, it lies at {found.hot.corner * RPM:.0f} rpm hot, at {found.cold.corner * RPM:.0f} rpm cold and at "
-        f"{found.inductive.corner * RPM:.0f} rpm cold with inductance (L/R, {assumed}): the cold winding moves it by "
-        f"{found.by_temperature * RPM:+.0f} rpm, as it takes less voltage and leaves more to the back-EMF, the "
-        f"inductance by {found.by_inductance * RPM:+.1f} rpm, and for L/R from 1 to 8 ms alike.",
+        f"Simulated, it lies at {hot:.0f} rpm hot, at {rpm['corner, cold, quasi-static']:.0f} rpm cold and at "
+        f"{rpm['corner, cold, with inductance']:.0f} rpm cold with inductance (L/R, {assumed}): the cold winding moves "
+        f"it by {rpm['shift by temperature']:+.0f} rpm, as it takes less voltage and leaves more to the back-EMF, the "
+        f"inductance by {rpm['shift by inductance']:+.1f} rpm, and for L/R from 1 to 8 ms alike.",
         "What inductance does is to flatten the fall: beyond the corner it keeps the current up for about L/R, in "
         f"which speed rises by α·L/R. The same torque is there at a higher speed, by {faster} of the "
         "peak. Whoever reads the corner from the line through the fall, or at a few percent below the peak, counts "
         "this as a shift.",
         *_measured_findings(recordings, found),
         f"The winding warms by {found.hot.warming[-1]:.1f} K (hot) and {found.cold.warming[-1]:.1f} K (cold) during "
-        f"the run-up, which keeps the hot corner {(found.hot.corner - sheet) * RPM:+.0f} rpm from the datasheet's "
-        f"{sheet * RPM:.0f} rpm.",
+        f"the run-up, which keeps the hot corner {hot - sheet:+.0f} rpm from the datasheet's {sheet:.0f} rpm.",
     )
-    return TaskResult(
-        findings,
-        _numbers(found, joined(SIMULATED, f"L/R: {assumed}")),
-        (_torque_chart(rig, found),),
-    )
+    return TaskResult(findings, numbers, (_torque_chart(rig, found),))
 
 
 def _numbers(found: Split, with_inductance: str) -> tuple[Number, ...]:
@@ -106,11 +88,12 @@ def _numbers(found: Split, with_inductance: str) -> tuple[Number, ...]:
         "corner, hot, quasi-static": (found.hot.corner, SIMULATED),
         "corner, cold, quasi-static": (found.cold.corner, SIMULATED),
         "corner, cold, with inductance": (found.inductive.corner, with_inductance),
-        "shift by temperature": (found.by_temperature, SIMULATED),
-        "shift by inductance": (found.by_inductance, with_inductance),
+        "shift by temperature": (found.cold.corner - found.hot.corner, SIMULATED),
+        "shift by inductance": (found.inductive.corner - found.cold.corner, with_inductance),
     }
-    for share, faster in found.faster.items():
-        speeds[f"with inductance faster at {share:.0%} of the torque by"] = faster, with_inductance
+    for share in SHARES:
+        faster = found.inductive.speed_at(share) - found.cold.speed_at(share)
+        speeds[FASTER.format(share)] = faster, with_inductance
     others = {f"L/R = {tau * 1e3:g} ms": other for tau, other in found.others.items()}
     speeds |= {f"corner, {words}": (other.corner, SIMULATED) for words, other in others.items()}
     speeds |= {f"fall later by, {words}": (other.line - found.cold.line, SIMULATED) for words, other in others.items()}

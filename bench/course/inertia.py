@@ -12,7 +12,7 @@ import numpy as np
 
 from bench.arrays import NORMAL95, Array, rms
 from bench.course.axis import KG_CM2, joined
-from bench.course.plausible import WITH_FRICTION, WITHOUT_FRICTION, balance
+from bench.course.plausible import balance
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import COMPUTED, RECORDING, Number, TaskResult, chart, curve, panel
 from bench.errors import InputError, UndeterminedError
@@ -26,11 +26,6 @@ SAMPLE_PERIOD = 1e-3
 DURATION = 2.0 * np.pi
 #: Width of the bench's filter, as it chooses it for the lab's recordings - s.
 WIDTH = 2.0 * SAMPLE_PERIOD
-#: Of the diagrams of tasks 5 and 7.
-TITLES = {
-    WITHOUT_FRICTION: "Task 5: recording without friction",
-    WITH_FRICTION: "Task 7: recording with friction",
-}
 
 
 def backward_difference_of_a_sine(recordings: LabRecordings) -> TaskResult:
@@ -65,7 +60,7 @@ def backward_difference_of_a_sine(recordings: LabRecordings) -> TaskResult:
     return TaskResult((findings,), numbers, (drawn,))
 
 
-def signals(name: str, recordings: LabRecordings) -> TaskResult:
+def signals(name: str, title: str, recordings: LabRecordings) -> TaskResult:
     """Tasks 5 and 7: angle, speed, acceleration and torque of a recording one above the other, and how far they reach.
 
     They are drawn of a recording that cannot be of the axis, too, for what is wrong with it to be seen.
@@ -77,7 +72,7 @@ def signals(name: str, recordings: LabRecordings) -> TaskResult:
         "acceleration α / (rad/s²)": run.acceleration,
         "torque M / (N·m)": run.torque,
     }
-    drawn = chart(TITLES[name], *(panel("time / s", label, curve(run.time, values)) for label, values in shown.items()))
+    drawn = chart(title, *(panel("time / s", label, curve(run.time, values)) for label, values in shown.items()))
     try:
         recordings.sound(name)
     except InputError as reason:

@@ -161,11 +161,11 @@ def _model(winding: WindingModel, axis: AxisParameters) -> mujoco.MjModel:
     return spec.compile()
 
 
-def full_speed(rig: Rig, axis: AxisParameters) -> tuple[float, Array]:
-    """Peak torque - N*m, and the no-load speed asked for - rad/s, (steps,), as long as a run-up with an axis takes."""
+def full_speed(rig: Rig, axis: AxisParameters) -> Array:
+    """The no-load speed asked for - rad/s, (steps,), as long as a run-up of an axis takes."""
     own, full = circuit(rig), float(torque_constant(rig).torque(np.asarray(motor_value(rig, "peak_current"))))
     top = own.voltage / own.back_emf_constant
-    return full, np.full(round(LENGTH * axis.inertia * top / full / STEP), top)
+    return np.full(round(LENGTH * axis.inertia * top / full / STEP), top)
 
 
 def identified_axis(recordings: LabRecordings) -> AxisParameters:
