@@ -49,7 +49,11 @@ TASKS = (
     Task("2", "Backward difference", inertia.backward_difference_of_a_sine, "rig"),
     Task("3", "Torque constant from the datasheet", torque_constants.at_both_points, "rig"),
     Task("4", "Torque constant over current", torque_constants.over_current, "rig"),
-    Task("5", "Recording without friction", partial(inertia.signals, WITHOUT_FRICTION, "Task 5: recording without friction")),
+    Task(
+        "5",
+        "Recording without friction",
+        partial(inertia.signals, WITHOUT_FRICTION, "Task 5: recording without friction"),
+    ),
     Task("6", "Moment of inertia without friction", inertia.inertia_without_friction),
     Task("7", "Recording with friction", partial(inertia.signals, WITH_FRICTION, "Task 7: recording with friction")),
     Task("8", "Filtered acceleration, slow samples removed", friction.samples_that_remain),
