@@ -151,6 +151,11 @@ class Policy:
         saves = explained(before, after) > max(share, self.by_chance(before, added, noise))
         return share > 0.0 and saves and self.physical(after)
 
+    def as_simple(self, current: Fit, best: Fit, other: Fit) -> bool:
+        """Whether another candidate with fewer numbers saves as much as the best one but for chance."""
+        fewer = freedom(best) - freedom(other)
+        return fewer > 0 and worth(other, best) <= self.by_chance(current, fewer)
+
     def physical(self, fitted: Fit) -> bool:
         """Whether every effect keeps within what physics allows: friction resists, masses are positive."""
         return (

@@ -144,6 +144,8 @@ def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy
             steps = (*steps, Step(fewer, tuple(tried)))
             continue
         best = min(better, key=lambda after: after.squares)
+        simpler = [after for after in better if policy.as_simple(current, best, after)]
+        best = min(simpler, key=lambda after: after.squares, default=best)
         names = Counter(best.hypothesis.names)
         if len(names) > policy.most or max(names.values()) > policy.members:
             return Searched(steps, LIMIT, Step(current, tuple(tried)))

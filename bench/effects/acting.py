@@ -62,7 +62,7 @@ class ConstantTorque(LoadTorque):
 
 
 class Spring(LoadTorque):
-    """A torque that pulls back to a position; its strength is the stiffness - N*m/rad (N/m)."""
+    """A torque that pulls back to a position; its first strength is the stiffness - N*m/rad (N/m), then a constant."""
 
 
 class ScalesTorque(Mechanism):

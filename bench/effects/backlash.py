@@ -376,7 +376,7 @@ def contacts_of(scope: Scope) -> list[float]:
 
 
 def _stiffness(fitted: Fitted, theta: Array) -> float:
-    return float(theta[fitted.places(Spring)].sum())
+    return float(theta[fitted.places(Spring)][:1].sum())
 
 
 def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:

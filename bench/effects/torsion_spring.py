@@ -1,15 +1,19 @@
-"""Torsion spring: a torque proportional to position (a hose, a cable).
+"""Torsion spring: a torque proportional to position, beyond a rest position (a hose, a cable).
 
-    M = c*q
+    M = c*(q - q_0)
 
-c - stiffness - N*m/rad (N/m), not negative; q - position - rad (m). A rest position other than zero is a torque offset.
+c - stiffness - N*m/rad (N/m), not negative; q - position - rad (m); q_0 - position at rest - rad (m). A constant torque
+moves the rest position: no recording distinguishes a spring with an offset from one that rests elsewhere. So beside a
+spring no `torque_offset` is needed, and both numbers of the spring are counted as fitted.
 """
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from bench.effects.acting import AXIS, Native, Spec, Spring
-from bench.effects.effect import OuterTorque
-from bench.effects.signals import Axis, Moment, Number, Signals, Values
+from bench.effects.effect import Fitted, OuterTorque, Proposal
+from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -17,16 +21,32 @@ from bench.units import Quantity
 class TorsionSpring(OuterTorque, Spring, Native):
     name = "torsion_spring"
     summary = "a torque proportional to position"
-    quantities = (Quantity("stiffness", "c", "N*m/rad", lower=0.0, null=0.0),)
+    quantities = (
+        Quantity("stiffness", "c", "N*m/rad", lower=0.0, null=0.0),
+        Quantity("reference", "q_0", "rad", preset=0.0, minor=True),
+    )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return [[(signals.position, 0)]]
+        """Position, and minus one for the torque c*q_0."""
+        return [[(signals.position, 0)], [(-np.ones_like(signals.time), 0)]]
+
+    def propose(self, fitted: Fitted) -> list[Proposal]:
+        """None where a constant torque explains as much."""
+        constant = fitted.seen(lambda signals: [[(np.ones_like(signals.time), 0)]], False)
+        (least,) = fitted.gains(constant, 1) + fitted.chance
+        return [proposal for proposal in super().propose(fitted) if proposal.gain > least]
+
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+        stiffness, torque = (*strengths, 0.0)[:2]
+        return {"stiffness": stiffness, "reference": torque / stiffness if stiffness else 0.0}
 
     def load_torque(self, values: Values, at: Moment) -> Number:
-        return values["stiffness"] * at.position
+        return values["stiffness"] * (at.position - values["reference"])
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
-        spec.joint(AXIS).stiffness[0] += values["stiffness"]
+        joint = spec.joint(AXIS)
+        joint.stiffness[0] += values["stiffness"]
+        joint.springref = values["reference"]
 
 
 EFFECT = TorsionSpring()

@@ -3,7 +3,7 @@
 Everything native to MuJoCo goes onto the joint, in the joint's own units. A model is on the motor's side of its gear, a
 joint behind it. With i motor turns per turn of the joint, q_m = i*q:
 
-    armature: J*i**2,  damping of order k: d_k*i**(k + 2),  frictionloss: K_0*i,  stiffness: c*i**2
+    armature: J*i**2,  damping of order k: d_k*i**(k + 2),  frictionloss: K_0*i,  stiffness: c*i**2,  springref: q_0/i
 
 What the model has as actuators (cogging, bristles, a constant torque) keeps the motor's units behind `gear="i"`. The
 effects are asked for their parts by building the axis alone (`AxisModel.spec`); these are then moved over, so whatever
@@ -167,7 +167,7 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
     body.inertia = disk_inertia(beyond) if turns else [NO_MASS] * 3
     carried = onto(spec, name, stored, armature)
     kept = spec.add_default(re.sub(r"\W+", "_", stored.name).strip("_") or "axis", spec.default)
-    for key in ("armature", "damping", "stiffness", "frictionloss", "solimp_friction", "solref_friction"):
+    for key in ("armature", "damping", "stiffness", "springref", "frictionloss", "solimp_friction", "solref_friction"):
         setattr(kept.joint, key, getattr(joint, key))
     joint.classname = kept
     compiled(spec)
@@ -189,7 +189,11 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature
         _couple(joint, axis, name, ratio)
     joint.armature = armature.value
     joint.damping = _scaled(alone.damping, ratio)
-    joint.stiffness = np.asarray(joint.stiffness) + _scaled(alone.stiffness, ratio)
+    own, added = float(joint.stiffness[0]), _scaled(alone.stiffness, ratio)
+    joint.stiffness = np.asarray(joint.stiffness) + added
+    if added[0]:  # two springs are one that rests between them
+        reference = alone.springref / ratio * _angle(joint)
+        joint.springref += (reference - joint.springref) * added[0] / (own + added[0])
     joint.frictionloss = alone.frictionloss * ratio
     joint.solimp_friction, joint.solref_friction = STICKING_IMPEDANCE, [2.0 * spec.option.timestep, 1.0]
     moving = [actuator.name or "an actuator without a name" for actuator in spec.actuators if actuator.target == name]
@@ -291,6 +295,11 @@ def _scaled(values: np.ndarray, ratio: float) -> np.ndarray:
     return np.asarray(values) * ratio ** (2.0 + np.arange(len(values)))
 
 
+def _angle(joint: mujoco.MjsJoint) -> float:
+    """Of a joint, in the unit of its file over the SI's."""
+    return float(np.rad2deg(1.0)) if joint.compiler.degree and joint.type == mujoco.mjtJoint.mjJNT_HINGE else 1.0
+
+
 def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float) -> None:
     """Join motor and link by a second joint of the link, along the first: the sum of both is the link's position."""
     if len(joint.parent.joints) > 1:
@@ -299,8 +308,7 @@ def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float
     for between in axis.body(LOAD).joints:
         added = joint.parent.add_joint(name=f"{name} {between.name}", type=joint.type, axis=joint.axis, pos=joint.pos)
         added.stiffness, added.damping = _scaled(between.stiffness, ratio), _scaled(between.damping, ratio)
-        angle = np.rad2deg(1.0) if joint.compiler.degree and joint.type == mujoco.mjtJoint.mjJNT_HINGE else 1.0
-        added.range, added.limited = np.asarray(between.range) / ratio * angle, between.limited
+        added.range, added.limited = np.asarray(between.range) / ratio * _angle(joint), between.limited
         added.solref_limit, added.solimp_limit = between.solref_limit, between.solimp_limit
 
 

@@ -208,7 +208,8 @@ def _newton(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
     """Attributes of Newton's `ModelBuilder`, 1.8: `joint_armature`, `joint_friction` and so on, of each coordinate."""
     entries, lines = {}, []
     for joint in joints:
-        springs = {name: float(spec.joint(AXIS).stiffness[0]) for name, spec in joint.native()}
+        found = [(name, spec.joint(AXIS)) for name, spec in joint.native()]
+        springs = {name: float(spring.stiffness[0]) for name, spring in found if not spring.springref}
         carried = [name for name, stiffness in springs.items() if stiffness]
         lines += joint.summary(carried, *joint.unlimited)
         values = {"armature": joint.armature, "friction": joint.coulomb, "damping": joint.damping}

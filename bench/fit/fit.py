@@ -115,6 +115,11 @@ class Fit:
         return self.noise.coloured
 
     @property
+    def chance(self) -> float:
+        """Squares that a number more hardly saves by chance, SURE standard errors of it - (N*m)**2 (N**2)."""
+        return SURE**2 * self.rows.correlation * self.floor**2
+
+    @property
     def count(self) -> int:
         """Rows that are determined."""
         return int(np.count_nonzero(self.determined))
@@ -392,7 +397,7 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
     gains = dict(zip(linear, fitted.worth(linear), strict=True))
     if max(gains.values(), default=0.0) <= SURE**2 * fitted.rows.correlation * fitted.noise.white**2:
         return None  # a floor in colour, which takes long, is no lower
-    least = SURE**2 * fitted.rows.correlation * fitted.floor**2
+    least = fitted.chance
     for effect in sorted((effect for effect in linear if gains[effect] > least), key=lambda effect: -gains[effect]):
         beside = fit(fitted.rows, fitted.hypothesis.plus(Term(effect)))
         strengths = beside.strengths(len(fitted.terms))

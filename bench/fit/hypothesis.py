@@ -28,12 +28,15 @@ from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.acting import (
     CarriesFriction,
+    ConstantTorque,
+    DirectedFriction,
     FollowsLoad,
     FrictionLevel,
     LoadTorque,
     MisreadEffort,
     ScalesFriction,
     ScalesTorque,
+    Spring,
     TorqueLoss,
 )
 from bench.effects.effect import (
@@ -312,7 +315,9 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, missing
     if missing is not None:
         return _copied(seen, effect, term.shape, lag, missing)
     if not isinstance(effect, Coupling):
-        return seen.kept(effect.columns, term.shape, lag=lag)
+        columns = seen.kept(effect.columns, term.shape, lag=lag)
+        constant = isinstance(effect, Spring) and hypothesis.of_kind(ConstantTorque, DirectedFriction)
+        return columns * (1.0, 0.0) if constant else columns  # a balance has one constant
     outer = [(each.effect, each.shape, each.load) for each in hypothesis.terms if each.load]
     loads = [(other, shape, load) for other, shape, load in outer if isinstance(other, OuterTorque)]
     if loads:

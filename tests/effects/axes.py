@@ -48,7 +48,7 @@ VALUES: dict[str, dict[str, float]] = {
     "friction_warmup": {"relative_amplitude": 1.2, "time_constant": 0.8, "viscous_share": 1.0},
     "torque_offset": {"torque": -0.12},
     "unbalance": {"amplitude": 0.2, "phase": -0.5},
-    "torsion_spring": {"stiffness": 0.02},
+    "torsion_spring": {"stiffness": 0.02, "reference": 1.5},
     "position_dependent_inertia": {"relative_amplitude": 0.1, "harmonic": 2.0, "phase": 0.4},
     "elastic_coupling": {"stiffness": 40.0, "damping": 0.01},
     "backlash": {"gap": 0.02, "contact_stiffness": 420.0, "contact_damping": 0.13},
@@ -69,9 +69,9 @@ VALUES: dict[str, dict[str, float]] = {
 }
 
 
-def present(name: str) -> Present:
-    """The effect for the bench."""
-    return Present.of(name, VALUES[name])
+def present(name: str, **values: float) -> Present:
+    """The effect for the bench, some of its values others."""
+    return Present.of(name, VALUES[name] | values)
 
 
 @dataclass(frozen=True)

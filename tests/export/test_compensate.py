@@ -30,7 +30,7 @@ K0, KW = PARAMETERS.coulomb_friction, PARAMETERS.viscous_friction_coefficient
 STEADY = {
     "cogging_torque": lambda v: v["amplitude"] * np.sin(v["harmonic"] * Q + v["phase"]),
     "unbalance": lambda v: v["amplitude"] * np.sin(Q + v["phase"]),
-    "torsion_spring": lambda v: v["stiffness"] * Q,
+    "torsion_spring": lambda v: v["stiffness"] * (Q - v["reference"]),
     "torque_offset": lambda v: v["torque"] + 0.0 * Q,
     "quadratic_drag": lambda v: v["quadratic_drag"] * W * np.abs(W),
     "stribeck_friction": lambda v: (

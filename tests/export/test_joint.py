@@ -96,6 +96,19 @@ def test_a_joint_keeps_its_own_spring_beside_the_models():
         assert spec.compile().joint("elbow").stiffness[0] == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.parametrize("angle", ["degree", "radian"])
+def test_two_springs_of_a_joint_rest_between_their_references(angle):
+    """c_1*(q - r_1) + c_2*(q - r_2) is zero at (c_1*r_1 + c_2*r_2)/(c_1 + c_2); the model's 4 rad are 0.4 here."""
+    reference = np.rad2deg(0.1) if angle == "degree" else 0.1
+    xml = ARM.replace('name="elbow"', f'name="elbow" stiffness="3" springref="{reference}"')
+    xml = xml.replace("<worldbody>", f'<compiler angle="{angle}"/><worldbody>', 1)
+    spec = mujoco.MjSpec.from_string(xml)
+    onto(spec, "elbow", stored(("torsion_spring", {"stiffness": 0.03, "reference": 4.0}), gear_ratio=10.0))
+    model = spec.compile()
+    rest = model.qpos_spring[model.joint("elbow").qposadr[0]]
+    assert rest == pytest.approx((3.0 * 0.1 + 3.0 * 0.4) / 6.0, rel=1e-9)
+
+
 def test_links_are_stated_without_the_joints_own_armature():
     """The forearm of two_links about its elbow, I + m*c**2, whose joint has an armature of 0.5 kg*m**2 beside."""
     assert link_inertia(mujoco.MjSpec.from_string(MJCF), "elbow") == pytest.approx(I2 + M2 * C2**2, rel=1e-9)

@@ -189,6 +189,13 @@ def test_newton_gets_a_spring(monkeypatch):
     assert "elbow: not carried: cogging_torque (MuJoCo has it: --to mjcf)" in lines
 
 
+def test_newton_has_no_spring_that_rests_elsewhere():
+    elsewhere = ("torsion_spring", {"stiffness": 0.5, "reference": 0.3})
+    text, lines = simulator_file("newton", {"elbow": of(elsewhere)}, None)
+    assert "'stiffness': 0" in text
+    assert any("elbow: not carried: torsion_spring" in line for line in lines)
+
+
 def test_nothing_of_a_name_becomes_code(monkeypatch):
     name = 'elbow"\n)]; raise SystemExit #'
     for target in ("mjlab", "isaaclab", "newton"):

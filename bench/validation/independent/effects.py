@@ -307,10 +307,11 @@ class Unbalance(Effect):
 
 @dataclass(frozen=True)
 class TorsionSpring(Effect):
-    """Resisting torque k*q; k stiffness - N*m/rad."""
+    """Resisting torque k*(q - q_0); k stiffness - N*m/rad -, q_0 reference - rad."""
 
     transmitted: ClassVar[bool] = True
     stiffness: float
+    reference: float = 0.0
 
     @classmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
@@ -318,7 +319,7 @@ class TorsionSpring(Effect):
         return cls(2.0 * about(severity, rng) * axis.torque_scale / (0.5 * axis.top_speed))
 
     def resisting_torque(self, rows: Rows) -> np.ndarray | float:
-        return self.stiffness * rows.position
+        return self.stiffness * (rows.position - self.reference)
 
 
 @dataclass(frozen=True)
