@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import binomtest, norm
 from scipy.stats import t as student
 
-from bench.comparison.difference import ENOUGH, NOT_EQUIVALENT, Difference, Measured
+from bench.comparison.difference import CHANGED, ENOUGH, NOT_EQUIVALENT, SAME, Comparison, Difference, Measured
 from bench.parameter import Parameter
 
 
@@ -159,3 +159,20 @@ def test_what_lies_outside_of_a_range_does_so_by_more_than_its_errors(value, out
 
 def test_a_difference_that_is_not_known_is_outside_of_every_range():
     assert Difference(math.nan, 0.1).outside(-1.0, 1.0, errors=3.0)
+
+
+@pytest.mark.parametrize(
+    ("differences", "chance", "reason"),
+    [
+        ([(3.3, 1.0)], 0.01, "the difference is 3.3 margins, but it is known to ± 2 N*m only"),
+        ([(0.5, 1.0)], 0.38, "the difference is known to ± 2 N*m only, so it may exceed the margin"),
+        ([(3.3, 1.0), (-3.3, 1.0)], 1.0, "opposite sign"),
+        ([(30.0, 1.0)], 0.5, "stronger noise may explain the difference"),
+    ],
+)
+def test_what_is_undecided_has_a_reason(differences, chance, reason):
+    """Of a margin of 1 N*m, with intervals of 95 % of 1.96 standard errors."""
+    found = Comparison("x", "N*m", 1.0, 4.3, tuple(Difference(*one) for one in differences), 1.0, chance=chance)
+    assert reason in found.reason
+    assert [replace(found, result=result).reason for result in (SAME, CHANGED)] == ["", ""]
+    assert replace(found, held_back="the rig is another").reason == "the rig is another"

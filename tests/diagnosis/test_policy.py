@@ -83,11 +83,8 @@ def test_a_torque_that_drives_the_axis_is_no_drag():
 
 
 def test_a_name_that_later_ones_make_good_goes():
-    """Half a revolution of a spring and a wave of two cycles look like an unbalance until both are there.
-
-    The offset is the reference of the spring.
-    """
-    trace = recorded(SHORT_STROKE, lambda motion: 0.02 * motion.position, wave(0.04, 2.0), offset(0.05))
+    """Half a revolution of a spring and a wave of two cycles look like an unbalance until both are there."""
+    trace = recorded(SHORT_STROKE, lambda motion: 0.02 * motion.position, wave(0.04, 2.0))
     effects = ["torsion_spring", "unbalance", "cogging_torque", "torque_offset"]
     hidden = {"torsion_spring", "cogging_torque"}
     assert set(names(POLICY, trace, effects)) == hidden

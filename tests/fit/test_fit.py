@@ -59,6 +59,7 @@ def test_identify_and_diagnose_tell_the_same_of_a_null(seed, noise):
 
 def test_six_effects_on_one_axis_are_all_named():
     """An offset beside a spring is the reference of the spring."""
+
     def stribeck(motion):
         return 0.06 * motion.sign * np.exp(-((motion.velocity / 4.0) ** 2))
 
