@@ -113,7 +113,7 @@ class Recording:
         """What a user writes to state the unit of a column."""
         if self.format == ARRAYS:
             return f'units={{"{channel.name}": "{unit}"}}'
-        return f'{signal} = "{self.column(channel)} [{unit}]" in the rig\'s [trace.columns]'
+        return f'`[trace.columns] {signal} = "{self.column(channel)} [{unit}]"` in the rig'
 
 
 def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -155,7 +156,7 @@ def _require(
         if "time" in faults:
             raise faults["time"]
         if chosen:
-            advice = 'give its sample_period = "1 ms" in the rig\'s [trace], or its column: time = "column [unit]"'
+            advice = 'give its period in the rig, e.g. `[trace] sample_period = "1 ms"`, or map its column'
             raise missing(recording, "column 'time'", advice)
     for group in ENOUGH:
         found = [faults[signal] for signal in group if signal in faults]
@@ -347,7 +348,7 @@ def _one(recording: Recording, signal: str, matches: list[Channel]) -> Channel:
     where, axes = f"{recording.origin}: {signal}", axes_of(matches)
     if len(axes) > 1:
         found = f"found {len(axes)} axes ({', '.join(map(short, axes))})"
-        raise InputError(where, found, f'pick one: --axis {axes[0]}, or axis = "{axes[0]}" in the rig\'s [trace]')
+        raise InputError(where, found, f"pick one: `{shlex.join(['--axis', axes[0]])}`")
     names = ", ".join(f"'{channel.label}'" for channel in matches)
     line = recording.stating(signal, matches[0], matches[0].unit or wanted_units(signal)[0])
     raise InputError(where, f"found several columns for it ({names})", f"name one: {line}")

@@ -25,6 +25,14 @@ def disturbed(weight=0.0, beat=0.0, push=0.0):
     return csv_of(time, velocity, current + more + push * np.sign(velocity))
 
 
+def two_axes():
+    """The plain axis, and one that moves half as far."""
+    time, velocity, current = columns()
+    rows = zip(time.tolist(), velocity.tolist(), current.tolist(), strict=True)
+    head = "time [s],A.velocity [rad/s],A.current [A],B.velocity [rad/s],B.current [A]"
+    return "\n".join([head, *(f"{t!r},{w!r},{i!r},{w / 2!r},{i / 2!r}" for t, w, i in rows)]) + "\n"
+
+
 #: Files by name: text.
 FILES = {
     "log.csv": TABLE,
@@ -33,7 +41,8 @@ FILES = {
     "no_time.csv": "\n".join(",".join(row.split(",")[1:]) for row in TABLE.splitlines()),
     "no_effort.csv": "\n".join(",".join(row.split(",")[:2]) for row in TABLE.splitlines()),
     "per_second.csv": headed("time [s],velocity [1/s],current [A]"),
-    "two.csv": headed("time [s],A.velocity [rad/s],A.current [A]"),
+    "two_axes.csv": two_axes(),
+    "twice.csv": headed("time [s],velocity [rad/s],velocity [rad/s]"),
     "no_rotor.toml": RIG.replace('rotor_inertia = "2 kg*cm**2"', ""),
     "manifest.csv": "file,rig,axis,time\nlog.csv,rig.toml,a,2026-01-01\n",
     "pendulum.csv": "file,rig,axis,time\nswing.csv,rig.toml,a,2026-01-01\n",
@@ -56,6 +65,10 @@ CASES = [
     "bench identify no_time.csv",
     "bench identify no_effort.csv --rig rig.toml",
     "bench identify per_second.csv",
+    "bench identify per_second.csv --rig rig.toml",
+    "bench identify no_time.csv --rig rig.toml",
+    "bench identify two_axes.csv",
+    "bench identify twice.csv --rig rig.toml",
     "bench identify log.csv",
     "bench identify log.csv --rig slow.toml",
     "bench diagnose log.csv --rig rig.toml --without coging_torque",

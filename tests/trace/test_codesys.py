@@ -98,7 +98,7 @@ def test_two_variables_of_one_name_must_be_distinguished(tmp_path):
     stamps = np.arange(0, 100, 1)
     channels = {"A.Velocity": (stamps, velocity(stamps / 1e3)), "B.Velocity": (stamps, current(stamps / 1e3))}
     path = write_utf16(tmp_path / "run.trace", machine_expert_xml(channels))
-    with pytest.raises(InputError, match=r"found 2 axes \(A, B\); pick one: --axis A"):
+    with pytest.raises(InputError, match=r"found 2 axes \(A, B\); pick one: `--axis A`"):
         read(path)
     np.testing.assert_allclose(
         read(path, {"velocity": "B.Velocity [deg/s]"})["velocity"], np.deg2rad(current(stamps / 1e3))

@@ -84,7 +84,7 @@ def test_a_bag_of_one_joint_needs_no_mapping(tmp_path):
 
 def test_a_bag_of_several_joints_asks_which(tmp_path):
     path = bag(tmp_path / "run.mcap", {"hip": 1.0, "knee": -0.5})
-    with pytest.raises(InputError, match=r"found 2 axes \(hip, knee\); pick one: --axis hip"):
+    with pytest.raises(InputError, match=r"found 2 axes \(hip, knee\); pick one: `--axis hip`"):
         read(path)
     holds(read(path, GivenOptions(axis="knee")), -0.5 * SPEED)
     with pytest.raises(InputError, match=r"no axis 'kne', did you mean 'knee'\?; found: hip, knee"):

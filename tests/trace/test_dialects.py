@@ -299,7 +299,7 @@ def test_axes_by_the_first_part_of_their_names(tmp_path):
     names = [f"Axis{k}.{name}" for k, name in itertools.product((1, 2), ("ActVel [rpm]", "Iq [A]"))]
     rows = [f"{row},0.0,0.0" for row in lines()]
     path = written(tmp_path / "run.csv", [",".join(("time [ms]", *names))], rows)
-    with pytest.raises(InputError, match=r"found 2 axes \(Axis1, Axis2\); pick one: --axis Axis1"):
+    with pytest.raises(InputError, match=r"found 2 axes \(Axis1, Axis2\); pick one: `--axis Axis1`"):
         read(path)
     holds(read(path, GivenOptions(axis="Axis1")))
 

@@ -305,7 +305,7 @@ def test_a_joint_that_no_name_tells_is_asked_for(tmp_path, elbow):
     """Three numbers for two joints: which are they?"""
     columns = [STATE["position"][:, 0]] * 3
     path = csv(tmp_path / "run.csv", ["q_0", "q_1", "q_2"], columns)
-    with pytest.raises(InputError, match=r"found 3 axes \(0, 1, 2\); pick one: --axis 0"):
+    with pytest.raises(InputError, match=r"found 3 axes \(0, 1, 2\); pick one: `--axis 0`"):
         read(path, elbow)
     table = {"joints": {"elbow": {"axis": "2", "columns": {"torque": "q_0"}}}}
     with pytest.raises(InputError, match=r"joint 'shoulder'.*\(0, 1, 2\): axis = \"...\" under \[joints.shoulder\]"):
