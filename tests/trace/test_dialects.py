@@ -177,7 +177,7 @@ def test_a_sample_index_and_a_period(tmp_path, names):
 def test_no_time_at_all_and_a_period(tmp_path):
     rows = [row.split(",", 1)[1] for row in lines()]
     path = written(tmp_path / "run.csv", ["velocity [rpm],current [A]"], rows)
-    with pytest.raises(InputError, match=r"give its sample_period = .1 ms. in the rig's \[trace\]"):
+    with pytest.raises(InputError, match=r'`\[trace\] sample_period = "1 ms"`'):
         read(path)
     holds(read(path, GivenOptions(sample_period=1e-3)))
 
