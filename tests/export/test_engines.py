@@ -47,6 +47,8 @@ ARM = {
     "elbow": of("load_dependent_friction", "cogging_torque", "torque_ripple", "torque_constant_drift", gear_ratio=12.0),
 }
 STEPS = 400
+#: Height of the shoulder above the floor, less than the arm is long - m.
+LOW = 0.45
 
 
 def robot(xml, models):
@@ -245,6 +247,66 @@ def test_worlds_of_mjx_move_as_on_the_cpu():
     relative = np.abs(found - expected).max() / np.abs(expected).max()
     print(f"\nMJX: {relative:.1e} of the CPU's trajectory")
     assert relative < 1e-3
+
+
+#: The arm over a floor that it hits, in worlds of other poses, at a step and with a frictionloss that robots have.
+IN_CONTACT = (
+    MJCF.replace('timestep="0.0005"', 'timestep="0.002"')
+    .replace("<worldbody>", f'<worldbody><geom type="plane" size="3 3 0.1" pos="0 0 -{LOW}"/>')
+    .replace("</body></body>", '<geom type="capsule" fromto="0 0 0 0 0 -0.3" size="0.03" mass="0"/></body></body>')
+)
+FRICTION = {"shoulder": of("stribeck_friction", gear_ratio=20.0), "elbow": of("quadratic_drag", gear_ratio=12.0)}
+WORLDS = 64
+
+
+def poses(model):
+    """From which the arm falls onto the floor - (WORLDS, nq)."""
+    return np.random.default_rng(0).uniform(-2.0, 2.0, (WORLDS, model.nq))
+
+
+def hits(model):
+    """In how many worlds the arm touches the floor on the CPU, which never diverges."""
+    found = 0
+    for pose in poses(model):
+        data = mujoco.MjData(model)
+        data.qpos[:] = pose
+        touched = False
+        for _ in range(STEPS):
+            mujoco.mj_step(model, data)
+            touched = touched or data.ncon > 0
+        assert np.isfinite(data.qpos).all()
+        found += touched
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("engine", ["mujoco_warp", "mjx"])
+def test_an_export_in_contact_stays_finite_in_single_precision(engine):
+    """Dry friction sticks by an impedance close to one, which a solver in single precision has to bear."""
+    simulation = robot(IN_CONTACT, FRICTION)
+    assert hits(simulation) > WORLDS // 2
+    if engine == "mujoco_warp":
+        mjw = pytest.importorskip("mujoco_warp", reason="mujoco_warp is not installed")
+        model = mjw.put_model(simulation)
+        state = mjw.put_data(simulation, mujoco.MjData(simulation), nworld=WORLDS, nconmax=20, njmax=100)
+        state.qpos.assign(poses(simulation).astype(np.float32))
+        for _ in range(STEPS):
+            mjw.step(model, state)
+        ends = state.qpos.numpy()
+    else:
+        jax = pytest.importorskip("jax", reason="jax is not installed")
+        mjx = pytest.importorskip("mujoco.mjx", reason="mujoco-mjx is not installed")
+        model, data = mjx.put_model(simulation), mjx.put_data(simulation, mujoco.MjData(simulation))
+
+        @jax.jit
+        @jax.vmap
+        def moved(pose):
+            start = data.replace(qpos=pose)
+            return jax.lax.fori_loop(0, STEPS, lambda _, now: mjx.step(model, now), start).qpos
+
+        ends = np.asarray(moved(jax.numpy.asarray(poses(simulation))))
+    assert np.isfinite(ends).all()
 
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "engines.md").read_text(encoding="utf-8")
