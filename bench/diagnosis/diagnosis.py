@@ -27,7 +27,7 @@ from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.same_axis import SameAxis, apart
 from bench.diagnosis.search import Searched, Step
-from bench.diagnosis.where import Profile, Where, profiles, where
+from bench.diagnosis.where import Where, where
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.present import named
@@ -162,7 +162,7 @@ class Diagnosis(Presented):
         verdict, effects, parameters: as the contract has them.
         because: what speaks against its being all; empty unless something remains.
         probabilities: of sets of names, and that none of the catalogue's is right.
-        where: shares of the gap before any effect; unexplained_share, unexplained_where: of what is left.
+        where: shares of the gap before any effect; unexplained_share, unexplained_where: of the residual.
         torque, velocity: gaps before and after.
         bandwidth: of the cascade that held the models to the recordings - rad/s.
         closed_loop: velocity gap under the rig's drive without and with what shows only there - rad/s (m/s).
@@ -175,7 +175,6 @@ class Diagnosis(Presented):
         stopped: what ended the search before it was done; None if nothing did.
         model, balance: with all effects; no model where MuJoCo cannot have them.
         courses: the recordings over time beside the model as it grew.
-        profiles: the gap over each coordinate before and after, what accounts for most first.
         considered: every effect of the catalogue, and why it was taken or not.
         recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
         warnings: what a user should know.
@@ -204,7 +203,6 @@ class Diagnosis(Presented):
     model: StoredModel | None
     balance: Balance
     courses: tuple[Course, ...]
-    profiles: tuple[Profile, ...]
     considered: tuple[Considered, ...]
     recordings: tuple[Alone, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
@@ -276,11 +274,10 @@ def diagnose(
     if recordings.rows is not bare.rows:
         bare = fit_bare(recordings.rows)
         suspects = replace(suspects, searched=suspects.searched.through(recordings.rows))
-    located = where(bare, rig.axis_kind, recordings.unit, recordings.current)
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
-    shown, checks = show(bare, located, added), joined([each.checks for each in gated])
+    shown, checks = show(bare, added), joined([each.checks for each in gated])
     return replace(shown, checks=checks, warnings=[*shown.warnings, *recordings.warnings, *moves])
 
 
@@ -302,8 +299,8 @@ def decided(recordings: Recordings, excluded: frozenset[str], policy: Policy) ->
     return tried[0]
 
 
-def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
-    """The diagnosis of what was named and kept; `located`: where the gap of the bare fit sits."""
+def show(bare: Fit, added: Added) -> Diagnosis:
+    """The diagnosis of what was named and kept."""
     recordings, whole, kept = added.recordings, added.extension.fitted, added.refined
     unit, kind, current = recordings.unit, recordings.rig.axis_kind, recordings.current
     parameters, alone, spread, differing = apart(recordings, whole, kept.parameters)
@@ -317,7 +314,7 @@ def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
         because=because,
         effects=kept.effects,
         probabilities=likely,
-        where=located,
+        where=where(bare, kind, unit, current, whole),
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
         unexplained_where=where(whole, kind, unit, current)[:3] if because else [],
         parameters=parameters,
@@ -337,7 +334,6 @@ def show(bare: Fit, located: list[Where], added: Added) -> Diagnosis:
         model=kept.model,
         balance=Balance.of(whole).repeating(added.repeats),
         courses=shown,
-        profiles=profiles(bare, whole, located, kind, unit, current),
         considered=considered(added, likely),
         warnings=[
             *suspicions(recordings.trace, recordings.rig, kept.parameters),

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +25,7 @@ class Where:
         unit: of the region.
         share: of the gap's variance, 0 to 1.
         centres, means: bins and the gap's mean in each - unit, N*m (N) - for the plot.
+        after: the same mean with all effects; empty of a frequency, and where there is no such fit.
     """
 
     coordinate: str
@@ -34,27 +34,7 @@ class Where:
     share: float
     centres: Array
     means: Array
-
-
-@dataclass(frozen=True)
-class Profile:
-    """The gap over one coordinate, before anything was added and after.
-
-    Attributes:
-        coordinate: of `bench.diagnosis.where`.
-        unit: of it.
-        share: of the first gap's variance that it explains.
-        centres: of its bins - unit - (b,).
-        before, after: mean of measured less modelled torque in each bin - N*m (N) - (b,), without and with the added
-            effects.
-    """
-
-    coordinate: str
-    unit: str
-    share: float
-    centres: Array
-    before: Array
-    after: Array
+    after: Array = field(default_factory=lambda: np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -74,7 +54,9 @@ class Coordinate:
     called: Array | None = None
 
 
-def where(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None) -> list[Where]:
+def where(
+    fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None, whole: Fit | None = None
+) -> list[Where]:
     """Shares of every coordinate of the gap that a fit leaves, largest first.
 
     Args:
@@ -82,14 +64,15 @@ def where(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None =
         kind: of the axis.
         effort_unit: of the effort.
         current: as reported at the rows - A - (m,); None where another effort is.
+        whole: the fit with all effects, for `Where.after`.
     """
-    found = [_account(one, fitted.residual) for one in coordinates(fitted, kind, effort_unit, current)]
+    found = [_account(one, fitted, whole) for one in coordinates(fitted, kind, effort_unit, current)]
     found.append(_frequency(fitted))
     return sorted(found, key=lambda account: -account.share)
 
 
 def coordinates(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None) -> list[Coordinate]:
-    """What the gap may hang on, along the rows; arguments as `where` has them."""
+    """What the gap may depend on, along the rows; arguments as `where` has them."""
     rows = fitted.rows
     time, position, sign = rows.time, rows.values(lambda s: s.position), rows.values(lambda s: s.sign)
     turned = np.concatenate([[0.0], np.where(np.diff(sign) != 0.0, time[1:], 0.0)])
@@ -121,23 +104,9 @@ def means_in(index: NDArray[np.int64], values: Array) -> Array:
     return np.bincount(index, values, minlength=count.size) / np.maximum(count, 1)
 
 
-def profiles(
-    bare: Fit, whole: Fit, located: Sequence[Where], kind: AxisKind, unit: str, current: Array | None
-) -> tuple[Profile, ...]:
-    """The gap over each coordinate without and with all effects, by the share of the first it explains; as `where`."""
-    shares, found = {account.coordinate: account.share for account in located}, []
-    for one in coordinates(bare, kind, unit, current):
-        index = bins_of(one.values)
-        kept = np.bincount(index) >= LEAST
-        centres = means_in(index, one.values if one.called is None else one.called)
-        before, after = means_in(index, bare.left), means_in(index, whole.left)
-        found.append(Profile(one.name, one.unit, shares[one.name], centres[kept], before[kept], after[kept]))
-    return tuple(sorted(found, key=lambda profile: -profile.share))
-
-
-def _account(coordinate: Coordinate, gap: Array) -> Where:
+def _account(coordinate: Coordinate, fitted: Fit, whole: Fit | None) -> Where:
     """Share of variance between bins, less what chance puts between them."""
-    gap = gap - gap.mean()
+    gap = fitted.residual - fitted.residual.mean()
     index = bins_of(coordinate.values)
     count, means = np.bincount(index), means_in(index, gap)
     centres = means_in(index, coordinate.values if coordinate.called is None else coordinate.called)
@@ -150,7 +119,10 @@ def _account(coordinate: Coordinate, gap: Array) -> Where:
     weight = np.cumsum((count * means**2)[order])
     main = order[: int(np.searchsorted(weight, 0.5 * weight[-1])) + 1]
     region = (float(centres[main].min()), float(centres[main].max()))
-    return Where(coordinate.name, region, coordinate.unit, share, centres[kept], means[kept])
+    after = np.empty(0) if whole is None else means_in(index, whole.left)[kept]
+    return Where(
+        coordinate.name, region, coordinate.unit, share, centres[kept], means_in(index, fitted.left)[kept], after
+    )
 
 
 def _frequency(fitted: Fit) -> Where:

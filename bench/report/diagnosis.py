@@ -433,11 +433,4 @@ def _next(found: Diagnosis) -> doc.Section:
     blocks: list[doc.Paragraph | doc.Points] = [doc.Paragraph(text=text)]
     if found.because:
         blocks += [doc.Paragraph(text="Evidence of a further effect:"), doc.points(map(words, found.because))]
-    if found.unexplained_where:
-        left = (
-            f"{share(one.share)} of the residual depends on {coordinate_word(one.coordinate, one.unit)}, most of it "
-            f"between {number(one.region[0])} and {number(one.region[1], one.unit)}"
-            for one in found.unexplained_where
-        )
-        blocks.append(doc.points(left))
     return doc.section("next", "What to record next", *blocks, detail=True)

@@ -32,7 +32,8 @@ MOVES = 0.05
 
 def at_a_glance(found: Diagnosis) -> tuple[doc.Chart, ...]:
     """The axis and what models make of it over a stretch that shows the gap, and the gap with what was found in it."""
-    over, most = gap_chart(found, [found.profiles[0].coordinate]), found.profiles[0]
+    most = next(one for one in found.where if one.after.size)
+    over = gap_chart(found, [most.coordinate])
     panels = tuple(panel.model_copy(update={"note": ""}) for panel in over.panels)
     title = f"{share(most.share)} of the gap depends on {panels[0].x_label}."
     over = over.model_copy(update={"title": title, "alternative": "", "panels": panels})
@@ -90,13 +91,14 @@ def _telling(curves: Array, whole: Sequence[slice]) -> tuple[float, slice | None
 
 def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
     """The gap in bins of these coordinates before and after, what was found in it, and the noise of a row."""
-    profiles, most = {profile.coordinate: profile for profile in found.profiles}, found.profiles[0]
+    profiles = {one.coordinate: one for one in found.where if one.after.size}
+    most = next(iter(profiles.values()))
     names = dict.fromkeys(words(effect.name) for effect in found.effects)
     made = f"what {listed(names)} {'make' if len(names) > 1 else 'makes'} of it"
     panels = []
     for profile in (profiles[name] for name in coordinates if name in profiles):
         order = np.argsort(profile.centres)
-        x, before, after = profile.centres[order], profile.before[order], profile.after[order]
+        x, before, after = (values[order] for values in (profile.centres, profile.means, profile.after))
         drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap before", "dots", "ink", x, before)]
         if found.effects:
             drawn.append(doc.series(made, "line", "model", x, before - after))
@@ -129,7 +131,7 @@ def where_picture(found: Diagnosis, title: str) -> doc.Picture:
         note=f"{share(spectrum.share)} of the gap in one band",
         series=(doc.series("", "line", "ink", spectrum.centres[1:], spectrum.means[1:]),),
     )
-    over = gap_chart(found, [profile.coordinate for profile in found.profiles])
+    over = gap_chart(found, [one.coordinate for one in found.where])
     below = doc.Chart(title="", alternative="Spectrum of the gap before.", panels=(panel,))
     return doc.Picture(name="where", title=title, rows=((over,), (below,)))
 

@@ -107,8 +107,8 @@ def _verdict(found: IdentifiedRobot) -> str:
         return f"None of {whole} joints could be answered."
     if not found.models:
         return f"No model of {whole} joints: neither armature nor friction is determined."
-    rest = "what is left of them is noise" if settled == answered else f"{settled} of them down to noise"
-    return f"{answered} of {whole} joints are identified, {rest}."
+    rest = "all residuals are noise" if settled == answered else f"the residuals of {settled} are noise"
+    return f"{answered} of {whole} joints are identified; {rest}."
 
 
 def _tables(found: IdentifiedRobot) -> list[doc.Table]:

@@ -111,7 +111,8 @@ def test_a_coupling_hears_noise_as_its_transfer_function_says():
 def test_a_gap_of_two_directions_belongs_to_direction():
     rng = np.random.default_rng(0)
     sign = np.sign(rng.normal(size=4000))
-    account = _account(Coordinate("direction", sign, "dimensionless"), 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000))
+    gap = 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000)
+    account = _account(Coordinate("direction", sign, "dimensionless"), SimpleNamespace(residual=gap, left=gap), None)
     assert account.centres == pytest.approx([-1.0, 1.0])
     assert account.share == pytest.approx(0.25 / 0.26, abs=0.01)
 

@@ -83,7 +83,7 @@ def test_the_page_has_a_row_for_each_joint(arm):
     page = json.loads((arm / "robot_id" / "report.json").read_text())
     rows = page["sections"][0]["blocks"][0]["rows"]
     assert [row[0] for row in rows] == ["shoulder", "elbow"]
-    assert rows[1][-1].startswith("Cogging torque > 9")
+    assert rows[1][-1].startswith("Cogging torque: > 9")
 
 
 def test_a_joint_of_which_there_is_no_log_leaves_the_rest(arm, tmp_path):

@@ -89,9 +89,10 @@ def test_profiles_and_courses_agree_with_the_steps(diagnosed):
     for k, step in enumerate(diagnosed.steps):
         assert rms(course.torque_left[k]) == pytest.approx(step.torque[0])
         assert rms(course.velocity_left[k].astype(float)) == pytest.approx(step.velocity[0])
-    for profile in diagnosed.profiles:
-        assert profile.centres.size == profile.before.size == profile.after.size
-    shares = [profile.share for profile in diagnosed.profiles]
+    for one in diagnosed.where:
+        assert one.centres.size == one.means.size
+        assert one.after.size == (0 if one.coordinate == "frequency" else one.means.size)
+    shares = [one.share for one in diagnosed.where]
     assert shares == sorted(shares, reverse=True)
 
 
