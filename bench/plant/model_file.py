@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
+from os.path import isdir
 from pathlib import Path
 from typing import Any
 
@@ -241,7 +242,7 @@ def _model(table: Mapping[str, Any], path: str) -> StoredModel:
 
 def read_table(path: str | Path, schema: str | None = None) -> dict[str, Any]:
     """The tables of a `model.toml`, or of that in a folder; InputError: unreadable, no TOML or of another schema."""
-    path = Path(path) / "model.toml" if Path(path).is_dir() else path
+    path = Path(path) / "model.toml" if isdir(path) else path  # noqa: PTH112, of a name of any length
     return read_toml(path, "a model.toml that the bench wrote", schema)
 
 

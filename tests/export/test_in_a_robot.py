@@ -98,7 +98,7 @@ def test_a_joint_is_checked_against_what_it_was(folder, monkeypatch):
 
 
 #: How several joints are refused where one is meant.
-SEVERAL = "allowed: one here; several together: bench robot LOG --mjcf ROBOT --joint shoulder --joint elbow --out DIR"
+SEVERAL = "--mjcf robot.xml --joint shoulder --joint elbow --out robot_id`"
 
 
 @pytest.mark.parametrize(

@@ -212,7 +212,7 @@ def test_nothing_of_a_name_becomes_code(monkeypatch):
         ("--to newton --actuator xl330", "allowed: with --to bam"),
         ("--to newton --joint wrist", "found no 'wrist'; allowed: shoulder, elbow"),
         ("--to newton --snippet", "found none or several"),
-        ("--snippet", "effects.toml: found several joints; allowed: --joint with one of shoulder, elbow"),
+        ("--snippet", "effects.toml: found several joints; pick one: `--joint shoulder`; the file has shoulder, elbow"),
     ],
 )
 def test_what_no_simulator_takes_is_one_line(tmp_path, arguments, says, monkeypatch, capfd):
