@@ -60,7 +60,7 @@ def test_reading_takes_time_in_proportion(tmp_path, case):
 WIDE = "w" * 50_000
 WORDY = {
     "unit": f"time [s],velocity [{WIDE}]\n0,1\n1,2\n",
-    "label without a unit": f"time [s],velocity {WIDE}\n0,1\n1,2\n",
+    "label without a unit": f"time [s],{WIDE}\n0,1\n1,2\n",
     "labels": f"{WIDE},{WIDE}2\n0,1\n1,2\n",
     "label of a text": f"time [s],{WIDE} velocity [rad/s]\n0,{WIDE}\n1,2\n",
     "text": f"time [s],velocity [rad/s]\n0,{WIDE}\n1,2\n",

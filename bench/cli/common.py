@@ -238,7 +238,7 @@ def say(text: str, err: bool = False) -> None:
 
         text = "\n".join(wrapped(text, shutil.get_terminal_size().columns))
     with suppress(*[OSError] if err else []):  # where standard error is full or closed, the status has to do
-        typer.echo(text, err=err)
+        print(text, file=stream, flush=True)  # by the stream's own encoding, which `typer.echo` replaces
 
 
 def list_files(files: Iterable[Path | None]) -> None:

@@ -129,7 +129,7 @@ class Estimate(Presented):
             return cls(
                 table["estimator"],
                 _stored(table["parameters"]),
-                Residual(**residual),
+                Residual(**{**residual, "depends_on": table["residual"].get("depends_on")}),
                 table["samples"]["read"],
                 table["samples"]["used"],
                 smooth["cutoff"],

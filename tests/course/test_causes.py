@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from bench.course.causes import MISTAKES
-from bench.course.run import in_words_of_the_course, made_run
+from bench.course.run import made_run
 from bench.rig.given import rig_of
-from bench.trace.channel import Channel, Recording
 
 RIG = rig_of("sh30701p")
 RUN = made_run(np.linspace(0.0, 90.0, 50), np.linspace(2.0, -1.0, 50), 2e-3, RIG)
@@ -25,10 +24,3 @@ def test_a_scale_that_is_undone_leaves_the_rest(mistake):
     undone = mistake.undo(RUN, RIG)
     signals = {name: (getattr(RUN, name), getattr(undone, name)) for name in set(CHANGED.values())}
     assert [name for name, pair in signals.items() if not np.array_equal(*pair)] == [CHANGED[mistake.kind]]
-
-
-@pytest.mark.parametrize(("mapped", "name"), [((), "velocity"), (("velocity",), "n / (1/min)")])
-def test_a_signal_that_the_rig_names_is_in_no_other_column(mapped, name):
-    columns = (Channel("t", "s", np.arange(5.0), "run.csv"), Channel("n / (1/min)", None, np.ones(5), "run.csv"))
-    found = in_words_of_the_course(Recording(columns, "table", "run.csv"), mapped)
-    assert found.channels[1].name == name
