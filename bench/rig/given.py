@@ -126,14 +126,15 @@ def drafted(recording: Recording, axis: str | None = None) -> tuple[Rig, str, st
     text = draft(found, axis=axis)
     rig = Rig.of(parse_toml(text, name), f"rig drafted from {name}")
     try:
-        assemble(recording, rig.trace)
+        signals = assemble(recording, rig.trace).signals
     except InputError as error:
         if recording.format == ARRAYS:
             raise
         how = f"`bench inspect {shlex.quote(recording.origin)} --draft rig.toml` writes a rig to complete, for --rig"
         raise InputError(error.where, error.found, f"{error.allowed}; {how}") from error
     mapped = [f"{signal} = {column}" for signal, column in rig.trace.columns.items()]
-    assumed = "; ".join(filter(None, (f"a {rig.kind} axis", ", ".join(mapped), without_constant(rig))))
+    remark = None if {"torque", "force"} & signals.keys() else without_constant(rig)
+    assumed = "; ".join(filter(None, (f"a {rig.kind} axis", ", ".join(mapped), remark)))
     return rig, text, f"no rig was given, so one was drafted from {name}: {assumed}"
 
 
