@@ -19,7 +19,7 @@ import scipy.stats
 from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import OfSpeed
+from bench.effects.effect import Columns
 from bench.effects.signals import Base, Signals
 from bench.errors import InputError, UndeterminedError
 from bench.gate.check import Check
@@ -116,7 +116,7 @@ def friction_map(recordings: Sequence[Given], rig: GivenRig | None = None, units
         found = "found friction that drives the axis: torque and motion have opposite signs"
         allowed = "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)"
         raise InputError("friction over speed", found, allowed)
-    names = [name for name, effect in catalogue().items() if isinstance(effect, OfSpeed)]
+    names = [name for name, effect in catalogue().items() if effect.of_speed]
     tried = [bent_curve(name, velocity, effort) for name in names]
     chances = [chance(plain, one, effort.size, ROUNDING * total) for one in tried]
     least = int(np.argmin(chances))
@@ -204,7 +204,7 @@ def _columns(name: str, shape: tuple[float, ...], velocity: Array) -> Array:
     if name:
         signals = Signals(zero, zero, velocity, sign, zero, zero, sign, 1.0, 1.0)
         effect = catalogue()[name]
-        assert isinstance(effect, OfSpeed)
+        assert isinstance(effect, Columns)
         columns += [sum((values for values, _ in column), zero) for column in effect.columns(signals, shape)]
     return np.column_stack(columns)
 

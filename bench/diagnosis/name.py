@@ -20,7 +20,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, search
 from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detected, Effect, Lag, Occasional, Replacing, Standout
+from bench.effects.effect import Detected, Effect, Lag, Occasional, Standout
 from bench.effects.signals import Axis
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit, hint, shaped, unbiased
@@ -208,7 +208,7 @@ def named(
 def alike(fitted: Fit, index: int, policy: Policy) -> tuple[str, ...]:
     """Names of effects that the recording cannot distinguish from a term's: none can, or a wider form fits as well."""
     term, found = fitted.terms[index], []
-    for effect in (each for each in catalogue().values() if isinstance(each, Replacing)):
+    for effect in (each for each in catalogue().values() if each.replaces):
         shape = effect.unlike(fitted) if term.effect.name in effect.replaces else None
         if shape is not None:
             other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, shape)))

@@ -23,7 +23,7 @@ from bench.diagnosis.model import stored_model
 from bench.diagnosis.recordings import Recordings
 from bench.effects.acting import ConstantTorque
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import MotionLag
+from bench.effects.effect import Effect, Lag
 from bench.effects.present import Present
 from bench.effects.signals import Base
 from bench.errors import BenchError, InputError
@@ -105,16 +105,21 @@ def propose(added: Added) -> NextExperiment | None:
 def alternatives(added: Added, model: AxisModel) -> Iterator[Alternatives]:
     """Other explanations that remain, as models."""
     for effect in added.refined.effects:
-        if not isinstance(effect.effect, MotionLag):
+        if not _of_motion(effect.effect):
             continue
         for other in effect.ambiguous_with:
-            if isinstance(catalogue()[other], MotionLag):
+            if _of_motion(catalogue()[other]):
                 kept = [present for present in model.effects if present.effect is not effect.effect]
                 models = model, model.with_effects([*kept, Present.of(other, effect.values)])
                 yield (effect.name, other), models, "this recording cannot tell them apart"
     yield from nearly_as_good(added, model)
     if added.recordings.rows.scope.one_way:
         yield from one_direction(added.recordings, added.extension.fitted.base.coulomb, model)
+
+
+def _of_motion(effect: Effect) -> bool:
+    """Whether it is a lag between torque and reported motion: another such lag of as much looks like it."""
+    return isinstance(effect, Lag) and effect.filters_motion
 
 
 def nearly_as_good(added: Added, model: AxisModel) -> Iterator[Alternatives]:

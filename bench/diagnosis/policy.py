@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bench.effects.effect import Contact, Effect, Occasional, Replacing
+from bench.effects.effect import Contact, Effect, Occasional
 from bench.fit.fit import Fit, explained
 from bench.fit.solution import NOISE_ALONE
 
@@ -114,7 +114,7 @@ class Policy:
         of_effort = conditioning.effort_noise * conditioning.filter.noise_gain(0)
         return over_noise(bare) < self.large and bare.noise.white**2 > 2.0 * of_effort**2
 
-    def leaves_room(self, fitted: Fit, effect: Replacing) -> bool:
+    def leaves_room(self, fitted: Fit, effect: Effect) -> bool:
         """Whether an effect that is tried in the place of others may be there still, as more than noise is left.
 
         Impacts come in bursts that pass for the colour of noise: to parts that meet, all beyond white noise is left.

@@ -33,7 +33,7 @@ from bench.diagnosis.policy import Policy, freedom
 from bench.diagnosis.search import Candidate, Searched, backward_elimination, candidates, refined, settled
 from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Coupling, Effect, Occasional
-from bench.effects.rivals import GAINS, RIVALS, WAVES, Outside
+from bench.effects.rivals import GAINS, RIVALS, WAVES
 from bench.effects.signals import Scope
 from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit
@@ -258,7 +258,7 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
     certain = [each.determined.all() for each in physical]
     claimed = np.where(certain, [np.mean(each.left**2) for each in physical], power)
     white = np.array([each.noise.white**2 for each in physical])
-    outside = np.array([any(isinstance(term.effect, Outside) for term in each.terms) for each in physical])
+    outside = np.array([any(term.effect.decoy for term in each.terms) for each in physical])
     white[outside] = np.minimum(white[outside], white[~outside].max())  # its inertia may be any, and noise with that
     nearest = physical[int(np.argmin(power / white))]
     floor = white * (nearest.floor / nearest.noise.white) ** 2
@@ -346,7 +346,7 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
 
 def standing(fitted: Fit, policy: Policy) -> list[Effect]:
     """Effects beside one from outside the catalogue that it cannot make up for."""
-    own = [(index, term.effect) for index, term in enumerate(fitted.terms) if not isinstance(term.effect, Outside)]
+    own = [(index, term.effect) for index, term in enumerate(fitted.terms) if not term.effect.decoy]
     less = (fit(fitted.rows, fitted.hypothesis.without(index)) for index, _ in own)
     return [effect for (_, effect), without in zip(own, less, strict=True) if policy.stands_beside(without, fitted)]
 

@@ -14,7 +14,7 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.policy import POLICY
 from bench.effects.acting import FilteredSignal
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detectable, Detected, Effect
+from bench.effects.effect import Detected, Effect
 from bench.errors import InputError, UndeterminedError
 from bench.fit.cutoffs import INDEPENDENT, NOISY, TELLS, TERMS, Cutoffs
 from bench.fit.determined import RECORD, require_friction, require_inertia
@@ -81,7 +81,7 @@ class Recordings:
         width = rows.conditioning.filter.width
         detected: dict[Effect, Detected] = {}
         for effect in catalogue().values():
-            found = effect.detect(trace, rig, width) if isinstance(effect, Detectable) else None
+            found = effect.detect(trace, rig, width)
             if found is not None:
                 detected[effect] = found
         corrected, unseen = trace, holdout

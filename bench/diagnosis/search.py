@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from bench.diagnosis.policy import Policy, worth
-from bench.effects.effect import Effect, Replacing
-from bench.effects.rivals import Outside
+from bench.effects.effect import Effect
 from bench.fit.fit import Fit, fit, shaped, together
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Term, on_other_side, outer_loads
@@ -85,7 +84,7 @@ class Searched:
 def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
     """Effects in the order in which they are taken up beside the fit without one."""
     found = from_rivals(selected(Searched((Step(bare),)), effects, policy), effects, policy)
-    for effect in (each for each in effects if isinstance(each, Replacing)):
+    for effect in (each for each in effects if each.replaces):
         if policy.leaves_room(found.last, effect):
             found = replacement(found, effect, effects, policy) or found
     if policy.remains(found.last) and found.stopped is None:
@@ -235,7 +234,7 @@ def settled(less: Fit, policy: Policy) -> Fit:
 
     What no catalogue holds stays as it was searched: further off its shape makes up for anything.
     """
-    if any(isinstance(term.effect, Outside) for term in less.terms):
+    if any(term.effect.decoy for term in less.terms):
         return less
     tried = together(less)
     return tried if policy.physical(tried) else less
@@ -272,7 +271,7 @@ def exchanged(fitted: Fit, instead: Sequence[Fit], policy: Policy) -> Fit | None
     return with_hum(backward_elimination(polished(min(found, key=lambda after: after.squares), policy), policy))
 
 
-def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], policy: Policy) -> Searched | None:
+def replacement(found: Searched, effect: Effect, effects: Sequence[Effect], policy: Policy) -> Searched | None:
     """Steps with an effect in the place of those it replaces, if that explains clearly more.
 
     Beside an effect that is hidden still a dead zone bends its shape to that. So it and the others are searched in turn
@@ -298,7 +297,7 @@ def replacement(found: Searched, effect: Replacing, effects: Sequence[Effect], p
 
 
 def in_place(
-    current: Fit, effect: Replacing, shape: tuple[float, ...] | None, effects: Sequence[Effect], policy: Policy
+    current: Fit, effect: Effect, shape: tuple[float, ...] | None, effects: Sequence[Effect], policy: Policy
 ) -> Fit | None:
     """A fit with an effect whose shape is searched beside it, from one or anywhere; None where none may explain."""
     beside = current.hypothesis

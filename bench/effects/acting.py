@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.effect import Columns, Detectable, Effect, lagged, unlagged
+from bench.effects.effect import Columns, Effect, lagged, unlagged
 from bench.effects.signals import Axis, Moment, Number, Scope, Signals, Values
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
@@ -170,7 +170,7 @@ class Electronics(Effect):
     """It acts between the demanded current, the reported current and the motor's torque."""
 
 
-class DriveLimit(Electronics, Detectable):
+class DriveLimit(Electronics):
     """A limit of the drive: visible where the drive runs the model, and hardly where the recording tracks it."""
 
     @abstractmethod

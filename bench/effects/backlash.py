@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, splined, symmetric_inverse
 from bench.effects.acting import Native, Spec, Spring, add_coupling_joint
-from bench.effects.effect import Contact, Coupling, Fitted, Load, Replacing
+from bench.effects.effect import Contact, Coupling, Fitted, Load
 from bench.effects.shape import FREQUENCY, Shape, Shapes, extended
 from bench.effects.signals import Axis, Base, Number, Scope, Signals
 from bench.trace.filter import Column
@@ -78,7 +78,7 @@ SHARED = np.array([0.02, 0.45, 1.4])
 DRAWS = 400
 
 
-class Backlash(Replacing, Coupling, Contact, Native):
+class Backlash(Coupling, Contact, Native):
     name = "backlash"
     summary = "motor and load are joined through a dead zone"
     quantities = (

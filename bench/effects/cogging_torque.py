@@ -10,16 +10,16 @@ from collections.abc import Mapping
 
 from bench.arrays import Array
 from bench.effects.acting import Native, Spec, passive_motor
-from bench.effects.effect import Repeatable
 from bench.effects.signals import Axis, Signals
 from bench.effects.waves import PHASE, Harmonic, followed, harmonics
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class CoggingTorque(Harmonic, Repeatable, Native):
+class CoggingTorque(Harmonic, Native):
     name = "cogging_torque"
     summary = "torque periodic in position, independent of current"
+    repeatable = True
     shapes = (harmonics(2, 80),)
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), shapes[0].quantity, PHASE)
 

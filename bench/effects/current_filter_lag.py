@@ -13,11 +13,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from bench.effects.acting import FilteredSignal
-from bench.effects.effect import Distortion, EffortLag, Fitted, Proposal, unlagged
+from bench.effects.effect import Fitted, Lag, Proposal, unlagged
 from bench.effects.signals import Scope, Signals
 
 
-class CurrentFilterLag(EffortLag, Distortion, FilteredSignal):
+class CurrentFilterLag(Lag, FilteredSignal):
     name = "current_filter_lag"
     summary = "reported current is filtered: it shows torque later than it acts"
     signal = "current"

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench.effects.acting import MisreadEffort
-from bench.effects.effect import CopiesTorque
+from bench.effects.effect import Columns
 from bench.effects.shape import Shapes
 from bench.effects.signals import Axis, Number, Scope, Signals, Values
 from bench.trace.filter import Column
@@ -24,9 +24,10 @@ from bench.units import Quantity
 MOST = 0.1
 
 
-class CurrentGainAsymmetry(CopiesTorque, MisreadEffort):
+class CurrentGainAsymmetry(Columns, MisreadEffort):
     name = "current_gain_asymmetry"
     summary = "amperes per reading differ between positive and negative current"
+    copies_torque = True
     quantities = (Quantity("gain_difference", "d", "dimensionless", lower=-1.0, upper=1.0, null=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -11,21 +11,19 @@ from dataclasses import replace
 
 from bench.arrays import Array, namespace
 from bench.effects.acting import TorqueLag
-from bench.effects.effect import Distortion, MotionLag, lagged
+from bench.effects.effect import Lag, lagged
 from bench.effects.signals import Number, Scope, Signals, Values
 
 
-class CurrentLoopLag(MotionLag, Distortion, TorqueLag):
+class CurrentLoopLag(Lag, TorqueLag):
     name = "current_loop_lag"
     summary = "torque acts later than the reported current"
+    signal = "torque"
+    filters_motion = True
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The torque that acts; what is made of it sees that."""
         return replace(signals, torque=lagged(signals.torque, shape[0], signals.sample_period))
-
-    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
-        """All columns, against the reported torque."""
-        return shape[0], shape[0]
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
         """A lag of the speed, unless position tells that; and, as only the difference shows, one of the current."""

@@ -12,15 +12,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import AXIS, DirectedFriction, Native, ResistingTorque, Spec, add_resisting_torque
-from bench.effects.effect import OfSpeed
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class DirectionDependentFriction(OfSpeed, DirectedFriction, Native, ResistingTorque):
+class DirectionDependentFriction(DirectedFriction, Native, ResistingTorque):
     name = "direction_dependent_friction"
     summary = "friction differs between the two directions"
+    of_speed = True
     quantities = (
         Quantity("coulomb_difference", "D_0", "N*m", null=0.0),
         Quantity("viscous_difference", "D_w", "N*m*s/rad", null=0.0, preset=0.0),

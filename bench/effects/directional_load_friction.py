@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import FollowsLoad, FrictionLaw, LoadTorque
-from bench.effects.effect import LOSSIEST, CopiesTorque, Fitted, Replacing
+from bench.effects.effect import LOSSIEST, Fitted
 from bench.effects.shape import Shape, grid_of
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
@@ -26,9 +26,10 @@ from bench.units import Quantity
 RATIOS = tuple(float(ratio) for ratio in np.geomspace(0.1, 10.0, 25))
 
 
-class DirectionalLoadFriction(CopiesTorque, Replacing, FollowsLoad):
+class DirectionalLoadFriction(FollowsLoad):
     name = "directional_load_friction"
     summary = "friction by transmitted torque differs between driving and being driven"
+    copies_torque = True
     quantities = (
         Quantity("motor_coefficient", "K_m", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),
         Quantity("load_ratio", "K_e/K_m", "dimensionless", lower=0.0),

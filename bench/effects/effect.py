@@ -2,15 +2,13 @@
 
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
-Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are searched. Every effect is an `Effect`,
-and says by the further types that it derives from what else it is; the rest of the bench asks `isinstance`, and knows
-no effect by name.
+Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are searched. Every effect is an `Effect`.
+The kind that it derives from says what it does, its attributes what else is true of it; the rest of the bench reads
+both, and knows no effect by name.
 
-    in the torque balance   Columns: CopiesTorque, RescalesTorque, OfSpeed, OuterTorque, Repeatable, Occasional,
-                            Coupling, Contact
+    in the torque balance   Columns: Occasional, Coupling, Contact
     over position           Wave (`bench.effects.waves`)
-    in the recording        Distortion, MotionLag, EffortLag, FiltersMotion, Detectable
-    in the search           Replacing
+    in the recording        Distortion, Lag
     in a simulation (`bench.effects.acting`)
       of the mechanics      Native; in every step ResistingTorque, LoadTorque, ScalesTorque, VaryingInertia, or dry
                             friction: RaisesFriction, FollowsLoad, ScalesFriction, DirectedFriction, CarriesFriction
@@ -121,6 +119,17 @@ class Effect(ABC):
         shapes: the nonlinear quantities, in the order in which all methods take them.
         needed: share of the squared residual above noise that it must explain (see `tests.studies.blind.margins`).
         looks_like: names of effects without a shape that some recordings cannot distinguish from it, which fits decide.
+        repeatable: an axis may have several, each of another shape (harmonics, events).
+        replaces: names of effects that it is tried instead of, once no other addition explains more; see `in_place_of`.
+        decoy: physics that no catalogue lists: it competes with the names of a search and never gets one.
+        copies_torque: its columns are made of the torque that reaches it, and of the noise of that, see
+            `bench.fit.hypothesis.not_reaching`; each value of the sample in its place alone: those of a recording with
+            holes are made at once.
+        rescales_torque: its one strength is what the torque that acts has more than the reported one, as share of that.
+        of_speed: its torque depends on speed alone.
+        external: a torque of motion and time alone, which varies: behind a coupling it may act on the load as on the
+            motor.
+        filters_motion: noise of the motion passes through it, and so biases its strength or shape.
     """
 
     name: ClassVar[str]
@@ -130,6 +139,14 @@ class Effect(ABC):
     shapes: ClassVar[tuple[Shape, ...]] = ()
     needed: ClassVar[float] = 0.25
     looks_like: ClassVar[tuple[str, ...]] = ()
+    repeatable: ClassVar[bool] = False
+    replaces: ClassVar[frozenset[str]] = frozenset()
+    decoy: ClassVar[bool] = False
+    copies_torque: ClassVar[bool] = False
+    rescales_torque: ClassVar[bool] = False
+    of_speed: ClassVar[bool] = False
+    external: ClassVar[bool] = False
+    filters_motion: ClassVar[bool] = False
 
     def __reduce__(self) -> str:
         """Pickled by its name in its module: there is one object of each effect."""
@@ -157,8 +174,26 @@ class Effect(ABC):
         return True
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
-        """Shapes to add to a fit, with the gain of each; by default those of the grid."""
-        return fitted.tried(self, grid_of(self.shapes, fitted.scope))
+        """Shapes to add to a fit, with the gain of each; by default those of the grid, none of one that replaces."""
+        return [] if self.replaces else fitted.tried(self, grid_of(self.shapes, fitted.scope))
+
+    def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
+        """Its most likely shape in a fit without the effects that it replaces; None where it can be none.
+
+        `promises` says of the squares that a grid's shape takes whether a search from it is worth it.
+        """
+        return None
+
+    def unlike(self, fitted: Fitted) -> tuple[float, ...] | None:
+        """A shape with which it clearly differs from what it replaces, if that is a form of it; else None."""
+        return None
+
+    def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
+        """The effect read from signals, smoothed by a filter of this width - s; None if they do not show it directly.
+
+        Without the torque balance; see `smoothed`.
+        """
+        return None
 
     def reach(self, shape: Sequence[float], k: int) -> float:
         """First range of a search in the k-th shape quantity; see `Shape.reach`."""
@@ -215,29 +250,6 @@ class Columns(Effect):
         return [column for shape in shapes for column in self.columns(signals, shape)]
 
 
-class CopiesTorque(Columns):
-    """Columns made of the torque that reaches it and its noise, see `bench.fit.hypothesis.not_reaching`.
-
-    Each value of the sample in its place alone: those of a recording with holes are made at once.
-    """
-
-
-class RescalesTorque(Columns):
-    """Its one strength is what the torque that acts has more than the reported one, as share of that."""
-
-
-class OfSpeed(Columns):
-    """Torque that depends on speed alone."""
-
-
-class OuterTorque(Columns):
-    """Torque of motion and time alone, which varies: behind a coupling it may act on the load as on the motor."""
-
-
-class Repeatable(Columns):
-    """An axis may have several, each of another shape (harmonics, events)."""
-
-
 @dataclass(frozen=True)
 class Standout:
     """What stands out of all that is left.
@@ -251,8 +263,10 @@ class Standout:
     around: tuple[float, float]
 
 
-class Occasional(Repeatable):
-    """It may occur in one recording and not in another."""
+class Occasional(Columns):
+    """It may occur in one recording and not in another, and several times."""
+
+    repeatable = True
 
     @abstractmethod
     def apart(self, fitted: Fitted) -> list[Standout]:
@@ -329,15 +343,23 @@ class Distortion(Effect):
         """The recording without this fault."""
 
 
-class FiltersMotion(Effect):
-    """A filter of the motion: noise of the motion biases its strength or shape, and not only scatters it."""
+class Lag(Distortion):
+    """A first-order lag, T*dy/dt + y = u; two at once show as their difference, so a recording tells but one.
 
-
-class Lag(Effect):
-    """A first-order lag, T*dy/dt + y = u; two at once show as their difference, so a recording tells but one."""
+    Attributes:
+        signal: that is behind: `velocity` or `current`, as recorded, or `torque`, as it acts.
+    """
 
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
+    signal: ClassVar[str]
+
+    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float, float]:
+        """Lags to undo in columns of motion, in others, and in the effort, if speed comes from `source` - s."""
+        behind = shape[0]
+        if self.signal == "velocity":  # what is made of the reported speed
+            return (behind if source == "velocity" else 0.0), 0.0, 0.0
+        return (behind, behind, 0.0) if self.signal == "torque" else (0.0, 0.0, behind)
 
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
         """By the tick within which current and speed were taken."""
@@ -357,60 +379,8 @@ def unlagged(values: Array, time_constant: float, step: float) -> Array:
     return values + time_constant * np.gradient(values, step) if values.size > 1 else values
 
 
-class MotionLag(Lag, FiltersMotion):
-    """A lag between torque and reported motion; another such lag of as much looks like it."""
-
-    @abstractmethod
-    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
-        """Lags to undo in columns of motion, and in all others, if speed comes from `source` - s."""
-
-
-class EffortLag(Lag):
-    """A lag of the reported effort."""
-
-    def effort_lag(self, shape: Sequence[float]) -> float:
-        """Lag to undo in the reported effort - s."""
-        return shape[0]
-
-
-class Detectable(Effect):
-    """Single signals show it directly, without the torque balance; see `smoothed`."""
-
-    @abstractmethod
-    def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
-        """The effect read from signals, smoothed by a filter of this width - s; None if not visible."""
-
-
 def smoothed(trace: Trace, smooth: GaussianFilter, name: str, *orders: int) -> Array:
     """Derivatives of such orders of a recorded signal through a filter (k, m), all stretches long enough in a row."""
     parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
     found = [smooth(trace[name][part], *orders) for part in parts]
     return np.concatenate([np.empty((len(orders), 0)), *found], axis=1)
-
-
-# In the search.
-
-
-class Replacing(Effect):
-    """Tried instead of other effects, once no other addition explains more.
-
-    Attributes:
-        replaces: their names.
-    """
-
-    replaces: ClassVar[frozenset[str]]
-
-    def propose(self, fitted: Fitted) -> list[Proposal]:
-        """Nothing: it is only tried instead of what it replaces."""
-        return []
-
-    @abstractmethod
-    def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
-        """Its most likely shape in a fit without the effects that it replaces; None where it can be none.
-
-        `promises` says of the squares that a grid's shape takes whether a search from it is worth it.
-        """
-
-    def unlike(self, fitted: Fitted) -> tuple[float, ...] | None:
-        """A shape with which it clearly differs from what it replaces, if that is a form of it; else None."""
-        return None

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
 from bench.effects.acting import Native, Spec, add_coupling_joint
-from bench.effects.effect import Coupling, FiltersMotion, Load
+from bench.effects.effect import Coupling, Load
 from bench.effects.shape import FREQUENCY, Shape, Shapes
 from bench.effects.signals import Axis, Base, Signals
 from bench.trace.filter import Column
@@ -40,9 +40,10 @@ OVERDAMPED, DULL = 1.0, 0.5
 TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
 
 
-class ElasticCoupling(Coupling, FiltersMotion, Native):
+class ElasticCoupling(Coupling, Native):
     name = "elastic_coupling"
     summary = "motor and load are joined by a spring and damper"
+    filters_motion = True
     quantities = (
         Quantity("stiffness", "k", "N*m/rad", lower=0.0, null=np.inf),
         Quantity("damping", "d", "N*m*s/rad", lower=0.0, preset=0.0),

@@ -11,15 +11,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import FrictionLaw, RaisesFriction
-from bench.effects.effect import LOSSIEST, CopiesTorque
+from bench.effects.effect import LOSSIEST
 from bench.effects.signals import Axis, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class LoadDependentFriction(CopiesTorque, RaisesFriction):
+class LoadDependentFriction(RaisesFriction):
     name = "load_dependent_friction"
     summary = "friction grows with the magnitude of the transmitted torque"
+    copies_torque = True
     quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),)
     looks_like = ("torque_scale",)
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.acting import ResistingTorque
-from bench.effects.effect import Fitted, Occasional, OuterTorque, Proposal, Standout
+from bench.effects.effect import Fitted, Occasional, Proposal, Standout
 from bench.effects.shape import Shape, Shapes
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
@@ -45,9 +45,10 @@ FEW = 4
 PLACES = 5
 
 
-class LoadTorqueEvent(Occasional, OuterTorque, ResistingTorque):
+class LoadTorqueEvent(Occasional, ResistingTorque):
     name = "load_torque_event"
     summary = "an external torque acts for a stretch of time"
+    external = True
     quantities = (
         Quantity("torque", "M_e", "N*m", null=0.0),
         Quantity("start", "t_1", "s", lower=0.0, instant=True),

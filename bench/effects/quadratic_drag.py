@@ -10,15 +10,17 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import AXIS, Native, Spec
-from bench.effects.effect import OfSpeed, OuterTorque
+from bench.effects.effect import Columns
 from bench.effects.signals import Axis, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class QuadraticDrag(OfSpeed, OuterTorque, Native):
+class QuadraticDrag(Columns, Native):
     name = "quadratic_drag"
     summary = "resisting torque grows with velocity*|velocity|"
+    of_speed = True
+    external = True
     quantities = (Quantity("quadratic_drag", "k_q", "N*m*s**2/rad**2", lower=0.0, null=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

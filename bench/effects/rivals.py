@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
-from bench.effects.effect import Columns, CopiesTorque, Effect
+from bench.effects.effect import Columns, Effect
 from bench.effects.shape import DURATION, FREQUENCY, SPEED, TRAVEL, Shape, Shapes
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
@@ -27,15 +27,12 @@ FACTORS: Mapping[str, tuple[Callable[[Signals], Array], int]] = {
 }
 
 
-class Outside(Columns):
-    """Of no catalogue."""
-
-
-class Vibration(Outside):
+class Vibration(Columns):
     """A torque periodic in time, M = A*sin(2*pi*f*t + phi)."""
 
     name = "outside_vibration"
     summary = "a torque periodic in time"
+    decoy = True
     quantities = (Quantity("frequency", "f", "1/s", lower=0.0),)
     shapes = (Shape(quantities[0], tuple(float(f) for f in np.geomspace(0.4, 120.0, 240)), measure=FREQUENCY),)
 
@@ -44,7 +41,7 @@ class Vibration(Outside):
         return [[(wave.imag, 0)], [(wave.real, 0)]]
 
 
-class Notch(Outside):
+class Notch(Columns):
     """A bump of torque or friction at one angle of the revolution, of Gaussian shape.
 
     However wide: one wider than a turn is what speaks for a constant torque that the catalogue does not have.
@@ -52,6 +49,7 @@ class Notch(Outside):
 
     name = "outside_notch"
     summary = "a bump at one angle"
+    decoy = True
     quantities = (Quantity("angle", "q_0", "rad"), Quantity("width", "w", "rad", lower=0.0))
     shapes = (
         Shape(quantities[0], tuple(float(q) for q in np.arange(36) * np.pi / 18.0), additive=True),
@@ -75,11 +73,12 @@ class Notch(Outside):
         return columns
 
 
-class Smooth(Outside):
+class Smooth(Columns):
     """A torque that runs smoothly over the travel, as parts of waves do: a cable, a spring that is not Hooke's."""
 
     name = "outside_smooth"
     summary = "a torque that runs smoothly over the travel"
+    decoy = True
     quantities = (Quantity("wave_number", "k", "dimensionless", lower=0.0, linear_unit="rad/m"),)
     shapes = (Shape(quantities[0], (0.5 * np.pi,), reach=0.0, measure=TRAVEL),)
 
@@ -90,11 +89,12 @@ class Smooth(Outside):
         return [[(values, 0)] for values in (np.ones_like(angle), *waves)]
 
 
-class SlowMemory(Outside):
+class SlowMemory(Columns):
     """Friction that grows with how fast the axis has run: level A*m, T*dm/dt = |omega| - m."""
 
     name = "outside_slow_memory"
     summary = "friction that grows with recent speed"
+    decoy = True
     quantities = (Quantity("time_constant", "T", "s", lower=0.0),)
     shapes = (Shape(quantities[0], (0.05, 0.12, 0.3, 0.7, 1.5, 3.0), measure=DURATION),)
 
@@ -104,7 +104,7 @@ class SlowMemory(Outside):
         return [[(signals.sign * _lowpass(np.abs(signals.velocity), keep), 0)]]
 
 
-class FrictionalMemory(Outside):
+class FrictionalMemory(Columns):
     """Friction that follows a change of speed late: A*exp(-m/omega_s)*sgn(omega), T*dm/dt = |omega| - m.
 
     Source: D. P. Hess, A. Soom, Journal of Tribology 112(1), 1990, 147-152.
@@ -112,6 +112,7 @@ class FrictionalMemory(Outside):
 
     name = "outside_frictional_memory"
     summary = "friction that follows a change of speed late"
+    decoy = True
     quantities = (Quantity("time_constant", "T", "s", lower=0.0), Quantity("speed", "omega_s", "rad/s", lower=0.0))
     shapes = (
         Shape(quantities[0], (0.03, 0.1, 0.3, 1.0), measure=DURATION),
@@ -123,11 +124,13 @@ class FrictionalMemory(Outside):
         return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
 
 
-class VaryingGain(Outside, CopiesTorque):
+class VaryingGain(Columns):
     """A torque per ampere that changes with current or speed, M*(1 + c*M**2 + d*omega**2), in either direction."""
 
     name = "outside_gain"
     summary = "a torque per ampere that changes with current or speed"
+    decoy = True
+    copies_torque = True
     quantities = ()
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
@@ -137,7 +140,7 @@ class VaryingGain(Outside, CopiesTorque):
         return [[(signals.torque * square, 0)] for square in squares]
 
 
-class OtherWave(Outside, CopiesTorque):
+class OtherWave(Columns):
     """A wave of position of one number, times what a torque may hang on: one of FACTORS, or all of them.
 
     Where a wave sits right and is not what it is called, or is called by several names, this takes its place.
@@ -145,6 +148,8 @@ class OtherWave(Outside, CopiesTorque):
 
     name = "outside_wave"
     summary = "a wave of position of another form"
+    decoy = True
+    copies_torque = True
     quantities = (Quantity("harmonic", "n", "dimensionless", lower=0.0, linear_unit="rad/m"),)
     shapes = (Shape(quantities[0], (1.0,), whole=True),)
 

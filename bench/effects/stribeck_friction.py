@@ -12,7 +12,6 @@ import numpy as np
 
 from bench.arrays import namespace
 from bench.effects.acting import FrictionLaw, RaisesFriction
-from bench.effects.effect import OfSpeed
 from bench.effects.shape import SPEED, Shape, Shapes
 from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
 from bench.trace.filter import Column
@@ -23,9 +22,10 @@ from bench.units import Quantity
 RISE = 0.2
 
 
-class StribeckFriction(OfSpeed, RaisesFriction):
+class StribeckFriction(RaisesFriction):
     name = "stribeck_friction"
     summary = "friction rises as speed falls towards zero"
+    of_speed = True
     quantities = (
         Quantity("static_friction", "M_s", "N*m", lower=0.0),
         Quantity("stribeck_velocity", "omega_s", "rad/s", lower=0.0),

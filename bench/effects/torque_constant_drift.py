@@ -13,7 +13,7 @@ Transactions on Industry Applications 31(2), 1995.
 from collections.abc import Sequence
 
 from bench.effects.acting import MisreadEffort
-from bench.effects.effect import CopiesTorque
+from bench.effects.effect import Columns
 from bench.effects.shape import Shapes
 from bench.effects.signals import Axis, Number, Scope, Signals, Values
 from bench.trace.filter import Column
@@ -24,9 +24,10 @@ from bench.units import Quantity
 MOST = 0.3
 
 
-class TorqueConstantDrift(CopiesTorque, MisreadEffort):
+class TorqueConstantDrift(Columns, MisreadEffort):
     name = "torque_constant_drift"
     summary = "torque per ampere changes during the recording"
+    copies_torque = True
     quantities = (Quantity("rate", "r", "1/s", null=0.0),)
     # of what changes at once at half time, t takes (3*T**2/8)**2/(T**3/3)/(T/2) = 27/32 of the squares, and a
     # compensation that is switched on is no drift

@@ -9,15 +9,16 @@ dM/dI = kT*(1 - 3*d*(I/I_peak)**2) > 0, so d is 1/3 at most.
 from collections.abc import Sequence
 
 from bench.effects.acting import TorqueLoss
-from bench.effects.effect import CopiesTorque
+from bench.effects.effect import Columns
 from bench.effects.signals import Axis, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorqueConstantSaturation(CopiesTorque, TorqueLoss):
+class TorqueConstantSaturation(Columns, TorqueLoss):
     name = "torque_constant_saturation"
     summary = "torque per ampere falls at high current"
+    copies_torque = True
     quantities = (Quantity("drop_at_peak", "d", "dimensionless", lower=0.0, upper=1.0 / 3.0, null=0.0),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -10,16 +10,17 @@ from collections.abc import Mapping, Sequence
 
 from bench.arrays import Array
 from bench.effects.acting import ScalesTorque
-from bench.effects.effect import CopiesTorque, Repeatable
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.effects.waves import PHASE, Harmonic, followed, harmonics, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorqueRipple(Harmonic, CopiesTorque, Repeatable, ScalesTorque):
+class TorqueRipple(Harmonic, ScalesTorque):
     name = "torque_ripple"
     summary = "torque periodic in position, proportional to current"
+    copies_torque = True
+    repeatable = True
     shapes = (harmonics(1, 40),)
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.0, null=0.0),

@@ -10,16 +10,17 @@ are s times as heavy as in the MJCF look alike, but for armature and friction, w
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import MisreadEffort
-from bench.effects.effect import RescalesTorque
+from bench.effects.effect import Columns
 from bench.effects.signals import Axis, Base, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 from bench.trace.signals import KNOWN_TORQUE
 from bench.units import Quantity
 
 
-class TorqueScale(RescalesTorque, MisreadEffort):
+class TorqueScale(Columns, MisreadEffort):
     name = "torque_scale"
     summary = "reported torque is a multiple of the torque that acts"
+    rescales_torque = True
     quantities = (Quantity("scale", "s", "dimensionless", lower=0.2, upper=5.0, null=1.0),)
     looks_like = ("unbalance", "load_dependent_friction")
 

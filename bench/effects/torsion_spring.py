@@ -12,15 +12,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bench.effects.acting import AXIS, Native, Spec, Spring
-from bench.effects.effect import Fitted, OuterTorque, Proposal
+from bench.effects.effect import Fitted, Proposal
 from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class TorsionSpring(OuterTorque, Spring, Native):
+class TorsionSpring(Spring, Native):
     name = "torsion_spring"
     summary = "a torque proportional to position"
+    external = True
     quantities = (
         Quantity("stiffness", "c", "N*m/rad", lower=0.0, null=0.0),
         Quantity("reference", "q_0", "rad", preset=0.0, minor=True),

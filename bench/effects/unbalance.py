@@ -8,16 +8,16 @@ A - N*m; q - angle - rad.
 from collections.abc import Mapping, Sequence
 
 from bench.effects.acting import LoadTorque, Native, Spec, passive_motor
-from bench.effects.effect import OuterTorque
 from bench.effects.signals import Axis, Moment, Number, Signals, Values
 from bench.effects.waves import PHASE, OncePerRevolution, once_per_revolution, wave
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class Unbalance(OncePerRevolution, OuterTorque, LoadTorque, Native):
+class Unbalance(OncePerRevolution, LoadTorque, Native):
     name = "unbalance"
     summary = "an eccentric mass under gravity, once per revolution"
+    external = True
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), PHASE)
     looks_like = ("torque_scale",)
 

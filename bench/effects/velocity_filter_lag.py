@@ -15,7 +15,7 @@ import numpy as np
 
 from bench.arrays import NORMAL95, rms
 from bench.effects.acting import FilteredSignal
-from bench.effects.effect import Detectable, Detected, Distortion, MotionLag, smoothed
+from bench.effects.effect import Detected, Lag, smoothed
 from bench.effects.signals import Scope, Signals
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
@@ -37,14 +37,11 @@ DISAGREE, EXPLAINED = 1.5, 0.7
 MENDED = 0.1
 
 
-class VelocityFilterLag(MotionLag, Distortion, Detectable, FilteredSignal):
+class VelocityFilterLag(Lag, FilteredSignal):
     name = "velocity_filter_lag"
     summary = "reported velocity lags the motion"
+    filters_motion = True
     signal = "velocity"
-
-    def delays(self, shape: Sequence[float], source: str) -> tuple[float, float]:
-        """What is made of the reported speed."""
-        return (shape[0] if source == "velocity" else 0.0), 0.0
 
     def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """Where the axis is: a position that is summed from the reported speed v is behind by T*v, exactly."""

@@ -21,11 +21,9 @@ from bench.effects.effect import (
     Columns,
     ColumnsOf,
     Contact,
-    CopiesTorque,
     Coupling,
     Distortion,
     Effect,
-    FiltersMotion,
     Proposal,
 )
 from bench.effects.signals import Base, Scope, Signals
@@ -265,7 +263,7 @@ class Fit:
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
             columns = rows.memory.get((*known, moving, rows.motion), lambda: self.beside.table(made, moving))
             worth = self.gains(columns, 1) * (self.residual @ columns > 0.0)  # none without a load behind it
-        elif isinstance(effect, Friction | CopiesTorque) or not self.determined.all():
+        elif isinstance(effect, Friction) or effect.copies_torque or not self.determined.all():
             columns = self.seen(made, False)
             worth = self.gains(columns, columns.shape[1] // len(shapes))
         else:  # their products with each other are kept, those with what is fitted need none of them filtered
@@ -324,7 +322,7 @@ def _determined(fitted: Fit) -> NDArray[np.bool_]:
 
 def _without_copies(layout: Layout, hypothesis: Hypothesis) -> dict[int, Array]:
     """What is left of the torque without the effects that copy it, by the place of each (m,) - N*m (N)."""
-    copies = hypothesis.of_kind(CopiesTorque)
+    copies = hypothesis.having(lambda effect: effect.copies_torque)
     if not copies:
         return {}
     kept = ~np.isin(layout.owners, copies)
@@ -495,6 +493,6 @@ def unbiased(fitted: Fit) -> Fit:
     but it scatters, and goes astray where the noise is not as white as it is taken for.
     """
     for index, term in enumerate(fitted.terms):
-        if isinstance(term.effect, FiltersMotion):
+        if term.effect.filters_motion:
             fitted = shaped(fitted.rows, fitted.hypothesis, index, over_noise=True)
     return fitted

@@ -41,16 +41,10 @@ from bench.effects.acting import (
 )
 from bench.effects.effect import (
     Columns,
-    CopiesTorque,
     Coupling,
     Distortion,
     Effect,
-    EffortLag,
     Lag,
-    MotionLag,
-    OuterTorque,
-    Repeatable,
-    RescalesTorque,
     lagged,
 )
 from bench.effects.shape import is_pitch
@@ -173,7 +167,7 @@ class Hypothesis:
 
     def admits(self, effect: Effect) -> bool:
         """Whether an effect may come beside these: one coupling, one lag."""
-        if any(term.effect is effect for term in self.terms) and not isinstance(effect, Repeatable):
+        if any(term.effect is effect for term in self.terms) and not effect.repeatable:
             return False
         return not any(isinstance(effect, kind) and self.of_kind(kind) for kind in (Coupling, Lag))
 
@@ -185,6 +179,10 @@ class Hypothesis:
     def of_kind(self, *kinds: type[Effect]) -> list[int]:
         """Indices of the terms whose effects are of one of some kinds."""
         return [index for index, term in enumerate(self.terms) if isinstance(term.effect, kinds)]
+
+    def having(self, true_of: Callable[[Effect], bool]) -> list[int]:
+        """Indices of the terms of whose effects something is true."""
+        return [index for index, term in enumerate(self.terms) if true_of(term.effect)]
 
     @property
     def coupling(self) -> int | None:
@@ -259,7 +257,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | N
         # as the motion tells it, whose lag is undone; all of it of an effort that was made anew
         known = seen.kept(known_of, lag=moving)[:, 0]
         effort = effort - (known if late else known - seen.kept(known_of)[:, 0])
-    rescaling = np.flatnonzero(np.isin(held_by, hypothesis.of_kind(RescalesTorque)))
+    rescaling = np.flatnonzero(np.isin(held_by, hypothesis.having(lambda effect: effect.rescales_torque)))
     if hypothesis.shift:
         effort = effort + seen.kept(_moved, hypothesis.shift, lag=late)[:, 0]
     return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds, rescaling)
@@ -319,7 +317,7 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, missing
         constant = isinstance(effect, Spring) and hypothesis.of_kind(ConstantTorque, DirectedFriction)
         return columns * (1.0, 0.0) if constant else columns  # a balance has one constant
     outer = [(each.effect, each.shape, each.load) for each in hypothesis.terms if each.load]
-    loads = [(other, shape, load) for other, shape, load in outer if isinstance(other, OuterTorque)]
+    loads = [(other, shape, load) for other, shape, load in outer if isinstance(other, Columns) and other.external]
     if loads:
         return seen.table(lambda s: effect.columns_of(s, [term.shape], loads), lag)
 
@@ -403,14 +401,20 @@ def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
 
 def delays(rows: Rows, hypothesis: Hypothesis) -> tuple[float, float]:
     """Lag to undo on columns of motion, and on all others - s."""
-    lags = [(term.effect, term.shape) for term in hypothesis.terms if isinstance(term.effect, MotionLag)]
-    found = [effect.delays(shape, rows.conditioning.source) for effect, shape in lags]
-    return sum(moving for moving, _ in found), sum(resting for _, resting in found)
+    moving, resting, _ = _lags(hypothesis, rows.conditioning.source)
+    return moving, resting
 
 
 def effort_lag(hypothesis: Hypothesis) -> float:
     """Lag to undo on the reported effort - s."""
-    return sum(term.effect.effort_lag(term.shape) for term in hypothesis.terms if isinstance(term.effect, EffortLag))
+    return _lags(hypothesis, "")[2]
+
+
+def _lags(hypothesis: Hypothesis, source: str) -> tuple[float, float, float]:
+    """Lags of all terms, as `Lag.delays` has those of one - s."""
+    found = [term.effect.delays(term.shape, source) for term in hypothesis.terms if isinstance(term.effect, Lag)]
+    moving, resting, late = (sum(each) for each in zip(*found, strict=True)) if found else (0.0, 0.0, 0.0)
+    return moving, resting, late
 
 
 def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
@@ -478,7 +482,7 @@ def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[i
     That is what no term explains, and what those take that the torque passes before: gains of reading, constant and
     position multiply, and dry friction is caused by the torque that comes of it.
     """
-    copies, found = hypothesis.of_kind(CopiesTorque), {}
+    copies, found = hypothesis.having(lambda effect: effect.copies_torque), {}
     if not copies:
         return found
 
@@ -544,7 +548,7 @@ def _alike(found: Hypothesis, before: Hypothesis) -> bool:
 
 def outer_loads(hypothesis: Hypothesis) -> list[int]:
     """Indices of the terms that may act on the load of a coupling; none without one."""
-    return [] if hypothesis.coupling is None else hypothesis.of_kind(OuterTorque)
+    return [] if hypothesis.coupling is None else hypothesis.having(lambda effect: effect.external)
 
 
 def on_other_side(hypothesis: Hypothesis) -> Hypothesis:

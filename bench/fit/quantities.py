@@ -14,7 +14,7 @@ import numpy as np
 
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.effects.effect import Contact, Effect, FiltersMotion
+from bench.effects.effect import Contact, Effect
 from bench.effects.signals import Base, Signals
 from bench.fit.fit import Fit, least_squares
 from bench.fit.hypothesis import lay_out
@@ -208,7 +208,7 @@ def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
     The column of a coupling is made of the noisy motion, so noise biases it; that of the noise itself is as large.
     J. R. Cook, L. A. Stefanski, Journal of the American Statistical Association 89, 1994, 1314-1328.
     """
-    if not any(isinstance(term.effect, FiltersMotion) for term in fitted.terms) or not fitted.determined.all():
+    if not any(term.effect.filters_motion for term in fitted.terms) or not fitted.determined.all():
         return
     rng, conditioning = np.random.default_rng(0), fitted.rows.conditioning
 

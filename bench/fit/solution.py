@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
-from bench.effects.effect import CopiesTorque, Coupling, RescalesTorque
+from bench.effects.effect import Columns, Coupling
 from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out
 from bench.fit.rows import ONE_WAY, Rows
 
@@ -535,7 +535,7 @@ class Floor:
             return share
         more = replace(rows.joined, torque=rows.joined.torque + (step := 1e-3 * rms(self.layout.effort)))
         for index, term in enumerate(self.hypothesis.terms):
-            if isinstance(term.effect, CopiesTorque | RescalesTorque):
+            if isinstance(term.effect, Columns) and (term.effect.copies_torque or term.effect.rescales_torque):
                 made = (term.effect.columns(signals, term.shape) for signals in (rows.joined, more))
                 strengths = self.theta[self.layout.owners == index].tolist()
                 for strength, ((low, _),), ((high, _),) in zip(strengths, *made, strict=True):

@@ -11,7 +11,6 @@ from bench.arrays import rms
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, VISCOUS, AxisKind
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import RescalesTorque
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
 from bench.fit.estimate import Estimate, RefusedEstimateError
@@ -116,14 +115,14 @@ class IdentifiedJoint:
         if armature is None:
             return ""
         for one in self.diagnosis or ():
-            if isinstance(one.effect, RescalesTorque):
+            if one.effect.rescales_torque:
                 (scale,) = one.values.values()
                 return (
                     f"the reported torque counts as {scale:.3g} times the one that acts; with links {scale:.3g} times "
                     f"as heavy as the MJCF's instead the armature is {scale * armature.value:.4g} {armature.unit}"
                 )
             for name in one.ambiguous_with:
-                if isinstance(catalogue().get(name), RescalesTorque):
+                if name in catalogue() and catalogue()[name].rescales_torque:
                     return f"a {words(name)} looks like {words(one.name)}, and would change the armature"
         return ""
 

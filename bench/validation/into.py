@@ -14,7 +14,7 @@ from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.effects.acting import MisreadMotion
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import MotionLag
+from bench.effects.effect import Lag
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
@@ -60,7 +60,7 @@ def own(trace: Trace, rig: Rig) -> Own:
     """By a diagnosis of the recording as it is, which may refuse it as `diagnose` does."""
     found = diagnose(trace, rig)
     source = "position" if "position" in trace else "velocity"
-    lags = [(one.effect, one.values["time_constant"]) for one in found.effects if isinstance(one.effect, MotionLag)]
+    lags = [(one.effect, one.values["time_constant"]) for one in found.effects if isinstance(one.effect, Lag)]
     lag = sum(effect.delays([constant], source)[0] for effect, constant in lags)
     plain = Host(trace, rig, axis_of(found, trace, rig), moved=_moved(trace, found), lag=lag)
     left, gap = found.torque.identify, found.torque

@@ -6,7 +6,7 @@ import difflib
 import inspect
 import re
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from bench.axis_kind import LINEAR
@@ -14,13 +14,9 @@ from bench.effects.acting import DriveLimit, ScalesFriction, Sensing
 from bench.effects.catalogue import catalogue, simpler_forms
 from bench.effects.effect import (
     Coupling,
-    Detectable,
     Effect,
     Lag,
     Occasional,
-    OuterTorque,
-    Repeatable,
-    Replacing,
 )
 from bench.effects.present import Present
 from bench.effects.signals import Scope
@@ -33,16 +29,25 @@ from bench.report.numbers import number, share
 from bench.units import Quantity
 from signature import Signature, rig
 
-#: What an effect declares of itself by its types, in words.
-DECLARED: dict[type[Effect], str] = {
-    OncePerRevolution: "It has a meaning on rotary axes alone.",
-    Repeatable: "An axis may have several of it, each of another shape.",
-    Occasional: "It happens in one recording and not in another, so a holdout need not show it.",
-    DriveLimit: "It shows where the drive runs the axis, so the references have to be recorded.",
-    Coupling: "It joins motor and load: an axis has one such effect.",
-    OuterTorque: "It may act on the load of a coupling rather than on the motor.",
-    ScalesFriction: "It multiplies the level of dry friction, what other effects add to it included.",
-}
+#: What is true of an effect, in words.
+DECLARED: tuple[tuple[Callable[[Effect], bool], str], ...] = (
+    (lambda effect: isinstance(effect, OncePerRevolution), "It has a meaning on rotary axes alone."),
+    (lambda effect: effect.repeatable, "An axis may have several of it, each of another shape."),
+    (
+        lambda effect: isinstance(effect, Occasional),
+        "It happens in one recording and not in another, so a holdout need not show it.",
+    ),
+    (
+        lambda effect: isinstance(effect, DriveLimit),
+        "It shows where the drive runs the axis, so the references have to be recorded.",
+    ),
+    (lambda effect: isinstance(effect, Coupling), "It joins motor and load: an axis has one such effect."),
+    (lambda effect: effect.external, "It may act on the load of a coupling rather than on the motor."),
+    (
+        lambda effect: isinstance(effect, ScalesFriction),
+        "It multiplies the level of dry friction, what other effects add to it included.",
+    ),
+)
 #: Greek letters in equations that are written in ASCII.
 LETTERS: dict[str, str] = dict(zip(("alpha", "omega", "sigma", "phi", "mu", "tau", "pi"), "αωσφμτπ", strict=True))
 #: Gap over noise floor above which something is missing, as the verdict has it.
@@ -190,13 +195,13 @@ def rivals(effect: Effect, found: Signature | None) -> str:
 
 def replaced(effect: Effect) -> frozenset[str]:
     """Names of the effects in the place of which it is tried."""
-    return effect.replaces if isinstance(effect, Replacing) else frozenset()
+    return effect.replaces
 
 
 def explained(effect: Effect, found: Signature) -> str:
     """Shares of the gap that it and its nearest rivals would take."""
     itself = f"{words(effect.name)} by itself would take {share(found.shares.get(effect, 0.0))}"
-    if isinstance(effect, Detectable):
+    if type(effect).detect is not Effect.detect:
         itself = "it takes none, as single signals show it rather than the balance"
     elif effect not in found.shares:
         itself = "it takes none by itself, as it is tried only once others are found"
@@ -240,7 +245,7 @@ def motions(effect: Effect, found: Signature) -> str:
         "It is not sought where no position is recorded.": replace(scope, signals=scope.signals - {"position"}),
     }
     sentences = [sentence for sentence, such in barred.items() if effect.sought(scope) and not effect.sought(such)]
-    sentences += [sentence for kind, sentence in DECLARED.items() if isinstance(effect, kind)]
+    sentences += [sentence for declares, sentence in DECLARED if declares(effect)]
     return "\n".join([*lines, "", *(f"- {sentence}" for sentence in sentences)])
 
 

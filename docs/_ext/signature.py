@@ -17,7 +17,7 @@ from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import candidates
 from bench.diagnosis.where import LEAST, bins_of, coordinates, means_in, where
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detectable, Effect
+from bench.effects.effect import Effect
 from bench.effects.present import Present, parse_effect
 from bench.effects.rivals import RIVALS
 from bench.fit.fit import Fit
@@ -86,11 +86,7 @@ def signature(effect: Effect) -> Signature:
     bare = {name: fit_bare(Rows.of(trace, rig())) for name, trace in affected.items()}
     motions = {name: rms(fitted.left) / fitted.floor for name, fitted in bare.items()}
     width = {name: fitted.rows.conditioning.filter.width for name, fitted in bare.items()}
-    detected = frozenset(
-        name
-        for name in NAMES
-        if isinstance(effect, Detectable) and effect.detect(affected[name], rig(), width[name]) is not None
-    )
+    detected = frozenset(name for name in NAMES if effect.detect(affected[name], rig(), width[name]) is not None)
     main = bare[DEFAULT]
     tried = candidates(main, [*catalogue().values(), *RIVALS])
     shares = {one.term.effect: one.gain / main.squares for one in tried}

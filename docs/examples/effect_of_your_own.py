@@ -6,18 +6,19 @@ Offered as an entry point, `simulate` and `diagnose` know it by name: see CONTRI
 import bench
 from bench.assets import asset
 from bench.effects.acting import ScalesTorque
-from bench.effects.effect import CopiesTorque
+from bench.effects.effect import Columns
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
 from bench.units import Quantity
 
 
-class MagnetWarming(CopiesTorque, ScalesTorque):
+class MagnetWarming(Columns, ScalesTorque):
     """Torque per ampere falls in proportion to time: M = r*t*M_motor, r - 1/s."""
 
     name = "magnet_warming"
     summary = "torque per ampere falls in proportion to time"
+    copies_torque = True
     quantities = (Quantity("rate", "r", "1/s", lower=0.0, null=0.0),)
 
     def columns(self, signals, shape):

@@ -20,16 +20,10 @@ from bench.effects.acting import (
 )
 from bench.effects.effect import (
     Columns,
-    CopiesTorque,
     Coupling,
     Distortion,
-    FiltersMotion,
-    MotionLag,
+    Lag,
     Occasional,
-    OfSpeed,
-    OuterTorque,
-    Repeatable,
-    RescalesTorque,
 )
 from bench.effects.signals import Moment
 from bench.effects.waves import OncePerRevolution, Wave
@@ -64,7 +58,7 @@ def without_fault(effect, seen):
 @every
 def test_it_copies_torque_if_its_columns_are_made_of_torque(effect):
     other = np.roll(RECORDED.torque, 300)
-    assert isinstance(effect, CopiesTorque | RescalesTorque) == changed(effect, torque=other)
+    assert (effect.copies_torque or effect.rescales_torque) == changed(effect, torque=other)
 
 
 @every
@@ -87,7 +81,7 @@ def test_it_is_of_speed_alone_if_speed_makes_all_of_its_columns_and_they_vary(ef
         moved = raw(effect, replace(RECORDED, **speed))
         alone = not differ([column[shuffled] for column in raw(effect, RECORDED)], moved)
         alone = alone and changed(effect, **speed)
-    assert isinstance(effect, OfSpeed) == alone
+    assert effect.of_speed == alone
 
 
 @every
@@ -118,11 +112,11 @@ def test_columns_that_are_accelerations_hear_the_noise_of_motion(effect):
 @every
 def test_noise_of_motion_biases_what_filters_the_motion(effect):
     """In its own column, as a coupling does, or in all of them, as a lag: the residual is least where it is damped."""
-    filters = isinstance(effect, MotionLag)
+    filters = isinstance(effect, Lag) and effect.signal != "current"
     if isinstance(effect, Coupling):
         heard = effect.noise_of_motion(shape_of(effect), 2.0 * np.pi * np.array([1.0, 10.0, 100.0]))
         filters = np.ptp(np.abs(heard)) > 0.0
-    assert isinstance(effect, FiltersMotion) == filters
+    assert effect.filters_motion == filters
 
 
 @every
@@ -164,7 +158,7 @@ def test_what_happens_in_one_recording_only_is_absent_for_a_while(effect):
 
 @every
 def test_several_of_a_repeatable_one_are_distinguished(effect):
-    if not isinstance(effect, Repeatable):
+    if not effect.repeatable:
         return
     assert effect.shapes
     assert all(slot.whole or slot.additive for slot in effect.shapes)
@@ -222,7 +216,7 @@ def test_what_may_act_on_a_load_is_a_torque_of_motion_and_time_alone(effect):
         varies = any(np.ptp(column) > 0.0 for column in raw(effect, RECORDED))
         torque = all([order for _, order in column] == [0] for column in effect.columns(RECORDED, shape_of(effect)))
         outer = alone and varies and torque and not any(slot.whole for slot in effect.shapes)
-    assert isinstance(effect, OuterTorque) == outer, f"columns of {effect.name} {'are' if outer else 'are not'} such"
+    assert effect.external == outer, f"columns of {effect.name} {'are' if outer else 'are not'} such"
 
 
 @every

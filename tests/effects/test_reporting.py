@@ -7,7 +7,7 @@ import numpy as np
 
 from bench.effects.acting import ConstantTorque
 from bench.effects.catalogue import simpler_forms
-from bench.effects.effect import Columns, Detectable, Distortion, Lag, MotionLag, Replacing
+from bench.effects.effect import Columns, Distortion, Effect, Lag
 from bench.effects.present import Present
 from bench.effects.shape import grid_of
 from tests.effects.axes import model
@@ -36,17 +36,15 @@ def test_ambiguity_is_mutual(effect):
 
 @every
 def test_a_lag_of_the_motion_looks_like_another_with_the_same_values(effect):
-    if isinstance(effect, MotionLag):
+    if isinstance(effect, Lag) and effect.filters_motion:
         for name in {name for scope in SCOPES for name in effect.ambiguous(scope)}:
-            if isinstance(EFFECTS[name], MotionLag):
+            if EFFECTS[name].filters_motion:
                 assert dict(Present.of(name, reported(effect)).values) == reported(effect)
 
 
 @every
 def test_what_it_replaces_is_in_the_catalogue(effect):
-    if isinstance(effect, Replacing):
-        assert effect.replaces
-        assert effect.replaces <= set(EFFECTS) - {effect.name}
+    assert effect.replaces <= set(EFFECTS) - {effect.name}
 
 
 @with_columns
@@ -76,8 +74,8 @@ def test_a_constant_torque_is_its_strength_in_every_motion(effect):
 
 @every
 def test_it_reports_its_quantities_and_what_follows_from_them(effect):
-    if not isinstance(effect, (Columns, Distortion, MotionLag)):
-        assert isinstance(effect, Detectable)
+    if not isinstance(effect, (Columns, Distortion)):
+        assert type(effect).detect is not Effect.detect
         return
     names = {quantity.name for quantity in effect.quantities}
     found = set(reported(effect))

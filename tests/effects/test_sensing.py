@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bench.effects.acting import FilteredSignal, MisreadEffort, MisreadMotion, Sensing, TorqueLag
-from bench.effects.effect import Columns, Distortion, EffortLag, MotionLag
+from bench.effects.effect import Columns, Distortion, Lag
 from bench.trace.signals import SI_UNITS
 from bench.trace.trace import Trace
 from tests.effects.axes import model
@@ -64,7 +64,7 @@ def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
 def test_a_delay_is_that_of_the_simulated_signal(effect):
     """A sine that passes it comes out as behind a first-order lag of the declared time."""
     shape, sources = shape_of(effect), ("velocity", "position")
-    if not isinstance(effect, MotionLag):
+    if not isinstance(effect, Lag) or effect.signal == "current":
         return
     declared = [lag for source in sources for lag in effect.delays(shape, source)]
     twice = [lag for source in sources for lag in effect.delays([2.0 * value for value in shape], source)]
@@ -77,12 +77,12 @@ def test_a_delay_is_that_of_the_simulated_signal(effect):
 @every
 def test_a_lag_of_the_effort_is_that_of_the_recorded_one_and_is_undone(effect):
     """A sine comes out of the recorder as behind a first-order lag of the declared time, and back as it was."""
-    assert isinstance(effect, EffortLag) == (isinstance(effect, FilteredSignal) and effect.signal == "current")
-    if not isinstance(effect, EffortLag):
+    if not isinstance(effect, FilteredSignal) or effect.signal != "current":
         return
+    assert isinstance(effect, Lag)
     shape = shape_of(effect)
-    declared = effect.effort_lag(shape)
-    assert effect.effort_lag([2.0 * value for value in shape]) == pytest.approx(2.0 * declared)
+    *motion, declared = effect.delays(shape, "velocity")
+    assert motion == [0.0, 0.0]
     values = effect.report([], shape, BASE)
     late = effect.recorded(values, WAVE, TICK)
     assert_lags(late, declared)

@@ -11,7 +11,7 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import CopiesTorque, Coupling
+from bench.effects.effect import Coupling
 from bench.effects.shape import grid_of
 from bench.fit.fit import _balanced, _own, _taken, fit
 from bench.fit.hypothesis import Hypothesis, Term, with_found_strengths
@@ -114,7 +114,7 @@ def test_what_shapes_would_take_is_the_same_without_filtering_them_again(name):
         return [one for shape in shapes for one in effect.columns(signals, shape)]
 
     columns = wave_beside.seen(made, of_motion=False)
-    kept = columns if isinstance(effect, CopiesTorque) else rows.table(made)
+    kept = columns if effect.copies_torque else rows.table(made)
     targets = np.column_stack([wave_beside.span, wave_beside.residual])
     expected = _taken(_own(kept, kept.shape[1] // len(shapes)), columns.T @ targets, targets)
     assert again == pytest.approx(expected, rel=1e-8, abs=1e-9 * wave_beside.squares)

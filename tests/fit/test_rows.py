@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import CopiesTorque
+from bench.effects.effect import Columns
 from bench.effects.rivals import WAVES
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace
@@ -34,7 +34,7 @@ def test_no_row_reaches_over_a_hole():
     assert rows.table(columns, (0.0, 1e-3)) == pytest.approx(np.concatenate(alone, axis=1).T, rel=1e-9, abs=1e-9)
 
 
-COPIES = [effect for effect in catalogue().values() if isinstance(effect, CopiesTorque)]
+COPIES = [effect for effect in catalogue().values() if isinstance(effect, Columns) and effect.copies_torque]
 
 
 @pytest.mark.parametrize("effect", [*COPIES, *WAVES], ids=lambda effect: effect.name)

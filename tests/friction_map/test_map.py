@@ -5,12 +5,12 @@ import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import OfSpeed, Signals
+from bench.effects.effect import Signals
 from bench.friction_map import friction_map
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-OF_SPEED = sorted(name for name, effect in catalogue().items() if isinstance(effect, OfSpeed))
+OF_SPEED = sorted(name for name, effect in catalogue().items() if effect.of_speed)
 RIGS = {kind: Rig.of({"name": "axis", "kind": kind.name}) for kind in (ROTARY, LINEAR)}
 SPEEDS = np.concatenate([sign * np.geomspace(0.5, 60.0, 14) for sign in (-1.0, 1.0)])
 

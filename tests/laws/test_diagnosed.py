@@ -9,7 +9,6 @@ import pint
 import pytest
 
 from bench.diagnosis.diagnosis import diagnose
-from bench.effects.effect import FiltersMotion
 from bench.rig.rig import Rig
 from bench.trace.read import read
 from bench.trace.trace import Trace
@@ -115,7 +114,7 @@ def assert_alike(there, here, turned, sigmas, rel):
 
 def within(diagnosis, rel):
     """How near errors come; those of what noise biases are by noise that is drawn, and have any order."""
-    return 1.0 if any(isinstance(effect.effect, FiltersMotion) for effect in diagnosis.effects) else rel
+    return 1.0 if any(effect.effect.filters_motion for effect in diagnosis.effects) else rel
 
 
 def mirrored(effect, name, parameter):
