@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 from bench.arrays import Array, hann, spectra
 from bench.axis_kind import INERTIA, AxisKind
 from bench.fit.fit import Fit
+from bench.fit.rows import Rows
 
 #: Number of bins of a coordinate, and rows that a bin contains: fewer bins of a short recording.
 BINS, LEAST = 48, 12
+#: Distance of rows in widths of the filter beyond which noise of them does not correlate: exp(-9) is left of it.
+CORRELATED = 6.0
 
 
 @dataclass(frozen=True)
@@ -77,11 +80,12 @@ def coordinates(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | 
     time, position, sign = rows.time, rows.values(lambda s: s.position), rows.values(lambda s: s.sign)
     turned = np.concatenate([[0.0], np.where(np.diff(sign) != 0.0, time[1:], 0.0)])
     turn = np.mod(position, 2.0 * np.pi) if kind.turns else position
+    modelled = fitted.effort - fitted.left  # the measured effort contains the gap: sorted by it, noise has a share
     return [
         Coordinate("position", turn, kind.length_unit),
         Coordinate("velocity", rows.values(lambda s: s.velocity), kind.speed_unit),
         Coordinate("acceleration", fitted.columns[:, fitted.owners == INERTIA][:, 0], kind.acceleration_unit),
-        Coordinate("current", fitted.effort, effort_unit if current is None else "A", current),
+        Coordinate("current", modelled, *((effort_unit, fitted.effort) if current is None else ("A", current))),
         Coordinate("time", time, "s"),
         Coordinate("direction", sign, "dimensionless"),
         Coordinate("reversal", time - np.maximum.accumulate(turned), "s"),
@@ -104,6 +108,34 @@ def means_in(index: NDArray[np.int64], values: Array) -> Array:
     return np.bincount(index, values, minlength=count.size) / np.maximum(count, 1)
 
 
+def by_chance(index: NDArray[np.int64], kept: NDArray[np.bool_], rows: Rows) -> float:
+    """Share of the variance of filtered white noise that is expected between bins, 0 to 1.
+
+    Rows i, j that lie tau apart correlate as rho = exp(-(tau/(2*width))**2), so that the means m_b of n_b rows have
+
+        E[sum of n_b*(m_b - mean)**2] = variance*(sum over bins of (sum over i, j in b of rho)/n_b - share*K)
+
+    with K the rows of one independent sample and `share` of the rows that are in bins. For independent rows it is the
+    number of bins less one over that of rows.
+
+    Args:
+        index: bin of each row (m,).
+        kept: bins that count (b,).
+        rows: of which the recording has m.
+    """
+    time, width = rows.time, rows.conditioning.filter.width
+    weight = np.where(kept, 1.0 / np.maximum(np.bincount(index), 1), 0.0)[index]
+    own, whole = float(weight.sum()), 1.0
+    for lag in range(1, time.size):
+        apart = np.abs(time[lag:] - time[:-lag])
+        if apart.min() > CORRELATED * width:
+            break
+        correlation = 2.0 * np.exp(-((apart / (2.0 * width)) ** 2))
+        own += float(np.sum((correlation * weight[lag:])[index[lag:] == index[:-lag]]))
+        whole += float(correlation.sum()) / time.size
+    return max(own - whole * float(np.mean(kept[index])), 0.0) / max(time.size - whole, 1.0)
+
+
 def _account(coordinate: Coordinate, fitted: Fit, whole: Fit | None) -> Where:
     """Share of variance between bins, less what chance puts between them."""
     gap = fitted.residual - fitted.residual.mean()
@@ -112,8 +144,7 @@ def _account(coordinate: Coordinate, fitted: Fit, whole: Fit | None) -> Where:
     centres = means_in(index, coordinate.values if coordinate.called is None else coordinate.called)
     kept = count >= LEAST
     between, total = float(np.sum(count[kept] * means[kept] ** 2)), float(np.sum(gap**2))
-    used = int(kept.sum())
-    chance = (used - 1) * total / max(gap.size, 1)
+    chance = total * by_chance(index, kept, fitted.rows)
     share = float(np.clip((between - chance) / max(total - chance, 1e-300), 0.0, 1.0))
     order = np.argsort(-(count * means**2))
     weight = np.cumsum((count * means**2)[order])

@@ -8,12 +8,16 @@ import scipy.signal
 from scipy.interpolate import CubicSpline
 
 from bench.axis_kind import INERTIA, ROTARY
-from bench.diagnosis.where import BINS, LEAST, Coordinate, _account, _welch, bins_of, coordinates
+from bench.diagnosis.recordings import fit_bare
+from bench.diagnosis.where import BINS, LEAST, Coordinate, _account, _welch, bins_of, by_chance, coordinates, where
 from bench.effects.backlash import load_positions
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import lagged
 from bench.effects.presliding_friction import bristles
 from bench.effects.signals import Signals
+from bench.fit.rows import Rows
+from bench.rig.given import recordings_of
+from bench.trace.filter import GaussianFilter
 
 PERIOD = 1e-3
 
@@ -112,16 +116,51 @@ def test_a_gap_of_two_directions_belongs_to_direction():
     rng = np.random.default_rng(0)
     sign = np.sign(rng.normal(size=4000))
     gap = 3.0 + 0.5 * sign + 0.1 * rng.normal(size=4000)
-    account = _account(Coordinate("direction", sign, "dimensionless"), SimpleNamespace(residual=gap, left=gap), None)
+    rows = SimpleNamespace(
+        time=np.arange(4000) * PERIOD, conditioning=SimpleNamespace(filter=GaussianFilter(1e-6, PERIOD))
+    )
+    fitted = SimpleNamespace(residual=gap, left=gap, rows=rows)
+    account = _account(Coordinate("direction", sign, "dimensionless"), fitted, None)
     assert account.centres == pytest.approx([-1.0, 1.0])
     assert account.share == pytest.approx(0.25 / 0.26, abs=0.01)
+
+
+@pytest.mark.parametrize("of", [lambda time: time, lambda time: np.sin(7.0 * time)])
+def test_smoothed_white_noise_has_as_much_between_bins_as_its_autocovariance_says(of):
+    """Smoothed by a Gaussian of width w, white noise correlates as exp(-(tau/(2*w))**2)."""
+    time, width = np.arange(2000) * PERIOD, 5.0 * PERIOD
+    covariance = np.exp(-(((time[:, None] - time) / (2.0 * width)) ** 2))
+    index = bins_of(of(time))
+    member = (index[:, None] == np.arange(index.max() + 1)).astype(float)
+    means = member / member.sum(axis=0) - 1.0 / time.size
+    between = float(np.sum(member.sum(axis=0) * np.einsum("ib,ij,jb->b", means, covariance, means)))
+    total = time.size - covariance.sum() / time.size
+    rows = SimpleNamespace(time=time, conditioning=SimpleNamespace(filter=SimpleNamespace(width=width)))
+    found = by_chance(index, np.ones(index.max() + 1, dtype=bool), rows)
+    assert found == pytest.approx(between / total, rel=1e-3)
+    assert found > 5.0 * index.max() / time.size  # of independent rows
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_belongs_to_no_coordinate(seed):
+    """White noise on the torque, smoothed over seven rows, has no share beyond chance; its strongest band has some."""
+    rng, time = np.random.default_rng(seed), np.arange(12000) * PERIOD
+    turned = sum(a / w * np.sin(w * time + p) for a, w, p in ((20.0, 3.1, 0.0), (8.0, 8.2, 1.0), (4.0, 13.2, 2.0)))
+    velocity = np.gradient(turned, PERIOD)
+    torque = 2e-3 * np.gradient(velocity, PERIOD) + 0.01 * velocity + 0.1 * np.sign(velocity)
+    torque = torque + 0.05 * rng.normal(size=time.size)
+    rig, (trace,) = recordings_of({"time": time, "position": turned, "velocity": velocity, "torque": torque}, None)
+    shares = {one.coordinate: one.share for one in where(fit_bare(Rows.of(trace, rig, near=True)), ROTARY, "N*m")}
+    assert max(share for coordinate, share in shares.items() if coordinate != "frequency") < 0.02
 
 
 def test_a_sine_has_turned_as_long_ago_as_its_last_crest():
     time = np.arange(4000) * PERIOD
     position, velocity = 3.0 - np.cos(4.0 * time), 4.0 * np.sin(4.0 * time + 1e-3)
     rows = SimpleNamespace(time=time, values=lambda of: of(signals(position, velocity)))
-    fitted = SimpleNamespace(rows=rows, columns=np.ones((4000, 1)), owners=np.array([INERTIA]), effort=time)
+    fitted = SimpleNamespace(
+        rows=rows, columns=np.ones((4000, 1)), owners=np.array([INERTIA]), effort=time, left=0.0 * time
+    )
     since = {one.name: one.values for one in coordinates(fitted, ROTARY, "N*m")}["reversal"]
     assert since == pytest.approx(np.mod(time + 0.25e-3, np.pi / 4.0), abs=1.1 * PERIOD)
 
