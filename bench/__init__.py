@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from bench.errors import BenchError, InputError, UndeterminedError
+from bench.presented import Presented, Renderer
 
 if TYPE_CHECKING:
     from bench.baseline.check import Checked, check
@@ -62,6 +63,16 @@ _MODULES = {
     "robot": "bench.joints.robot",
     "simulate": "bench.plant.simulate",
 }
+
+
+def _renderer() -> Renderer:
+    """What shows results, whose imports only a result that is shown has to pay."""
+    from bench.report import notebook
+
+    return notebook
+
+
+Presented.renderer = staticmethod(_renderer)
 
 
 def __getattr__(name: str) -> object:

@@ -82,6 +82,15 @@ def test_no_files_import_each_other_in_a_circle():
     assert not waiting, "each of these imports one of them"
 
 
+@pytest.mark.parametrize(
+    "path", [path for path in SOURCES if layer_of(module_of(path)) < len(LAYERS) - 2], ids=module_of
+)
+def test_no_string_names_a_module(path):
+    """Which would be an import that no test above sees: only what is above all folders has a table of them."""
+    modules = {module_of(source) for source in SOURCES if source.stem != "__init__"}
+    assert modules.isdisjoint(node.value for node in texts(ast.parse(path.read_text(encoding="utf-8"))))
+
+
 def test_a_class_name_has_one_meaning():
     """The independent truth aside, which shares nothing with what it judges."""
     found: dict[str, list[str]] = {}

@@ -1,8 +1,9 @@
-"""Results in a notebook: what `bench.presented.Presented` says of an estimate, a diagnosis or a check."""
+"""Results in a notebook: the `bench.presented.Renderer` of an estimate, a diagnosis or a check."""
 
 from __future__ import annotations
 
 import base64
+import json
 from collections.abc import Iterable
 from html import escape
 from importlib import import_module
@@ -60,6 +61,11 @@ def overview(result: object) -> Overview:
             tables = [part for section in document.sections for part in section.blocks if isinstance(part, Table)]
             return Overview(document.verdict, tables, check_json(result))
     raise TypeError(f"nothing is known of {type(result).__name__}")
+
+
+def content(result: object) -> dict[str, Any]:
+    """The contract's JSON as plain values."""
+    return json.loads(overview(result).json)
 
 
 def text(result: object) -> str:
