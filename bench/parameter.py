@@ -84,7 +84,8 @@ class Parameter:
 
     def at(self, value: float, positive: bool) -> Parameter:
         """The same of another value: its interval keeps its width, or its factors where it is known up to those."""
-        low, high = (bound / self.value * value if positive else bound - self.value + value for bound in self.ci95)
+        factors = positive and self.value != 0.0
+        low, high = (bound / self.value * value if factors else bound - self.value + value for bound in self.ci95)
         return replace(self, value=value, ci95=(low, high))
 
     def widened(self, *by: float) -> Parameter:

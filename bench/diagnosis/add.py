@@ -148,7 +148,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         count = next((index for index, stage in enumerate(stages) if stage is modelled), -1) + 1
         stages = (*stages[:count], *(replace(stage, refused=reason) for stage in stages[count:]))
         shown = [(stage, each) for stage in stages for each in recorded]
-        against = rejection(recordings, held_out, extension, gaps, shown)
+        against = rejection(recordings, held_out, extension, gaps, shown, suspects.policy)
         against = against or unlimited(extension, closed_loop)
         if against is None:
             break
@@ -220,6 +220,7 @@ def rejection(
     extension: Extension,
     gaps: VelocityGaps,
     shown: Sequence[tuple[Extension, Recorded]],
+    policy: Policy,
 ) -> tuple[int, str] | None:
     """Index of the last effect that held-out motion contradicts, with the reason; None if it contradicts none.
 
@@ -254,19 +255,24 @@ def rejection(
         before, after = (gaps.of(each, judge) for each in (less, judged))
         allowed = float(np.hypot(before, floor) * (1.0 if in_phase else np.sqrt(ERRS_TWICE)))
         worse = min(before, after) < judge.varies and after > allowed
-        if worse and not _comes_closer(recordings, judged, held_out, gaps, allowed):
+        if worse and not _comes_closer(recordings, judged, held_out, gaps, allowed, policy):
             unit = judged.rig.axis_kind.speed_unit
             return index, _grows(f"velocity gap of the {judge.name}", before, after, unit)
     return by_torque
 
 
 def _comes_closer(
-    recordings: Recordings, whole: Extension, held_out: HeldOut, gaps: VelocityGaps, allowed: float
+    recordings: Recordings,
+    whole: Extension,
+    held_out: HeldOut,
+    gaps: VelocityGaps,
+    allowed: float,
+    policy: Policy,
 ) -> bool:
     """Whether refinement by simulation brings the velocity gap of all effects below what is allowed."""
     if whole.model is None:
         return True
-    numbers = Numbers(*named(recordings, whole.fitted, whole.outside))
+    numbers = Numbers(*named(recordings, whole.fitted, whole.outside, policy))
     found = refined_model(whole.model, numbers, held_out, gaps)
     return found is not None and found[2] <= allowed
 

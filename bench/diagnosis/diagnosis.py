@@ -268,7 +268,7 @@ def diagnose(
     left_out = frozenset(named(one, "excluded").name for one in ([excluded] if isinstance(excluded, str) else excluded))
     gated = [passed(each, rig) for each in traces]
     unseen = passed(trace_of(holdout, rig, units), rig).trace if holdout is not None else None
-    recordings = Recordings.of([each.trace for each in gated], rig, unseen)
+    recordings = Recordings.of([each.trace for each in gated], rig, unseen, policy)
     recordings, bare, suspects = decided(recordings, left_out, policy)
     recordings, moves = recordings.steady(suspects.searched.last)
     if recordings.rows is not bare.rows:

@@ -14,7 +14,7 @@ import numpy as np
 
 from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.diagnosis.policy import POLICY, Policy, worth
+from bench.diagnosis.policy import Policy, worth
 from bench.diagnosis.probability import Probabilities, neighbourhood, probabilities, scored
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, search
@@ -173,7 +173,7 @@ def _with_event(fitted: Fit, effect: Occasional, apart: Standout, policy: Policy
 
 
 def named(
-    recordings: Recordings, fitted: Fit, detected: Mapping[Effect, Detected], policy: Policy = POLICY
+    recordings: Recordings, fitted: Fit, detected: Mapping[Effect, Detected], policy: Policy
 ) -> tuple[list[NamedEffect], dict[str, Parameter]]:
     """Effects of a torque balance and outside of it with their quantities, and J, K_w, K_0 beside them."""
     numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)

@@ -24,8 +24,11 @@ def freedom(fitted: Fit) -> int:
 
 
 def worth(without: Fit, having: Fit) -> float:
-    """Squares that an effect saves, summed over rows - (N*m)**2 (N**2)."""
-    return without.squares - having.squares
+    """Squares that an effect saves, summed over the rows that both fits determine - (N*m)**2 (N**2)."""
+    common = without.determined & having.determined
+    if common.all():
+        return without.squares - having.squares
+    return float(np.sum(without.left[common] ** 2) - np.sum(having.left[common] ** 2))
 
 
 def over_noise(fitted: Fit) -> float:

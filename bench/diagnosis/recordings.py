@@ -11,7 +11,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.diagnosis.policy import POLICY
+from bench.diagnosis.policy import POLICY, Policy
 from bench.effects.acting import FilteredSignal
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect
@@ -63,7 +63,7 @@ class Recordings:
     warnings: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, trace: Trace | Sequence[Trace], rig: Rig, holdout: Trace | None) -> Recordings:
+    def of(cls, trace: Trace | Sequence[Trace], rig: Rig, holdout: Trace | None, policy: Policy = POLICY) -> Recordings:
         """Rows of the recordings and of the holdout, after faults that the signals show directly are corrected.
 
         Raises:
@@ -77,7 +77,7 @@ class Recordings:
         if holdout is not None:
             for each in traces:
                 _require_another(each, holdout)
-        rows, hidden = _decidable(trace, rig)
+        rows, hidden = _decidable(trace, rig, policy)
         width = rows.conditioning.filter.width
         detected: dict[Effect, Detected] = {}
         for effect in catalogue().values():
@@ -90,7 +90,7 @@ class Recordings:
                 corrected = _corrected(corrected, rig, effect, found)
                 unseen = None if unseen is None else _corrected(unseen, rig, effect, found)
         if corrected is not trace:
-            rows, hidden = _decidable(corrected, rig)
+            rows, hidden = _decidable(corrected, rig, policy)
         width, peak = rows.conditioning.filter.width, rows.scope.peak_effort
         holdout_rows = None if unseen is None else Rows.of(unseen, rig, width=width, peak_effort=peak, near=True)
         return cls(rig, trace, corrected, holdout, rows, holdout_rows, detected, warnings=hidden)
@@ -180,7 +180,7 @@ def _require_another(trace: Trace, holdout: Trace) -> None:
         raise InputError("holdout", f"found the recording itself ({holdout.origin})", "allowed: another recording")
 
 
-def _decidable(trace: Trace, rig: Rig) -> tuple[Rows, tuple[str, ...]]:
+def _decidable(trace: Trace, rig: Rig, policy: Policy) -> tuple[Rows, tuple[str, ...]]:
     """Rows at the cut-off that suits effects best, and a warning of what a lower one than usual hides.
 
     Raises:
@@ -214,7 +214,7 @@ def _decidable(trace: Trace, rig: Rig) -> tuple[Rows, tuple[str, ...]]:
     rows, smooth = found.rows, found.rows.conditioning.filter
     require_inertia(found.whole, kind)
     require_friction(found.whole, kind)
-    _require_above_noise(fit(rows, plain(rows)), rig.net_effort(trace)[1])
+    _require_above_noise(fit(rows, plain(rows)), rig.net_effort(trace)[1], policy)
     if rows is usual:
         return rows, ()
     return rows, (
@@ -228,7 +228,7 @@ def _suited(rows: Rows, rig: Rig) -> Iterator[Solution]:
     return Cutoffs(solution_of(rows, plain(rows), rig.offset), rig).for_effects()
 
 
-def _require_above_noise(base: Fit, unit: str) -> None:
+def _require_above_noise(base: Fit, unit: str, policy: Policy) -> None:
     """Refuse a recording whose noise would hide an effect as large as friction, or as a tenth of the torque."""
     conditioning = base.rows.conditioning
     noise = conditioning.effort_noise * conditioning.filter.noise_gain(0)
@@ -245,7 +245,7 @@ def _require_above_noise(base: Fit, unit: str) -> None:
         rms(base.columns[:, places] @ base.theta[places])
         for places in (np.isin(base.owners, terms) for terms in ((VISCOUS, COULOMB), (INERTIA, VISCOUS, COULOMB)))
     )
-    least = math.sqrt(POLICY.by_chance(base, 1) / base.effort.size)
+    least = math.sqrt(policy.by_chance(base, 1) / base.effort.size)
     loud = max(friction, torque / SMALL)
     if least > loud:
         raise UndeterminedError(

@@ -6,11 +6,12 @@ import pytest
 from bench.diagnosis import policy as rules
 from bench.diagnosis import search as searching
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.policy import Policy, freedom
-from bench.diagnosis.recordings import fit_bare
+from bench.diagnosis.policy import Policy, freedom, worth
+from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.search import LIMIT, candidates, search
 from bench.effects import backlash
 from bench.effects.catalogue import catalogue
+from bench.errors import UndeterminedError
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Term
 from bench.fit.rows import Rows
@@ -145,6 +146,17 @@ def test_few_finalists_are_searched_and_the_best_of_them(monkeypatch):
     assert 4 < len(promising) < len(tried)
 
 
+def test_rows_that_a_gap_does_not_determine_are_not_saved():
+    """A gap that the axis does not have excludes rows near its impacts: their squares are not explained by it."""
+    without = bare(recorded(MOTION, coupled(0.6, 100.0, 0.1), vibration(0.02, 11.0)))
+    gap = fit(without.rows, without.hypothesis.plus(Term(catalogue()["backlash"], (0.03, 200.0, 0.2, 0.0))))
+    sure = gap.determined
+    assert not sure.all()
+    saved = float(np.sum(without.left[sure] ** 2) - np.sum(gap.left[sure] ** 2))
+    assert worth(without, gap) == pytest.approx(saved)
+    assert without.squares - gap.squares > 3.0 * saved
+
+
 def test_a_search_that_its_limit_ends_says_so():
     trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
     effects = [catalogue()[name] for name in ("torque_offset", "cogging_torque")]
@@ -212,3 +224,11 @@ def test_shapes_count_as_numbers_however_they_were_searched():
     wave_of_six = Term(catalogue()["cogging_torque"], (6.0,))
     numbers = [freedom(fit(bare.rows, bare.hypothesis.plus(term))) - freedom(bare) for term in (gap, lag, wave_of_six)]
     assert numbers == [4, 1, 2]
+
+
+def test_the_policy_decides_whether_a_recording_suffices():
+    """What counts as chance decides, too, whether effects would be visible in the noise of a recording."""
+    trace = recorded(MOTION, noise=3.0)
+    assert Recordings.of(trace, RIG, None, POLICY).rows.effort.size
+    with pytest.raises(UndeterminedError, match="would stand out of the noise"):
+        diagnose(trace, RIG, policy=Policy(chance=1e5))

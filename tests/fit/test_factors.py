@@ -31,6 +31,11 @@ def test_a_factor_stays_one_where_the_value_moves():
     assert found.at(1.0, positive=False).ci95 == pytest.approx((-1.0, 5.0))
 
 
+def test_zero_has_no_factor_so_its_interval_keeps_its_width():
+    found = Parameter(0.0, "s", 1.0, (-2.0, 3.0))
+    assert found.at(1.0, positive=True).ci95 == pytest.approx((-1.0, 4.0))
+
+
 @pytest.mark.parametrize(
     ("effect", "positive"),
     [
