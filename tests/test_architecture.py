@@ -16,7 +16,7 @@ PAGE_MAKERS = sorted((ROOT / "docs" / "_ext").glob("*.py"))
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
-    {"errors", "names", "bounds", "files", "structured", "assets", "allocation", "presented", "offered"},
+    {"errors", "names", "bounds", "files", "structured", "assets", "allocation", "presented", "offered", "validated"},
     {"jobs"},
     {"units", "axis_kind", "arrays", "parameter"},
     {"comparison"},

@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from bench.axis_kind import COULOMB, INERTIA, ROTARY, VISCOUS, AxisKind
-from bench.baseline.observe import Observed, Refitted, differing, motion_ratio, observe, unlike
-from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, NamedHere, State, read_baseline
+from bench.baseline.observe import Observed, differing, motion_ratio, observe, unlike
+from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, AxisEffect, State, read_baseline
 from bench.comparison.difference import CHANGED, RESULTS, SAME, UNDECIDED, Comparison, Difference, Measured, holm
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Occasional
@@ -100,8 +100,8 @@ class Checked(Presented):
     comparisons: tuple[Comparison, ...]
     baseline: State
     now: State
-    appeared: tuple[tuple[NamedHere, Comparison], ...]
-    gone: tuple[tuple[NamedHere, Comparison], ...]
+    appeared: tuple[tuple[AxisEffect, Comparison], ...]
+    gone: tuple[tuple[AxisEffect, Comparison], ...]
     rig: tuple[str, ...] = ()
     conditions: tuple[str, ...] = ()
     false_alarm_rate: float = 0.0
@@ -129,18 +129,18 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     state = now.state
     rig, moved = differing(baseline.rig, state.rig), unlike(baseline.conditions, state.conditions)
     ratio = motion_ratio(baseline.conditions, state.conditions) if moved else 1.0
-    motion = Leeway(ratio**POWER, "the motion is not that of the baseline" if ratio > COMPARABLE else "")
+    allowed = replace(allowed, motion=ratio)
     effects = matched(baseline, state)
     under = None if effects.alike or now.fitted is None else now.under(effects.others(baseline))
-    names = [*_of_names(effects, under, baseline, allowed, motion)]
-    pairs = [*_of_both(effects.both, allowed, baseline, motion.beside)]
+    names = [*_of_names(effects, under, baseline, allowed)]
+    pairs = [*_of_both(effects.both, allowed, baseline)]
     named = {effect.name for effect in (*baseline.effects, *state.effects)}  # the others were searched for too
     silent = len(set(catalogue()) - named) if baseline.shows is not None else 0
     family = len(baseline.quantities) + len(names) + len(pairs) + silent
     # Where all names that differ are significant the axis changed, and each state is described by its own effects;
     # where a name is near its threshold, a change has to show with the effects of both.
     both_sets = None if all(one.chance <= rate / family for one in names) else under
-    quantities = [*_of_quantities(baseline, state, under, both_sets, allowed, motion)]
+    quantities = [*_of_quantities(baseline, state, under, both_sets, allowed)]
     missing = [name for name in baseline.quantities if name not in state.quantities]
     quantities += [_undetermined(name, "it is not determined now", baseline.quantities[name]) for name in missing]
     comparisons = [*quantities, *pairs, *names]
@@ -152,30 +152,8 @@ def compare(baseline: State, now: Observed, allowed: Allowed, rate: float) -> Ch
     return replace(found, rig=tuple(rig), conditions=tuple(moved), false_alarm_rate=rate, family=family)
 
 
-@dataclass(frozen=True)
-class Leeway:
-    """By how much results may differ because the motion or sampling does.
-
-    Attributes:
-        factor: by which it may change what a model leaves and the torque of an effect, at most; 1 without one.
-        unlike: why these cannot be compared, if they cannot.
-    """
-
-    factor: float
-    unlike: str
-
-    @property
-    def beside(self) -> float:
-        """Standard deviations between recordings that quantities may differ by, beside those that they always do."""
-        return OTHER_MOTION if self.factor > 1.0 else 0.0
-
-    def margin(self, margin: float, before: float) -> float:
-        """A margin that holds what the motion may do to a value and its margin."""
-        return self.factor * (before + margin) - before
-
-
 def _of_quantities(
-    baseline: State, now: State, under: Refitted | None, both_sets: Refitted | None, allowed: Allowed, motion: Leeway
+    baseline: State, now: State, under: State | None, both_sets: State | None, allowed: Allowed
 ) -> Iterator[Comparison]:
     """Comparisons of parameters and gaps.
 
@@ -193,13 +171,13 @@ def _of_quantities(
         if name == TORQUE_GAP:  # what the effects of the baseline leave now, whatever else was found
             if under is not None:
                 values = [under.quantities[name]]
-            floor = now.gaps["torque"].noise_floor if under is None else under.noise_floor
-            least_chance, margin = _louder(baseline, values[0].value / floor), motion.margin(margin, before.value)
+            floor = (under or now).gaps["torque"].noise_floor.value
+            least_chance, margin = _louder(baseline, values[0].value / floor), allowed.moved(margin, before.value)
         elif both_sets is not None and name in both_sets.quantities:
             values.append(both_sets.quantities[name])
-        differences = tuple(Difference.of(before, value, between, motion.beside * between) for value in values)
-        held_back = motion.unlike if name == TORQUE_GAP else ""
-        if name == VELOCITY_GAP and motion.beside:
+        differences = tuple(Difference.of(before, value, between, allowed.otherwise * between) for value in values)
+        held_back = allowed.unlike if name == TORQUE_GAP else ""
+        if name == VELOCITY_GAP and allowed.otherwise:
             held_back = "what a simulation leaves depends on the motion"
         found = Comparison(name, before.unit, before.value, values[0].value, differences, margin, held_back=held_back)
         yield found.tested(least_chance)
@@ -214,7 +192,7 @@ def _undetermined(name: str, why: str, before: Measured | None = None, effect: s
 def _louder(baseline: State, now: float) -> float:
     """Probability of this torque gap over its noise floor, if only the sensors' noise had grown since the baseline."""
     before = baseline.gaps["torque"]
-    ratio = before.after / before.noise_floor
+    ratio = before.after.value / before.noise_floor.value
     shown = Difference(now - ratio, math.sqrt(2.0) * FLOOR * ratio)
     return shown.chance(MARGINS[TORQUE_GAP] * ratio)
 
@@ -229,31 +207,31 @@ class Matched:
         gone, appeared: those that only the baseline, only the state now has.
     """
 
-    both: tuple[tuple[NamedHere, NamedHere], ...]
-    renamed: tuple[tuple[NamedHere, NamedHere], ...]
-    gone: tuple[NamedHere, ...]
-    appeared: tuple[NamedHere, ...]
+    both: tuple[tuple[AxisEffect, AxisEffect], ...]
+    renamed: tuple[tuple[AxisEffect, AxisEffect], ...]
+    gone: tuple[AxisEffect, ...]
+    appeared: tuple[AxisEffect, ...]
 
     @property
     def alike(self) -> bool:
         """Whether both states have the same effects."""
         return not (self.renamed or self.gone or self.appeared)
 
-    def others(self, baseline: State) -> list[tuple[NamedHere, NamedHere | None]]:
+    def others(self, baseline: State) -> list[tuple[AxisEffect, AxisEffect | None]]:
         """Effects of the baseline, each with its match now; None without one."""
         own = {before.label: now for before, now in self.both}
         return [(effect, own.get(effect.label)) for effect in _lasting(baseline)]
 
 
-def _lasting(state: State) -> list[NamedHere]:
+def _lasting(state: State) -> list[AxisEffect]:
     return [effect for effect in state.effects if not isinstance(effect.effect, Occasional)]
 
 
 def matched(baseline: State, now: State) -> Matched:
     """Pairs of the same effect, then pairs that are `ambiguous_with` each other, then the rest."""
     before, after = _lasting(baseline), _lasting(now)
-    both, renamed = list[tuple[NamedHere, NamedHere]](), list[tuple[NamedHere, NamedHere]]()
-    for pairs, alike in ((both, NamedHere.same), (renamed, NamedHere.indistinguishable_from)):
+    both, renamed = list[tuple[AxisEffect, AxisEffect]](), list[tuple[AxisEffect, AxisEffect]]()
+    for pairs, alike in ((both, AxisEffect.same), (renamed, AxisEffect.indistinguishable_from)):
         for one in list(before):
             other = next((candidate for candidate in after if alike(one, candidate)), None)
             if other is not None:
@@ -263,56 +241,50 @@ def matched(baseline: State, now: State) -> Matched:
     return Matched(tuple(both), tuple(renamed), tuple(before), tuple(after))
 
 
-def _of_both(
-    pairs: Sequence[tuple[NamedHere, NamedHere]], allowed: Allowed, state: State, beside: float
-) -> Iterator[Comparison]:
-    """Comparisons of the quantities of effects that both states name; `beside` times the spread for other motion."""
+def _of_both(pairs: Sequence[tuple[AxisEffect, AxisEffect]], allowed: Allowed, state: State) -> Iterator[Comparison]:
+    """Comparisons of the quantities of effects that both states name."""
     for before, after in pairs:
         for key in (key for key in before.compared if key in after.compared):
             key_in_full, baseline, now = f"{before.name}.{key}", before.compared[key], after.compared[key]
             between = allowed.between_of(key_in_full, baseline)
-            difference = Difference.of(baseline, now, between, beside * between)
+            difference = Difference.of(baseline, now, between, allowed.otherwise * between)
             margin = allowed.margin_of(key_in_full, baseline, state)
             name = key_in_full if before.name == before.label else f"{before.label}: {key}"
             yield Comparison(name, baseline.unit, baseline.value, now.value, (difference,), margin).tested()
 
 
-def _of_names(
-    found: Matched, under: Refitted | None, baseline: State, allowed: Allowed, motion: Leeway
-) -> Iterator[Comparison]:
+def _of_names(found: Matched, under: State | None, baseline: State, allowed: Allowed) -> Iterator[Comparison]:
     """Comparisons of all names that differ."""
-    torques = {} if under is None else under.torques
+    torques = {} if under is None else {one.label: one.torque for one in under.effects}
     for before, after in found.renamed:
-        yield _of_torque(before, after.torque, allowed, motion, f"{before.label} or {after.label}")
+        yield _of_torque(before, after.torque, allowed, f"{before.label} or {after.label}")
     for before in found.gone:
-        yield _of_torque(before, torques.get(before.label), allowed, motion, before.label, "gone")
+        yield _of_torque(before, torques.get(before.label), allowed, before.label, "gone")
     for after in found.appeared:
-        yield _of_appeared(after, baseline, allowed, motion)
+        yield _of_appeared(after, baseline, allowed)
 
 
-def _of_torque(
-    before: NamedHere, now: Measured | None, allowed: Allowed, motion: Leeway, name: str, effect: str = ""
-) -> Comparison:
+def _of_torque(before: AxisEffect, now: Measured | None, allowed: Allowed, name: str, effect: str = "") -> Comparison:
     """Comparison of the torque of an effect of the baseline, whatever its name is now."""
     was = before.torque
     if was is None or now is None:
         return _undetermined(name, "the torque balance does not hold it, so its strength is not known", effect=effect)
     difference = Difference.of(was, now, allowed.between_of(before.name, was))
-    margin = motion.margin(OF_EFFECTS * was.value, was.value)
-    return Comparison(name, was.unit, was.value, now.value, (difference,), margin, effect, motion.unlike).tested()
+    margin = allowed.moved(OF_EFFECTS * was.value, was.value)
+    return Comparison(name, was.unit, was.value, now.value, (difference,), margin, effect, allowed.unlike).tested()
 
 
-def _of_appeared(after: NamedHere, baseline: State, allowed: Allowed, motion: Leeway) -> Comparison:
+def _of_appeared(after: AxisEffect, baseline: State, allowed: Allowed) -> Comparison:
     """Comparison of the torque of an effect that is new with what the baseline's recording would have shown."""
     torque = after.torque
     if torque is None or baseline.shows is None:
         why = "shown by its signals alone, which do not say from when on the baseline would have shown it"
         return _undetermined(after.label, why, effect="appeared")
-    significant = baseline.shows.torque * math.sqrt(max(len(after.quantities), 1))
-    least = motion.factor * max(significant, baseline.shows.left)
+    significant = baseline.shows.torque.value * math.sqrt(max(len(after.quantities), 1))
+    least = allowed.factor * max(significant, baseline.shows.residual.value)
     nothing = Measured(0.0, torque.unit, torque.std_error)
     difference = Difference.of(nothing, torque, allowed.between_of(after.name, torque))
-    found = Comparison(after.label, torque.unit, None, torque.value, (difference,), least, "appeared", motion.unlike)
+    found = Comparison(after.label, torque.unit, None, torque.value, (difference,), least, "appeared", allowed.unlike)
     return found.tested()
 
 
@@ -322,13 +294,34 @@ class Allowed:
     them.
 
     A quantity is `coulomb_friction_torque`, `cogging_torque.amplitude`, `torque_gap`; its value a share of the
-    baseline's, "2 %", or a number with its unit. `source` is where they are stated, for messages.
+    baseline's, "2 %", or a number with its unit. `source` is where they are stated, for messages. `motion` is the
+    largest factor by which motion and sampling differ from the baseline's, 1 where they do not.
     """
 
     kind: AxisKind
     margin: Mapping[str, str] = field(default_factory=dict)
     between: Mapping[str, str] = field(default_factory=dict)
     source: str = "rig"
+    motion: float = 1.0
+
+    @property
+    def factor(self) -> float:
+        """By which the motion may change what a model leaves and the torque of an effect, at most."""
+        return self.motion**POWER
+
+    @property
+    def unlike(self) -> str:
+        """Why these cannot be compared; empty if they can."""
+        return "the motion is not that of the baseline" if self.motion > COMPARABLE else ""
+
+    @property
+    def otherwise(self) -> float:
+        """Standard deviations between recordings by which another motion may change quantities."""
+        return OTHER_MOTION if self.motion > 1.0 else 0.0
+
+    def moved(self, margin: float, before: float) -> float:
+        """A margin that contains what the motion may do to a value and its margin."""
+        return self.factor * (before + margin) - before
 
     @classmethod
     def of(cls, rig: Rig | None, kind: AxisKind = ROTARY) -> Allowed:

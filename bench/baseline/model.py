@@ -16,7 +16,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.baseline.check import Allowed, Checked, matched
-from bench.baseline.state import INSTANTS, NamedHere, Response, State
+from bench.baseline.state import INSTANTS, AxisEffect, Response, State
 from bench.comparison.difference import CHANGED, SAME, Comparison, Difference, Measured
 from bench.plant.axis_model import AxisModel, effect_values
 from bench.plant.drive import Cascade, References
@@ -54,7 +54,7 @@ def modelled(path: str | Path, baseline: State | None = None) -> State:
         values = effect_values(present, kind)
         shape = [values.get(slot.quantity.name, (math.nan,))[0] for slot in present.effect.shapes]
         found = {key: Measured(*pair) for key, pair in values.items()}
-        effects.append(NamedHere(present.effect, found, tuple(shape)))
+        effects.append(AxisEffect(present.effect, shape=tuple(shape), quantities=found))
     quantities = {name: Measured(*pair) for name, pair in stored.model.parameters.values.items()}
     moves = response(stored.model, None if baseline is None else baseline.response)
     return State("model", True, quantities, tuple(effects), rig={"kind": kind.name}, response=moves)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.arrays import rms
-from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, DetectionLimits, NamedHere, RemainingGap, State
+from bench.baseline.state import TORQUE_GAP, VELOCITY_GAP, AxisEffect, DetectionLimits, RemainingGap, State
 from bench.comparison.difference import Measured
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.diagnosis.name import NamedEffect
@@ -43,26 +43,14 @@ BESIDE = {"name", "simulation", "check", "drive", "source"}
 
 
 @dataclass(frozen=True)
-class Refitted:
-    """Recordings fitted with the effects of another state: the torques of those in the torque balance by their labels.
-
-    The noise floor is that of the torque gap - N*m (N).
-    """
-
-    quantities: Mapping[str, Measured]
-    torques: Mapping[str, Measured]
-    noise_floor: float
-
-
-@dataclass(frozen=True)
 class Observed:
     """A state and, where effects were searched for, the torque balance with them, through the filter of all states."""
 
     state: State
     fitted: Fit | None = None
 
-    def under(self, others: Sequence[tuple[NamedHere, NamedHere | None]]) -> Refitted:
-        """The recording fitted with the effects of another state, each with its match in this one, instead of its own.
+    def under(self, others: Sequence[tuple[AxisEffect, AxisEffect | None]]) -> State:
+        """The state with the effects of another one in the torque balance, each with its match in this one, refitted.
 
         An effect that comes or goes changes J, K_w and K_0 with it: an unchanged axis agrees under both sets. Effects
         without a match here start from the shape they had there; those outside the torque balance are left out.
@@ -82,8 +70,10 @@ class Observed:
             if mine is None:
                 fitted = shaped(fitted.rows, fitted.hypothesis, index)
         base = uncertain(fitted).base(self.state.kind.base_parameters(unit))
-        torques = {effect.label: _torque(fitted, index, unit) for index, (effect, _) in enumerate(held)}
-        return Refitted(_measured(base) | {TORQUE_GAP: _torque_gap(fitted, unit)}, torques, fitted.floor)
+        effects = [replace(effect, torque=_torque(fitted, index, unit)) for index, (effect, _) in enumerate(held)]
+        quantities = _measured(base) | {TORQUE_GAP: _torque_gap(fitted, unit)}
+        gaps = {"torque": _remaining(fitted.rms, fitted.floor, unit)}
+        return replace(self.state, quantities=quantities, effects=tuple(effects), gaps=gaps)
 
 
 def observe(
@@ -107,7 +97,7 @@ def observe(
     traces = [passed(trace, rig).trace for trace in traces]
     found, fitted = identify(traces, rig), balance(join(traces), rig, Hypothesis())
     quantities = _quantities(found, fitted, rig, found.residual.unit)
-    gaps = {"torque": RemainingGap(fitted.rms, fitted.floor, found.residual.unit)}
+    gaps = {"torque": _remaining(fitted.rms, fitted.floor, found.residual.unit)}
     at = conditions(traces, rig, found.cutoff)
     return Observed(State("recordings", False, quantities, gaps=gaps, conditions=at, rig=rig_values(rig)))
 
@@ -120,15 +110,15 @@ def _diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress) -> Observe
     unit, fitted = recordings.unit, balance(recordings.corrected, rig, replace(found.balance.hypothesis, hum=()))
     count = len(fitted.terms)
     effects = [_named(effect, fitted, index, unit) for index, effect in enumerate(found.effects[:count])]
-    effects += [NamedHere(e.effect, _measured(e.parameters)) for e in found.effects[count:]]
+    effects += [AxisEffect(e.effect, quantities=_measured(e.parameters)) for e in found.effects[count:]]
     gaps = {
-        name: RemainingGap(gap.identify[1], gap.noise_floor, gap.unit)
+        name: _remaining(gap.identify[1], gap.noise_floor, gap.unit)
         for name, gap in (("torque", found.torque), ("velocity", found.velocity))
         if gap.identify is not None
     }
     quantities = _quantities(found, fitted, rig, unit)
     if "velocity" in gaps:
-        quantities[VELOCITY_GAP] = Measured(gaps["velocity"].after, gaps["velocity"].unit)
+        quantities[VELOCITY_GAP] = gaps["velocity"].after
     state = State(
         source="recordings",
         names=True,
@@ -136,7 +126,7 @@ def _diagnosed(traces: Sequence[Trace], rig: Rig, progress: Progress) -> Observe
         effects=tuple(effects),
         verdict=found.verdict,
         gaps=gaps,
-        shows=_shows(fitted),
+        shows=_shows(fitted, unit),
         conditions=conditions(traces, rig, recordings.rows.conditioning.filter.cutoff),
         rig=rig_values(rig),
     )
@@ -164,9 +154,13 @@ def _measured(parameters: Mapping[str, Parameter]) -> dict[str, Measured]:
     return {name: Measured.of(one) for name, one in parameters.items()}
 
 
-def _named(found: NamedEffect, fitted: Fit, index: int, unit: str) -> NamedHere:
+def _remaining(after: float, noise_floor: float, unit: str) -> RemainingGap:
+    return RemainingGap(Measured(after, unit), Measured(noise_floor, unit))
+
+
+def _named(found: NamedEffect, fitted: Fit, index: int, unit: str) -> AxisEffect:
     term, torque = fitted.terms[index], _torque(fitted, index, unit)
-    return NamedHere(
+    return AxisEffect(
         effect=found.effect,
         quantities=_measured(found.parameters),
         shape=term.shape,
@@ -195,11 +189,13 @@ def _torque_gap(fitted: Fit, unit: str) -> Measured:
     return Measured(fitted.rms, unit, float(fitted.rms / np.sqrt(2.0 * independent)))
 
 
-def _shows(fitted: Fit) -> DetectionLimits:
+def _shows(fitted: Fit, unit: str) -> DetectionLimits:
     """Torque that is significant in a recording, and that its residual may hide as noise, up to `Policy.remainder`."""
     significant = POLICY.by_chance(fitted, 1) / fitted.count
     hidden = max(fitted.chi, POLICY.remainder) ** 2 - 1.0
-    return DetectionLimits(float(np.sqrt(significant)), float(fitted.floor * np.sqrt(hidden)))
+    return DetectionLimits(
+        Measured(math.sqrt(significant), unit), Measured(float(fitted.floor * math.sqrt(hidden)), unit)
+    )
 
 
 def conditions(traces: Sequence[Trace], rig: Rig, cutoff: float) -> dict[str, Measured]:

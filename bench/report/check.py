@@ -11,7 +11,7 @@ from typing import Any
 
 from bench.baseline.check import Checked
 from bench.baseline.model import RESPONSE_TORQUE
-from bench.baseline.state import GAPS, NamedHere, RemainingGap
+from bench.baseline.state import GAPS, AxisEffect, RemainingGap
 from bench.comparison.difference import CHANGED, SAME, UNDECIDED, Comparison
 from bench.names import short, words
 from bench.report import document as doc
@@ -44,8 +44,8 @@ def check_json(checked: Checked) -> str:
     baseline, now = checked.baseline, checked.now
     gaps = {}
     for name, unit, *both in _gaps(checked):
-        was, left = (gap and picked(gap, "after", "noise_floor") for gap in both)
-        gaps[name] = {"unit": unit, "baseline": was, "now": left}
+        was, remains = (gap and {key: getattr(gap, key).value for key in ("after", "noise_floor")} for gap in both)
+        gaps[name] = {"unit": unit, "baseline": was, "now": remains}
     return serialised(
         {
             "schema": SCHEMA,
@@ -73,7 +73,7 @@ def _(one: Comparison) -> dict[str, Any]:
     }
 
 
-def _effect(effect: NamedHere, one: Comparison) -> dict[str, Any]:
+def _effect(effect: AxisEffect, one: Comparison) -> dict[str, Any]:
     """An effect that came or went; how sure that is: its torque against what the other state would have shown."""
     parameters = {
         key: {**picked(found, "value", "unit"), "std_error": known(found.std_error)}
@@ -86,7 +86,7 @@ def _effect(effect: NamedHere, one: Comparison) -> dict[str, Any]:
         "ambiguous_with": effect.ambiguous_with,
         "result": one.result,
         "because": one.reason or None,
-        "evidence": {"torque": torque, "chance": one.chance, "gain": known(effect.gain)},
+        "evidence": {"torque": torque, "chance": one.chance, "gain": effect.gain},
     }
 
 
@@ -94,7 +94,7 @@ def _gaps(checked: Checked) -> Iterator[tuple[str, str, RemainingGap | None, Rem
     """Name and unit of each gap, then and now."""
     before, now = checked.baseline.gaps, checked.now.gaps
     for name in dict.fromkeys([*before, *now]):
-        yield name, (now.get(name) or before[name]).unit, before.get(name), now.get(name)
+        yield name, (now.get(name) or before[name]).after.unit, before.get(name), now.get(name)
 
 
 def headline(checked: Checked, brief: bool = False) -> str:
@@ -144,7 +144,7 @@ def _why(one: Comparison) -> str:
     return f", but {one.reason}" if one.reason else ""
 
 
-def _values(effect: NamedHere) -> str:
+def _values(effect: AxisEffect) -> str:
     """Quantities of an effect, without angles, whose zero is arbitrary, and without those in its label."""
     counted = {slot.quantity.name for slot, _ in effect.whole}
     names = [q.name for q in effect.effect.quantities if not q.angle and q.name not in counted]
@@ -259,7 +259,7 @@ def _gaps_table(checked: Checked) -> doc.Table:
     for name, unit, *gaps in _gaps(checked):
         what = effort_word(unit) if name == "torque" else words(name)
         for of, value in (("left", "after"), ("noise alone", "noise_floor")):
-            both = (None if gap is None else number(getattr(gap, value), digits=3) for gap in gaps)
+            both = (None if gap is None else number(getattr(gap, value).value, digits=3) for gap in gaps)
             rows.append((f"{what}, {of} (RMS)", *both, unit_text(unit)))
     caption = "Verdicts, and what inertia, friction and effects do not explain"
     return doc.table(caption, ("of", "baseline>", "now>", "unit"), rows)

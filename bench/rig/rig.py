@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
@@ -14,12 +14,13 @@ from bench.arrays import Array
 from bench.assets import asset
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
-from bench.names import nearest, short
+from bench.names import nearest
 from bench.rig import values
 from bench.rig.motor import Motor, catalogue_motor
 from bench.rig.values import RigTable, tolerance_of
 from bench.structured import read_toml
 from bench.trace.trace import Trace, less_known, require_plausible
+from bench.validated import input_error
 
 #: Standard acceleration of free fall - m/s**2. ISO 80000-3: g_n.
 STANDARD_GRAVITY = 9.80665
@@ -237,7 +238,7 @@ class Rig(RigTable):
             context = {"kind": kind, "numbers": numbers}
             self.__pydantic_validator__.validate_python(table, self_instance=self, context=context)
         except ValidationError as error:
-            raise _input_error(source, error) from error
+            raise input_error(source, error, Rig, "rig") from error
         if numbers:
             said = ", ".join(f"{name} in {unit}" for name, unit in numbers.items())
             vars(self)["assumed"] = (f"numbers of the rig without a unit are taken in SI: {said}",)
@@ -406,36 +407,6 @@ def load_rig(path: str | Path, defaults: Mapping[str, Any] | None = None) -> Rig
     """
     path = rig_file(path)
     return Rig.of({**(defaults or {}), **read_toml(path, "a rig file")}, str(path))
-
-
-def _input_error(source: str, error: ValidationError) -> InputError:
-    """The first complaint of pydantic as one line naming file, key, found and allowed."""
-    detail = error.errors()[0]
-    keys = [str(key) for key in detail["loc"]]
-    where = f"{source}: {'.'.join(keys) or 'rig'}"
-    context: dict[str, Any] = detail.get("ctx", {})
-    if detail["type"] == "unit":
-        return InputError(where, context["found"], context["allowed"])
-    if detail["type"] == "extra_forbidden":
-        known = _known_keys(keys[:-1])
-        return InputError(where, f"unknown key{nearest(keys[-1], known)}", f"allowed: {', '.join(known)}")
-    if detail["type"] == "missing":
-        return InputError(where, "missing", "this key is required")
-    message = detail["msg"].removeprefix("Value error, ")
-    tables = isinstance(detail["input"], dict) or not keys
-    found = "inconsistent" if tables else f"found {short(repr(detail['input']))}"
-    return InputError(where, found, f"allowed: {message[0].lower()}{message[1:]}")
-
-
-def _known_keys(keys: list[str]) -> list[str]:
-    """Keys of the table that a path of keys leads to."""
-    table: type[RigTable] = Rig
-    for key in keys:
-        if key in table.model_fields:
-            kind = table.model_fields[key].annotation
-            tables = [one for one in (kind, *get_args(kind)) if isinstance(one, type) and issubclass(one, RigTable)]
-            table = tables[0] if tables else table
-    return [name for name in table.model_fields if name != "source"]
 
 
 def lacking(rig: Rig) -> dict[str, tuple[str, ...]]:

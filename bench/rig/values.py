@@ -20,6 +20,7 @@ from pydantic_core import PydanticCustomError
 from bench.axis_kind import ROTARY
 from bench.errors import InputError
 from bench.units import parse_with_tolerance
+from bench.validated import refused
 
 
 class RigTable(BaseModel):
@@ -72,7 +73,7 @@ def si(unit: str, translated: bool = False) -> WrapValidator:
         try:
             value, tolerance = parse_with_tolerance(text, own, "")
         except InputError as error:
-            raise PydanticCustomError("unit", "{found}; {allowed}", vars(error)) from error
+            raise refused(error.found, error.allowed) from error
         try:
             checked = check(value)
         except ValidationError as error:  # of the bounds, which are reported of the text that stands in the file

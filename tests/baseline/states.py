@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from bench.baseline.observe import Observed, Refitted
-from bench.baseline.state import TORQUE_GAP, DetectionLimits, NamedHere, RemainingGap, State
+from bench.baseline.observe import Observed
+from bench.baseline.state import TORQUE_GAP, AxisEffect, DetectionLimits, RemainingGap, State
 from bench.comparison.difference import Measured
 from bench.effects.catalogue import catalogue
 
@@ -37,15 +37,15 @@ def state(changed: Mapping[str, float] | None = None, effects=(), verdict="nothi
         quantities=values,
         effects=tuple(effects),
         verdict=verdict,
-        gaps={"torque": RemainingGap(values[TORQUE_GAP].value, floor, "N*m")},
-        shows=DetectionLimits(1e-3, 2.5e-3),
+        gaps={"torque": RemainingGap(replace(values[TORQUE_GAP], std_error=0.0), Measured(floor, "N*m"))},
+        shows=DetectionLimits(Measured(1e-3, "N*m"), Measured(2.5e-3, "N*m")),
         conditions={n: Measured(v * conditions.get(n, 1.0), unit, 0.0) for n, (v, unit) in CONDITIONS.items()},
         rig={"kind": "rotary", "motor.torque_constant": "0.8"},
         provenance={"version": "0.1.0"},
     )
 
 
-def named(name: str, rms: float, ambiguous_with=(), **values: float) -> NamedHere:
+def named(name: str, rms: float, ambiguous_with=(), **values: float) -> AxisEffect:
     """An effect that makes so much torque - N*m -, its quantities known to 1 %."""
     effect = catalogue()[name]
     quantities = {
@@ -54,7 +54,7 @@ def named(name: str, rms: float, ambiguous_with=(), **values: float) -> NamedHer
         if q.name in values
     }
     shape = tuple(values.get(slot.quantity.name, 0.0) for slot in effect.shapes)
-    return NamedHere(effect, quantities, shape, False, Measured(rms, "N*m", 1e-4), tuple(ambiguous_with))
+    return AxisEffect(effect, tuple(ambiguous_with), shape, torque=Measured(rms, "N*m", 1e-4), quantities=quantities)
 
 
 @dataclass(frozen=True)
@@ -75,5 +75,7 @@ class GivenObserved(Observed):
             name: replace(one, value=one.value * self.factors.get(name, 1.0))
             for name, one in self.state.quantities.items()
         }
-        torques = {e.label: Measured(self.torques[e.name], "N*m", 1e-4) for e, _ in others if e.name in self.torques}
-        return Refitted(found, torques, self.state.gaps["torque"].noise_floor)
+        effects = [
+            replace(e, torque=Measured(self.torques[e.name], "N*m", 1e-4)) for e, _ in others if e.name in self.torques
+        ]
+        return replace(self.state, quantities=found, effects=tuple(effects))
