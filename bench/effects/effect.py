@@ -303,6 +303,10 @@ class Coupling(Columns):
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array | NDArray[np.complex128]:
         """Transfer from acceleration to its first column at angular frequencies - rad/s (k,) -: (k,)."""
 
+    def resonances(self, shape: Sequence[float]) -> list[tuple[float, float]]:
+        """Frequency and half width at half power of each resonance of this transfer - rad/s."""
+        return []
+
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Part of the inertia sits behind it."""
         return BEHIND[0] < strengths[0] / base.inertia < BEHIND[1]

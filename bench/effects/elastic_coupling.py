@@ -69,6 +69,11 @@ class ElasticCoupling(Coupling, Native):
         s = 1j * omega / shape[0]
         return -(s**2) / (1.0 + 2.0 * shape[1] * s + s**2)
 
+    def resonances(self, shape: Sequence[float]) -> list[tuple[float, float]]:
+        """Its poles' frequency w_a*sqrt(1 - D**2) and decay D*w_a."""
+        antiresonance, ratio = shape
+        return [(antiresonance * float(np.sqrt(max(1.0 - ratio**2, 0.0))), ratio * antiresonance)]
+
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """It rings, and part of the inertia sits behind it."""
         return shape[1] < OVERDAMPED and super().physical(strengths, shape, base)

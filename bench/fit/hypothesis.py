@@ -62,6 +62,8 @@ BASE = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT)
 HUM, DIGIT, AROUND = "hum", "last digit", "around"
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
 FREQUENCIES, REACH = 400, 4.0
+#: Frequencies to each unit of asinh of the distance from a resonance in its half widths.
+CLOSER = 20
 #: Terms of the series of a shift.
 SERIES = 4
 #: Share of the filtered white noise below which half a step is not seen.
@@ -183,6 +185,11 @@ class Hypothesis:
     def having(self, true_of: Callable[[Effect], bool]) -> list[int]:
         """Indices of the terms of whose effects something is true."""
         return [index for index, term in enumerate(self.terms) if true_of(term.effect)]
+
+    @property
+    def couplings(self) -> tuple[tuple[Coupling, tuple[float, ...]], ...]:
+        """What joins motor and load, with its shape; () if they are one."""
+        return tuple((term.effect, term.shape) for term in self.terms if isinstance(term.effect, Coupling))
 
     @property
     def coupling(self) -> int | None:
@@ -356,7 +363,7 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
     gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
     noise = np.zeros((owners.size, owners.size))
     noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = effort_noise**2 * gain
-    couplings = tuple((each.effect, each.shape) for each in hypothesis.terms if isinstance(each.effect, Coupling))
+    couplings = hypothesis.couplings
     behind = [int(np.flatnonzero(owners == index)[0]) for index in hypothesis.of_kind(Coupling)]
     places = [BASE.index(INERTIA), BASE.index(VISCOUS), *behind]
     made_of = _noise_of_motion, moving, couplings
@@ -366,7 +373,7 @@ def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], movi
 
 
 def _noise_of_motion(
-    conditioning: Conditioning, moving: float, couplings: Iterable[tuple[Coupling, tuple[float, ...]]]
+    conditioning: Conditioning, moving: float, couplings: Sequence[tuple[Coupling, tuple[float, ...]]]
 ) -> Array:
     """That of acceleration, speed, of which a lag `moving` - s - is undone, and what follows them (2 + c, 2 + c).
 
@@ -374,14 +381,30 @@ def _noise_of_motion(
     a coupling is not uncorrelated with the motor's acceleration: its transfer says how much of that noise it has.
     """
     smooth = conditioning.filter
-    omega = np.linspace(0.0, REACH / smooth.width, FREQUENCIES)
+    omega = frequencies(couplings, REACH / smooth.width, FREQUENCIES)
     # all of them less the speed's own factor, (1j * omega) ** order * (1.0 + 1j * omega * moving)
     s = np.asarray(1j * omega, dtype=np.complex128)
     behind = (s * effect.noise_of_motion(shape, omega) for effect, shape in couplings)
     spectra = np.stack([s, np.ones_like(s), *behind])
     weight = conditioning.source_power(omega) * smooth.sample_period / np.pi * np.exp(-((omega * smooth.width) ** 2))
     weight *= omega ** (2 * conditioning.order) * (1.0 + (omega * moving) ** 2)
-    return (omega[1] - omega[0]) * ((spectra * weight) @ spectra.conj().T).real
+    steps = np.diff(omega, prepend=0.0, append=omega[-1])
+    weight *= 0.5 * (steps[1:] + steps[:-1])  # the trapezoidal rule
+    return ((spectra * weight) @ spectra.conj().T).real
+
+
+def frequencies(couplings: Iterable[tuple[Coupling, tuple[float, ...]]], highest: float, count: int) -> Array:
+    """Angular frequencies (k,) over which a power is summed: `count` even ones from 0 to the highest - rad/s -, and
+    around each resonance of a coupling CLOSER to each unit of asinh of the distance from it in half widths: some 20
+    over its half width at half power, and as dense further away as its flanks need.
+    """
+    even, near = np.linspace(0.0, highest, count), []
+    for effect, shape in couplings:
+        for centre, half in effect.resonances(shape):
+            if half > 0.0:
+                ends = np.arcsinh(np.array([-centre, highest - centre]) / half)
+                near.append(centre + half * np.sinh(np.arange(ends[0], ends[1], 1.0 / CLOSER)))
+    return np.unique(np.clip(np.concatenate([even, *near]), 0.0, highest)) if near else even
 
 
 def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:

@@ -57,8 +57,8 @@ from bench.rig.given import Given, GivenRig, Units, given
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
-#: Normal equations, number of samples and checks of a part of a recording.
-Summed = tuple[NormalEquations, int, tuple[Check, ...]]
+#: Normal equations of a part of a recording, None where it never moves clearly, number of its samples, its checks.
+Summed = tuple[NormalEquations | None, int, tuple[Check, ...]]
 
 
 def identify(
@@ -147,7 +147,10 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
 
     def summed(part: Trace) -> Summed:
         sound = gate(part, rig, PARTS)
-        rows = Rows.of(sound.trace, rig, conditioning=found.rows.conditioning, begins=float(first.time[0]))
+        try:
+            rows = Rows.of(sound.trace, rig, conditioning=found.rows.conditioning, begins=float(first.time[0]))
+        except UndeterminedError:  # it never moves clearly, or is shorter than the filter: no row of it is determined
+            return None, len(sound.trace), sound.checks
         return equations_of(rows, lay_out(rows, found.hypothesis)), len(sound.trace), sound.checks
 
     others = list(_in_parallel(summed, parts))
@@ -155,7 +158,7 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
     require(checks, first)
     whole, (told, hinted) = found, by_hint(found.rows, found.hypothesis)
     if others:
-        equations = join([found.whole, *(each for each, _, _ in others)])
+        equations = join([found.whole, *(each for each, _, _ in others if each is not None)])
         offset = rig.offset and equations.one_way is None
         whole = solve(found.rows, found.hypothesis, found.laid, equations, offset)
     depends = None

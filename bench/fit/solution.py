@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
 from bench.effects.effect import Columns, Coupling
-from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, lay_out
+from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, frequencies, lay_out
 from bench.fit.rows import ONE_WAY, Rows
 
 #: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
@@ -45,6 +45,8 @@ BLOCK_WIDTHS = 8.0
 BLOCKS = 512
 #: Power of a combination of scaled columns below which it is none but rounding.
 ROUNDING = 1e-13
+#: Steps of a bounded least squares for each bound, far above the two or three that it takes.
+MOST_TURNS = 20
 #: Share of the largest eigenvalue below which columns that are held against another one count as dependent.
 DEPENDENT = 1e-9
 #: Rows a block up to which a product for each costs more than sums over all of them; at 50 both cost the same.
@@ -233,21 +235,41 @@ def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
 def bounded(
     gram: Array, moment: Array, noise: Array, bounds: Mapping[int, tuple[float, float]]
 ) -> tuple[Array, tuple[int, ...]]:
-    """Coefficients (p,) as of `solved`, each held at its bound where it would lie beyond, one after the other.
+    """Coefficients (p,) of the least squares of `solved` within bounds by places, and the places held at one.
 
-    Bounds are by places; beside it the places of those held.
+    An active set (P. B. Stark, R. L. Parker, Computational Statistics 10, 1995, 129-141): the free coefficients are
+    solved for; the first that would leave its range on the way there is held at its bound; a held one whose squares
+    fall inwards is released. It ends in finitely many steps, as squares fall in each.
     """
     theta, _ = solved(gram, moment, noise)
-    held: list[int] = []
-    for place, (low, high) in bounds.items():
-        if low <= theta[place] <= high:
+    low, high = np.full((2, theta.size), [[-np.inf], [np.inf]])
+    for place, (least, most) in bounds.items():
+        low[place], high[place] = least, most
+    held = (theta < low) | (theta > high)
+    if not held.any():
+        return theta, ()
+    theta, matrix = np.clip(theta, low, high), gram - noise
+    for _ in range(MOST_TURNS * len(bounds)):
+        free = ~held
+        rest = moment[free] - matrix[np.ix_(free, held)] @ theta[held]
+        aim = theta.copy()
+        aim[free] = solved(gram[np.ix_(free, free)], rest, noise[np.ix_(free, free)])[0]
+        beyond = np.flatnonzero((aim < low) | (aim > high))
+        if beyond.size:
+            ends = np.where(aim < low, low, high)[beyond]
+            shares = (ends - theta[beyond]) / (aim - theta)[beyond]
+            first = int(np.argmin(shares))
+            theta += shares[first] * (aim - theta)
+            theta[beyond[first]], held[beyond[first]] = ends[first], True
             continue
-        held.append(place)
-        theta[place] = np.clip(theta[place], low, high)
-        free = [k for k in range(theta.size) if k not in held]
-        rest = moment[free] - gram[np.ix_(free, held)] @ theta[held]
-        theta[free] = solved(gram[np.ix_(free, free)], rest, noise[np.ix_(free, free)])[0]
-    return theta, tuple(held)
+        theta = aim
+        slope = (matrix @ theta - moment) / np.sqrt(np.maximum(np.diag(gram), 1e-300))
+        inwards = np.where(held & (low < high), np.where(theta <= low, -slope, slope), 0.0)
+        worst = int(np.argmax(inwards))
+        if inwards[worst] <= ROUNDING * float(np.abs(moment / np.sqrt(np.maximum(np.diag(gram), 1e-300))).max()):
+            break
+        held[worst] = False
+    return theta, tuple(np.flatnonzero(held).tolist())
 
 
 @dataclass(frozen=True, eq=False)
@@ -544,7 +566,8 @@ class Floor:
 
     @cached_property
     def _omega(self) -> Array:
-        return np.linspace(0.0, np.pi / self.rows.conditioning.filter.sample_period, 2048)
+        highest = np.pi / self.rows.conditioning.filter.sample_period
+        return frequencies(self.hypothesis.couplings, highest, 2048)
 
     def _rms(self, spectrum: Array) -> float:
         """Of a spectrum (k,) over all frequencies, and of what rounding of the effort leaves beside."""

@@ -84,6 +84,22 @@ def test_parts_give_what_the_whole_gives():
         assert joined[name].std_error == pytest.approx(whole[name].std_error, rel=0.1)
 
 
+@pytest.mark.parametrize("still", [60, 3000])
+def test_a_part_without_clear_motion_contributes_no_rows(still):
+    """A short end, or an axis that stands still for a while: both are in parts what they are in the whole."""
+    trace, rng = recording(np.random.default_rng(6), duration=20.0), np.random.default_rng(7)
+    time = np.arange(20000 + still) * 1e-3
+    rest = {"velocity": rng.normal(scale=0.03, size=still), "current": rng.normal(scale=0.0125, size=still)}
+    signals = {name: np.concatenate([values, rest[name]]) for name, values in trace.signals.items()}
+    longer = Trace(time, signals, UNITS, "longer")
+    cut = [longer.between(0.0, 10.0), longer.between(10.0, 20.0), longer.between(20.0, np.inf)]
+    whole, parts, moving = (identify(of, RIG, cutoff=66.0) for of in (longer, iter(cut), iter(cut[:2])))
+    assert parts.samples_read == whole.samples_read == 20000 + still
+    for name in NAMES:
+        assert parts[name].value == pytest.approx(moving[name].value, rel=1e-9)
+        assert abs(parts[name].value - whole[name].value) < 0.3 * whole[name].std_error
+
+
 def test_a_first_part_in_one_direction_leaves_the_offset_to_the_others():
     """What tolerances and cut-off say of the first part holds for the friction that it knows, offset included."""
     truth, rig = Truth(offset=0.02), RIG.model_copy(update={"offset": True})

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
-from bench.fit.hypothesis import BASE, Hypothesis, lay_out
+from bench.fit.hypothesis import BASE, Hypothesis, Term, lay_out
 from bench.fit.rows import Rows
 from bench.fit.solution import Floor
 from tests.fit.motions import RIG, recording
@@ -49,3 +50,23 @@ def test_the_floor_of_a_plain_axis_is_the_filtered_noise_of_both_sensors():
     )
     assert fitted.noise.white == pytest.approx(np.sqrt(np.sum(np.square(parts))), rel=2e-3)
     assert parts[1] > 0.3 * parts[0]
+
+
+@pytest.mark.parametrize("period", [1e-3, 1.0 / 16000.0], ids=["1 kHz", "16 kHz"])
+@pytest.mark.parametrize("shape", [(150.0, 0.01), (150.0, 0.3), (600.0, 0.002)], ids=str)
+def test_noise_that_passes_a_coupling_is_that_of_a_dense_sum_over_its_resonance(period, shape):
+    """At D = 0.01 its peak is 3 rad/s wide, in a band of 3,000 or 50,000 rad/s; the sum takes a tenth of a width."""
+    rows = Rows.of(recording(np.random.default_rng(3), duration=2.0, period=period), RIG)
+    hypothesis = Hypothesis((Term(catalogue()["elastic_coupling"], shape),))
+    layout, smooth, source = lay_out(rows, hypothesis), rows.conditioning.filter, rows.conditioning.source_noise**2
+    omega = np.arange(0.0, np.pi / period, 0.1 * shape[0] * shape[1])
+    passed = period / np.pi * np.exp(-((omega * smooth.width) ** 2))
+    s = 1j * omega / shape[0]
+    transfer = -(s**2) / (1.0 + 2.0 * shape[1] * s + s**2)
+    behind = np.trapezoid(source * passed * omega**2 * np.abs(transfer) ** 2, omega)
+    assert layout.noise[-1, -1] == pytest.approx(behind, rel=2e-3)
+    theta = theta_of(layout, inertia=1e-3, viscous=1e-4, strength=6e-4)
+    kinetic = 1j * omega * (1e-3 + 6e-4 * transfer) + 1e-4
+    power = rows.conditioning.effort_noise**2 + source * np.abs(kinetic) ** 2
+    floor = Floor(rows, hypothesis, layout, theta, np.zeros_like(layout.effort)).white
+    assert floor == pytest.approx(np.sqrt(np.trapezoid(passed * power, omega)), rel=2e-3)
