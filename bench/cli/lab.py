@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast, get_args
 
 from typer import BadParameter, Exit, Option
 
@@ -23,6 +23,9 @@ def lab(
     ] = None,
     truth: Annotated[Path | None, Option(help="Sealed truth that --students wrote.")] = None,
     key: Annotated[Path | None, Option(help="Key of its seal; preset: next to it, with the ending .key.")] = None,
+    acceleration: Annotated[
+        str, Option(help="With --grade: task 9 is right as the text says, synchronised, or either.")
+    ] = "either",
     notebooks: Annotated[Path | None, Option(help="Only write a notebook for each task, into this folder.")] = None,
     folders: Annotated[
         Path | None, Option("--questions", help="Three questions for each student of this class' folder.")
@@ -37,7 +40,7 @@ def lab(
             made = record(synthetic, seed, done) if students is None else record_class(synthetic, students, seed, done)
         list_files(made)
     elif submissions is not None:
-        _grade(submissions, truth, key, out)
+        _grade(submissions, truth, key, out, acceleration)
     elif folders is not None:
         _ask(folders, out)
     elif notebooks is not None:
@@ -50,17 +53,21 @@ def lab(
         _report(data, out)
 
 
-def _grade(submissions: Path, truth: Path | None, key: Path | None, out: Path) -> None:
-    from bench.course.grade import grade_class, grades_table, write_grades
+def _grade(submissions: Path, truth: Path | None, key: Path | None, out: Path, acceleration: str) -> None:
+    from bench.course.grade import Acceleration, grade_class, grades_table, write_grades
 
     if truth is None:
         raise BadParameter("--grade needs --truth FILE, which --record --students wrote")
-    graded = grade_class(submissions, truth, key)
+    if acceleration not in (allowed := get_args(Acceleration)):
+        raise BadParameter(f"--acceleration: found {acceleration}, allowed: {', '.join(allowed)}")
+    graded = grade_class(submissions, truth, key, cast("Acceleration", acceleration))
     files = write_grades(graded, out)
     printed(grades_table(graded))
     for error in graded.unread:
         say(f"not graded: {error}", err=True)
-    list_files(files[:2])
+    if graded.suspicions:
+        say(f"{len(graded.suspicions)} pairs of forms share wrong answers: see suspicion.csv", err=True)
+    list_files(files[:3])
     warn(graded.warnings)
     if graded.unread:
         raise Exit(1)

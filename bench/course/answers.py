@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.ndimage import uniform_filter1d
 from scipy.signal import butter, filtfilt, savgol_filter
 
 from bench.arrays import Array
@@ -72,7 +73,17 @@ METHODS: dict[str, Callable[[Array, float], Any]] = {
     "gradient": np.gradient,
     "Savitzky-Golay": lambda speed, period: savgol_filter(speed, 11, 2, deriv=1, delta=period),
     "filtfilt": lambda speed, period: filtfilt(LOW_PASS[0], LOW_PASS[1], np.gradient(speed, period)),
+    "mean of three centred differences": lambda speed, period: uniform_filter1d(np.gradient(speed, period), 3),
+    "mean of five centred differences": lambda speed, period: uniform_filter1d(np.gradient(speed, period), 5),
     "spline": lambda speed, period: CubicSpline(np.arange(speed.size), speed)(np.arange(speed.size), 1) / period,
+}
+#: The mean of four centred differences, which belongs between two samples, on either of them: half a sample late or
+#: early.
+LATE_METHODS: dict[str, Callable[[Array, float], Any]] = {
+    "mean of centred differences, late": lambda speed, period: uniform_filter1d(np.gradient(speed, period), WIDTH),
+    "mean of centred differences, early": lambda speed, period: uniform_filter1d(
+        np.gradient(speed, period), WIDTH, origin=-1
+    ),
 }
 #: Ways that are right, too: what they give apart from RIGHT is no mistake.
 RIGHT_WAYS = (
@@ -104,7 +115,11 @@ MISTAKES: tuple[tuple[str, str, tuple[Way, ...]], ...] = (
         "half-sample lag",
         "The mean was set back by its own delay alone: the backward difference is half a sample late besides, and "
         "J·α of that half sample is taken for friction.",
-        (*(Way(width=width, set_back=(width - 1) // 2) for width in (3, 5, 7)), Way(set_back=1)),
+        (
+            *(Way(width=width, set_back=(width - 1) // 2) for width in (3, 5, 7)),
+            Way(set_back=1),
+            *(Way(method=method) for method in LATE_METHODS),
+        ),
     ),
     (
         "filter not synchronised",
@@ -135,6 +150,11 @@ MISTAKES: tuple[tuple[str, str, tuple[Way, ...]], ...] = (
         (Way(current=math.sqrt(2.0)),),
     ),
 )
+
+
+#: Of these, what the text's equations give when they are taken at their word: its backward difference (16) is half a
+#: sample late, in the bare and in the filtered acceleration.
+AS_THE_TEXT_SAYS = ("half-sample lag", "backward difference")
 
 
 @dataclass(frozen=True)
@@ -186,7 +206,7 @@ class Worked:
 def _seen(run: LabRun, rig: Rig, way: Way) -> LabRun:
     """The run with speed, acceleration and torque as one way makes them."""
     velocity = run.velocity * way.velocity
-    alpha = METHODS.get(way.method, backward_difference)(velocity, run.sample_period)
+    alpha = (METHODS | LATE_METHODS).get(way.method, backward_difference)(velocity, run.sample_period)
     return replace(run, velocity=velocity, acceleration=alpha, torque=_torque(rig, run.current, way))
 
 

@@ -16,8 +16,8 @@ from bench.course.answers import MISTAKES, SLIPS
 from bench.course.submission import GivenAnswer, Question
 from bench.units import dimensionality
 
-#: Probability that a task was done with one mistake, and with two; copied, of any neighbour; and in a way not known.
-ONE, TWO, COPIED, UNKNOWN = 1e-2, 1e-4, 1e-3, 1e-3
+#: Probability that a task was done with one mistake, with two, and in a way that is not known.
+ONE, TWO, UNKNOWN = 1e-2, 1e-4, 1e-3
 #: Probability of an answer that an explanation does not reach; of one that is right where nothing is known.
 SLIPPED, HALF = 1e-3, 0.5
 #: Any answer: width of the spread of its logarithm about what is expected.
@@ -26,7 +26,7 @@ WIDE = 1.5
 SURE = 20.0
 #: A mistake made in another task, by one and the same function, is so many times likelier made in this one too.
 CARRIED = 50.0
-NOT_KNOWN, COPY = "not known", "copied from student "
+NOT_KNOWN = "not known"
 #: What a student reads of each mistake.
 WHY = {name: why for name, why, _ in (*MISTAKES, *SLIPS)}
 
@@ -40,7 +40,7 @@ class Explanation:
     """How answers of a task were made.
 
     Attributes:
-        names: of the mistakes, two where both were made; one of NOT_KNOWN, or that they were copied.
+        names: of the mistakes, two where both were made; or NOT_KNOWN.
         odds: against the next explanation.
         next: its names.
         given: answers that it gives, by their names: of others it says nothing.
@@ -79,6 +79,7 @@ class GradedAnswer:
         verdict: right, wrong, in a unit of another dimension, not answered, or not judged.
         tolerance: share by which a right answer may be off.
         explained: how the task's answers were made, where that gives this one and it is wrong; None otherwise.
+        note: what is to be said of an answer that is right in one of two ways; empty otherwise.
     """
 
     question: Question
@@ -88,6 +89,7 @@ class GradedAnswer:
     verdict: Verdict
     tolerance: float
     explained: Explanation | None = None
+    note: str = ""
 
     @property
     def mistake(self) -> str:
@@ -115,9 +117,9 @@ class GradedAnswer:
             return f"{self.mistake}: {why}" if why else self.mistake
         if self.verdict == "wrong unit" and self.given is not None:
             return f"{_measures(self.given.unit)}; give {self.question.unit}, or another unit of the same quantity."
-        if self.verdict == "wrong":
+        if self.verdict == "wrong" and not self.note:
             return "Off by more than other right ways would be; no mistake that is known gives this figure."
-        return ""
+        return self.note
 
     def near(self, figures: Figures) -> float:
         """Density of its logarithm, normal about its figure with half the tolerance for a standard deviation."""
@@ -148,19 +150,18 @@ def _measures(unit: str) -> str:
 
 
 def explanation(
-    answers: Sequence[GradedAnswer], student: str, known: Mapping[str, Any], elsewhere: Collection[str] = ()
+    answers: Sequence[GradedAnswer], known: Mapping[str, Any], elsewhere: Collection[str] = ()
 ) -> Explanation | None:
     """The likeliest of how a task was done, which is done in one way; None where no answer is wrong.
 
     Args:
         answers: of the task.
-        student: who gave them.
-        known: truth of the class by student: `expected`, and `mistakes` with their figures.
+        known: of the student's own recordings: `expected`, and `mistakes` with their figures.
         elsewhere: mistakes that the student's other tasks tell.
     """
     if all(answer.verdict != "wrong" for answer in answers):
         return None
-    expected = known[student]["expected"]
+    expected = known["expected"]
     asked = [answer for answer in answers if math.isfinite(answer.value) and expected.get(answer.question.name)]
 
     def log_likelihood(figures: Figures, missed: float) -> float:
@@ -169,7 +170,7 @@ def explanation(
 
     weighed: list[tuple[tuple[str, ...], Figures, float]] = []
     weighed.append(((NOT_KNOWN,), expected, math.log(UNKNOWN) + log_likelihood(expected, HALF)))
-    for names, prior, figures in _ways(student, known):
+    for names, prior, figures in _ways(known):
         if any(answer.would_be_wrong(figures) for answer in asked):
             carried = CARRIED if elsewhere and {*names} <= {*elsewhere} else 1.0
             weighed.append((names, figures, math.log(prior * carried) + log_likelihood(figures, SLIPPED)))
@@ -180,10 +181,10 @@ def explanation(
     return Explanation(names, math.exp(min(best - after[2], 600.0)), after[0], given)
 
 
-def _ways(student: str, known: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], float, Figures]]:
-    """Names, probability and figures of mistakes in the work, of slips after it, of two of them, and of copies."""
-    expected, prior = known[student]["expected"], {1: ONE, 2: TWO}
-    works = [(tuple(names), {**expected, **changed}) for names, changed in known[student]["mistakes"]]
+def _ways(known: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], float, Figures]]:
+    """Names, probability and figures of mistakes in the work, of slips after it, and of two of them."""
+    expected, prior = known["expected"], {1: ONE, 2: TWO}
+    works = [(tuple(names), {**expected, **changed}) for names, changed in known["mistakes"]]
     for names, figures in (*works, ((), expected)):
         if names:
             yield names, prior[len(names)], figures
@@ -192,6 +193,3 @@ def _ways(student: str, known: Mapping[str, Any]) -> Iterator[tuple[tuple[str, .
     for (one, _, first), (two, _, second) in combinations(SLIPS, 2):
         figures = {**expected, **first(expected)}
         yield (one, two), TWO, {**figures, **second(figures)}
-    for name, other in known.items():
-        if name != student:
-            yield (COPY + name,), COPIED / (len(known) - 1), other["expected"]

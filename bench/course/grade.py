@@ -12,19 +12,26 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-import numpy as np
-
+from bench.course.answers import AS_THE_TEXT_SAYS
 from bench.course.explain import NOT_KNOWN, SURE, GradedAnswer, explanation
-from bench.course.submission import QUESTIONS, GivenAnswer, Question, Submission, find_submissions, read_submission
+from bench.course.submission import (
+    QUESTIONS,
+    GivenAnswer,
+    Question,
+    Submission,
+    find_submissions,
+    read_submission,
+    readings,
+)
+from bench.course.suspicion import Suspicion, suspicion_csv, suspicions
 from bench.errors import InputError
 from bench.files import read_text, write_text
 from bench.names import cell
 from bench.report.document import AnyPart, Document, Paragraph, Points, Table, neighbours, section, table
 from bench.report.html import html
 from bench.structured import parse_json
-from bench.units import convert
 
 TITLE = "Industrial Drives, Part 2: grades"
 #: Schema of the truth of a class, and the earlier one, whose seal is a checksum without a key.
@@ -32,6 +39,13 @@ SEALED, CHECKSUMMED = "bench.lab.class/3", "bench.lab.class/2"
 UNKEYED = (
     "the seal of this class is a checksum without a key, which anybody can renew: who else can write to that file?"
 )
+#: Which acceleration of task 9 is right: as the text says, half a sample late, or synchronised with the speed.
+Acceleration = Literal["either", "text", "synchronised"]
+AS_THE_TEXT = (
+    "Right, as the text says: the backward difference (16) is half a sample late, and J·α of that half sample counts "
+    "as friction. Synchronised by half a sample more it would be {}."
+)
+SYNCHRONISED = "The text's acceleration is asked for: the backward difference (16) without a further half sample."
 #: An answer is a mistake's figure within the tolerance of a right one; E, which has none, within this share of it.
 OF_ERROR = 0.04
 
@@ -76,18 +90,32 @@ class GradedStudent:
 
 @dataclass(frozen=True)
 class GradedClass:
-    """Grades of a class by student, forms that could not be read, students that none came from, and warnings."""
+    """Grades of a class by student, and what the teacher has to see of it.
+
+    Attributes:
+        students: whose forms were graded.
+        unread: forms that could not be read.
+        missing: students that no form came from.
+        warnings: about the truth.
+        suspicions: forms that are alike where they should not be.
+    """
 
     students: tuple[GradedStudent, ...]
     unread: tuple[InputError, ...]
     missing: tuple[str, ...]
     warnings: tuple[str, ...]
+    suspicions: tuple[Suspicion, ...] = ()
 
 
-def grade_class(submissions: Path, truth: Path, key: Path | None = None) -> GradedClass:
+def grade_class(
+    submissions: Path, truth: Path, key: Path | None = None, acceleration: Acceleration = "either"
+) -> GradedClass:
     """Grade every submission of a folder by a sealed truth; a bad one, or two of one student, leave the others alone.
 
-    Raises InputError where there are no submissions, or no truth, or not the key of its seal.
+    Args:
+        submissions: folder of the filled forms; InputError without any.
+        truth, key: as the class was recorded with; InputError as `read_truth_of_class`.
+        acceleration: which of task 9 is right.
     """
     known, warnings = read_truth_of_class(truth, key)
     graded: dict[str, GradedStudent] = {}
@@ -96,7 +124,7 @@ def grade_class(submissions: Path, truth: Path, key: Path | None = None) -> Grad
     for path in find_submissions(submissions):
         try:
             submission = read_submission(path)
-            graded[submission.student] = grade(submission, known)
+            graded[submission.student] = grade(submission, known, acceleration)
         except InputError as error:
             unread.append(error)
         else:
@@ -107,7 +135,8 @@ def grade_class(submissions: Path, truth: Path, key: Path | None = None) -> Grad
             found = f"found {len(paths)} of student {student} ({', '.join(paths)})"
             unread.append(InputError(submissions, found, "leave one of them"))
     students = tuple(one for _, one in sorted(graded.items()))
-    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))), warnings)
+    alike = suspicions({one.student: one.answers for one in students}, known)
+    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))), warnings, tuple(alike))
 
 
 def seal(content: Mapping[str, Any], key: str) -> str:
@@ -142,20 +171,21 @@ def read_truth_of_class(path: Path, key: Path | None = None) -> tuple[Mapping[st
     return content["students"], () if content["schema"] == SEALED else (UNKEYED,)
 
 
-def grade(submission: Submission, known: Mapping[str, Any]) -> GradedStudent:
+def grade(submission: Submission, known: Mapping[str, Any], acceleration: Acceleration = "either") -> GradedStudent:
     """Grade every quantity of a student's form by what `read_truth_of_class` knows; InputError without the student."""
     if submission.student not in known:
         allowed = f"allowed: {', '.join(sorted(known))}"
         raise InputError(f"{submission.source}: student", f"found '{submission.student}'", allowed)
     of_student = known[submission.student]
     graded = [_graded(question, submission.answers.get(question.name), of_student) for question in QUESTIONS]
+    graded = _accelerated(graded, of_student, acceleration)
     tasks = [list(of_task) for _, of_task in groupby(graded, lambda answer: answer.question.task)]
-    explanations = [explanation(of_task, submission.student, known) for of_task in tasks]
+    explanations = [explanation(of_task, of_student) for of_task in tasks]
     sure = [{*one.names} - {NOT_KNOWN} if one is not None and one.odds >= SURE else set() for one in explanations]
     answers = []
     for of_task, found, alone in zip(tasks, explanations, sure, strict=True):
         if found is not None and not alone:  # what a task leaves open the others may settle
-            found = explanation(of_task, submission.student, known, set().union(*sure))
+            found = explanation(of_task, of_student, set().union(*sure))
         given = found.given if found is not None else ()
         answers += [
             replace(answer, explained=found if answer.verdict == "wrong" and answer.question.name in given else None)
@@ -168,21 +198,52 @@ def _graded(question: Question, given: GivenAnswer | None, known: Mapping[str, A
     expected, true = (known[name].get(question.name, math.nan) for name in ("expected", "truth"))
     own = known["tolerance"].get(question.name, 0.0)
     tolerance = OF_ERROR if question.tolerance is None else max(question.tolerance, own)
-    value, verdict = math.nan, "not answered"
-    if given is not None:
-        try:
-            value = float(convert(np.asarray(given.value), given.unit or question.unit, question.unit))
-        except ValueError:
-            return GradedAnswer(question, given, value, expected, "wrong unit", tolerance)
-        right = (abs(value - one) <= tolerance * (abs(one) or question.near_zero) for one in (expected, true))
-        verdict = "right" if any(right) else "wrong"
-    verdict = "not judged" if question.tolerance is None else verdict
+    if given is None:
+        return GradedAnswer(question, None, math.nan, expected, "not answered", tolerance)
+    try:
+        values = readings(given, question)
+    except ValueError:
+        return GradedAnswer(question, given, math.nan, expected, "wrong unit", tolerance)
+
+    def off(value: float) -> float:
+        """Share that a value is off what is expected or the truth, whichever is nearer; inf where neither is known."""
+        shares = (abs(value - one) / (abs(one) or question.near_zero or 1.0) for one in (expected, true))
+        return min((share for share in shares if math.isfinite(share)), default=math.inf)
+
+    value = min(values, key=off)
+    verdict = "not judged" if question.tolerance is None else "right" if off(value) <= tolerance else "wrong"
     return GradedAnswer(question, given, value, expected, verdict, tolerance)
+
+
+def _accelerated(
+    graded: list[GradedAnswer], known: Mapping[str, Any], acceleration: Acceleration
+) -> list[GradedAnswer]:
+    """Friction of task 9 by the acceleration that is right: the text's, the synchronised one, or either."""
+    if acceleration == "synchronised":
+        return graded
+    ways = [figures for names, figures in known["mistakes"] if len(names) == 1 and names[0] in AS_THE_TEXT_SAYS]
+    asked = [one for one in graded if one.question.name.startswith("K_fric") and math.isfinite(one.value)]
+
+    def near(one: GradedAnswer, figures: Mapping[str, float]) -> bool:
+        figure = figures.get(one.question.name, math.nan)
+        return abs(one.value - figure) <= one.tolerance * max(abs(figure), abs(one.expected))
+
+    text = bool(asked) and any(all(near(one, figures) for one in asked) for figures in ways)
+    changed = []
+    for one in graded:
+        if one in asked and text and one.verdict == "wrong":
+            note = AS_THE_TEXT.format(f"{one.expected:.3g} {one.question.unit}")
+            one = replace(one, verdict="right", note=note)
+        elif one in asked and acceleration == "text" and not text and one.verdict == "right":
+            one = replace(one, verdict="wrong", note=SYNCHRONISED)
+        changed.append(one)
+    return changed
 
 
 def write_grades(graded: GradedClass, out: Path) -> list[Path]:
     """Write `grades.csv`, `grades.html` and a page for each student into a folder; returns the paths."""
     contents = {"grades.csv": grades_csv(graded), "grades.html": html(class_document(graded))}
+    contents["suspicion.csv"] = suspicion_csv(graded.suspicions)
     contents |= {one.page: html(student_document(one)) for one in graded.students}
     for name, content in contents.items():
         write_text(out / name, content)

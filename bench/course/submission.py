@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 from bench.errors import InputError
 from bench.files import read_bytes
 from bench.names import nearest
 from bench.structured import parse_json
 from bench.trace.source import source_of
+from bench.units import convert
+from bench.units.conversion import scale_of
+from bench.units.grammar import UnitError
 
 #: Name of the form, and endings of filled ones.
 FORM, ENDINGS = "answers.csv", (".csv", ".json")
@@ -71,6 +77,30 @@ class GivenAnswer:
 
     value: float
     unit: str
+
+
+#: SI units of what the form asks for in another unit.
+_SI = {"kg*cm**2": "kg*m**2", "rpm": "rad/s"}
+
+
+def readings(given: GivenAnswer, question: Question) -> list[float]:
+    """The value in the unit that is asked for, by the unit reader of recordings; 1/min counts revolutions.
+
+    A speed in 1/s or Hz has two readings, revolutions and radians. Raises ValueError where the unit measures something
+    else, or is none.
+    """
+    unit = given.unit or question.unit
+    si = _SI.get(question.unit, question.unit)
+    to_si = float(convert(np.ones(1), question.unit, si)[0])
+    try:
+        scale = scale_of(unit, (si,))
+    except UnitError as error:
+        if "may mean" not in error.found:
+            raise ValueError(error.found) from error
+        # the radian counts as 1, so N*m*s and 1/s**2 are right for what is asked per radian; of a speed both are read
+        radians = given.value * float(convert(np.ones(1), unit, si)[0]) / to_si
+        return [2.0 * math.pi * radians, radians] if question.unit == "rpm" else [radians]
+    return [given.value * scale.factor / to_si]
 
 
 @dataclass(frozen=True)
