@@ -23,7 +23,7 @@ from bench.course.axis import circuit, motor_value, torque_constant
 from bench.course.friction import identify_friction
 from bench.course.peak_torque import extrapolated_corner
 from bench.course.recordings import LabRecordings
-from bench.effects.acting import DRIVE
+from bench.effects.mjcf import DRIVE
 from bench.errors import BenchError, SimulationError
 from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.plant import DIVERGED

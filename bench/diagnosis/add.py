@@ -37,8 +37,7 @@ from bench.diagnosis.name import NamedEffect, Suspects, named
 from bench.diagnosis.policy import ERRS_TWICE, Policy
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
-from bench.effects.acting import DriveLimit
-from bench.effects.effect import Occasional
+from bench.effects.effect import DriveLimit, Occasional
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
 from bench.fit.estimate import load_inertia

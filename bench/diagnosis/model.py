@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.recordings import Recordings
-from bench.effects.acting import RaisesFriction
 from bench.effects.effect import Contact, Detected, Effect, Occasional
 from bench.effects.present import Present
-from bench.effects.signals import Moment
+from bench.effects.signals import AxisState
+from bench.effects.torque import Friction
 from bench.effects.waves import Wave
 from bench.errors import InputError
 from bench.fit.determined import INDEPENDENT_SHARE
@@ -111,8 +111,8 @@ def holding_bandwidth(model: AxisModel, top_speed: float) -> float:
     speed = np.geomspace(SLOWEST, 1.0, SPEEDS) * max(top_speed, 1e-9)
     nothing = np.zeros_like(speed)
     level = model.parameters.viscous_friction_coefficient * speed
-    for effect, values in model.acting(RaisesFriction):
-        level = level + effect.friction_excess(values, model.axis, Moment(0.0, nothing, speed, nothing))
+    for effect, values in model.acting(Friction):
+        level = level + effect.friction(values, model.axis, AxisState(0.0, nothing, speed, nothing))
     fall = max(0.0, -float(np.min(np.diff(level) / np.diff(speed))))
     return float(np.clip(fall / model.parameters.inertia, BANDWIDTH, MOST))
 

@@ -18,10 +18,10 @@ from bench.diagnosis.policy import Policy, worth
 from bench.diagnosis.probability import Probabilities, neighbourhood, probabilities, scored
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, search
-from bench.effects.acting import MisreadEffort
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detected, Effect, Lag, Occasional, Standout
-from bench.effects.signals import Axis
+from bench.effects.effect import Detected, Effect, Lag, Occasional, Stage, Standout
+from bench.effects.signals import Axis, AxisState, Values
+from bench.effects.torque import Torque
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit, hint, shaped, unbiased
 from bench.fit.hypothesis import BASE, Term
@@ -230,10 +230,17 @@ def _gain(effects: Sequence[NamedEffect], fitted: Fit) -> float:
     inertia, viscous, coulomb = (fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB))
     axis, gain = Axis(inertia, inertia, viscous, coulomb, math.inf), 1.0
     for one in effects:
-        if isinstance(one.effect, MisreadEffort):
-            first, last = (partial(one.effect.acted, one.values, axis, time=t) for t in (0.0, fitted.scope.duration))
-            gain *= float(last(1.0) - last(0.0)) / float(first(1.0) - first(0.0))
+        effect = one.effect
+        if isinstance(effect, Torque) and effect.stage == Stage.CURRENT_SENSOR:
+            lost = partial(_lost_per_torque, effect, one.values, axis)
+            gain *= (1.0 - lost(fitted.scope.duration)) / (1.0 - lost(0.0))
     return gain
+
+
+def _lost_per_torque(effect: Torque, values: Values, axis: Axis, time: float) -> float:
+    """Share of a small torque that an effect takes at a time - s."""
+    lost = [effect.torque(values, axis, AxisState(time, 0.0, 0.0, effort)) for effort in (1.0, 0.0)]
+    return float(lost[0] - lost[1])
 
 
 def _read(recordings: Recordings, effect: Effect, found: Detected) -> NamedEffect:

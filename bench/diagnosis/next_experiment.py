@@ -21,7 +21,6 @@ from bench.arrays import rms
 from bench.diagnosis.add import Added
 from bench.diagnosis.model import stored_model
 from bench.diagnosis.recordings import Recordings
-from bench.effects.acting import ConstantTorque
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect, Lag
 from bench.effects.present import Present
@@ -147,7 +146,7 @@ def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Itera
     """Dry friction against effects that look like it in one direction, `dry` in total - N*m (N)."""
     direction = 1.0 if float(np.mean(measured_velocity(recordings.trace))) > 0.0 else -1.0
     for effect in catalogue().values():
-        if isinstance(effect, ConstantTorque):
+        if effect.constant:
             values = effect.report([direction * dry], (), Base(0.0, 0.0, 0.0))
             friction = replace(model.parameters, coulomb_friction=abs(dry))
             nothing = replace(model.parameters, coulomb_friction=0.0)

@@ -12,9 +12,8 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.policy import POLICY, Policy
-from bench.effects.acting import FilteredSignal
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detected, Effect
+from bench.effects.effect import Detected, Effect, Lag
 from bench.errors import InputError, UndeterminedError
 from bench.fit.cutoffs import INDEPENDENT, NOISY, TELLS, TERMS, Cutoffs
 from bench.fit.determined import RECORD, require_friction, require_inertia
@@ -86,7 +85,7 @@ class Recordings:
                 detected[effect] = found
         corrected, unseen = trace, holdout
         for effect, found in detected.items():
-            if isinstance(effect, FilteredSignal) and effect.signal == rows.conditioning.source:
+            if isinstance(effect, Lag) and effect.signal == rows.conditioning.source:
                 corrected = _corrected(corrected, rig, effect, found)
                 unseen = None if unseen is None else _corrected(unseen, rig, effect, found)
         if corrected is not trace:
@@ -153,7 +152,7 @@ def fit_bare(rows: Rows) -> Fit:
     return with_hum(fit(rows, plain(rows)))
 
 
-def _corrected(trace: Trace, rig: Rig, effect: FilteredSignal, found: Detected) -> Trace:
+def _corrected(trace: Trace, rig: Rig, effect: Lag, found: Detected) -> Trace:
     """A recording with a fault of its sensor corrected; without the faulty signal if that cannot be corrected."""
     if found.mends or rig.needs_speed(trace):
         return effect.corrected(trace, found.values)

@@ -29,8 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, splined, symmetric_inverse
-from bench.effects.acting import Native, Spec, Spring, add_coupling_joint
-from bench.effects.effect import Contact, Coupling, Fitted, Load
+from bench.effects.effect import Contact, Fitted, Load
+from bench.effects.mjcf import Spec, add_coupling_joint
 from bench.effects.shape import FREQUENCY, Shape, Shapes, extended
 from bench.effects.signals import Axis, Base, Number, Scope, Signals
 from bench.trace.filter import Column
@@ -78,7 +78,7 @@ SHARED = np.array([0.02, 0.45, 1.4])
 DRAWS = 400
 
 
-class Backlash(Coupling, Contact, Native):
+class Backlash(Contact):
     name = "backlash"
     summary = "motor and load are joined through a dead zone"
     quantities = (
@@ -148,7 +148,7 @@ class Backlash(Coupling, Contact, Native):
         contact, spring_rate = np.array(shape[:3]), shape[3]
         offsets = np.stack([m.ravel() for m in np.meshgrid(*AROUND, indexing="ij")], axis=1)
         shapes = np.column_stack([contact * np.exp(offsets), np.full(len(offsets), spring_rate)])
-        others, place, time = fitted.columns.T.copy(), int(fitted.places(Backlash)[0]), fitted.time
+        others, place, time = fitted.columns.T.copy(), int(fitted.places(lambda effect: effect is self)[0]), fitted.time
         edges = np.unique(np.searchsorted(time, np.arange(time[0], time[-1], STRETCH)))
         misfits = []
         for column in _columns(fitted, shapes).T:
@@ -376,7 +376,7 @@ def contacts_of(scope: Scope) -> list[float]:
 
 
 def _stiffness(fitted: Fitted, theta: Array) -> float:
-    return float(theta[fitted.places(Spring)][:1].sum())
+    return float(theta[fitted.places(lambda effect: effect.spring)][:1].sum())
 
 
 def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:

@@ -8,25 +8,20 @@ Source: D. C. Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed., 2003,
 
 from collections.abc import Mapping
 
-from bench.arrays import Array
-from bench.effects.acting import Native, Spec, passive_motor
-from bench.effects.signals import Axis, Signals
-from bench.effects.waves import PHASE, Harmonic, followed, harmonics
-from bench.trace.filter import Column
+from bench.effects.mjcf import Spec, passive_motor
+from bench.effects.signals import Axis, AxisState, Number
+from bench.effects.waves import PHASE, HarmonicTorque, harmonics
 from bench.units import Quantity
 
 
-class CoggingTorque(Harmonic, Native):
+class CoggingTorque(HarmonicTorque):
     name = "cogging_torque"
     summary = "torque periodic in position, independent of current"
-    repeatable = True
     shapes = (harmonics(2, 80),)
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), shapes[0].quantity, PHASE)
 
-    def of_wave(self, signals: Signals, number: float, sine: Array, cosine: Array) -> list[Column]:
-        """sin(n*q) and cos(n*q), nothing where the wave is faster than the samples can follow."""
-        seen = followed(signals, number)
-        return [[(seen * sine, 0)], [(seen * cosine, 0)]]
+    def carrier(self, at: AxisState) -> Number:
+        return 1.0
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A passive DC motor that cogs, whose sign is that of driving."""

@@ -9,22 +9,14 @@ another one it is not sought, and where no position tells a lag of the speed the
 Source: W. Leonhard, Control of Electrical Drives (filtered current feedback).
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
-
-from bench.effects.acting import FilteredSignal
-from bench.effects.effect import Fitted, Lag, Proposal, unlagged
-from bench.effects.signals import Scope, Signals
+from bench.effects.effect import Fitted, Lag, Proposal
+from bench.effects.signals import Scope
 
 
-class CurrentFilterLag(Lag, FilteredSignal):
+class CurrentFilterLag(Lag):
     name = "current_filter_lag"
     summary = "reported current is filtered: it shows torque later than it acts"
     signal = "current"
-
-    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
-        """The torque that acts; what is made of it sees that."""
-        return replace(signals, torque=unlagged(signals.torque, shape[0], signals.sample_period))
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """To first order, a shift of the torque beyond the one that a fit may take for how the drive latches."""

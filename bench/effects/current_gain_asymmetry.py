@@ -9,36 +9,29 @@ Source: D.-W. Chung, S.-K. Sul, Analysis and compensation of current measurement
 drives, IEEE Transactions on Industry Applications 34(2), 1998 (scaling errors of current sensors).
 """
 
-from collections.abc import Sequence
-
-import numpy as np
-
-from bench.effects.acting import MisreadEffort
-from bench.effects.effect import Columns
+from bench.effects.effect import Stage
 from bench.effects.shape import Shapes
-from bench.effects.signals import Axis, Number, Scope, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.signals import Axis, AxisState, Number, Scope, Values
+from bench.effects.torque import Torque
 from bench.units import Quantity
 
 #: Of what two shunts of 5 % make: more, such as what a torque of many waves imitates in one direction, is no sensor's.
 MOST = 0.1
 
 
-class CurrentGainAsymmetry(Columns, MisreadEffort):
+class CurrentGainAsymmetry(Torque):
     name = "current_gain_asymmetry"
     summary = "amperes per reading differ between positive and negative current"
+    stage = Stage.CURRENT_SENSOR
     copies_torque = True
     quantities = (Quantity("gain_difference", "d", "dimensionless", lower=-1.0, upper=1.0, null=0.0),)
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """-|M|/2: what the readings of positive current lack, and those of negative have too much."""
-        return [[(-0.5 * np.abs(signals.torque), 0)]]
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        """What readings of positive current lack, and those of negative have too much."""
+        return -0.5 * values["gain_difference"] * abs(at.effort)
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         return all(abs(difference) <= MOST for (difference,) in strengths)
-
-    def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        return effort + 0.5 * values["gain_difference"] * abs(effort)
 
 
 EFFECT = CurrentGainAsymmetry()

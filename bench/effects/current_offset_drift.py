@@ -10,29 +10,24 @@ Source: D.-W. Chung, S.-K. Sul, Analysis and compensation of current measurement
 drives, IEEE Transactions on Industry Applications 34(2), 1998 (offset errors of current sensors).
 """
 
-from collections.abc import Sequence
-
-from bench.effects.acting import MisreadEffort
-from bench.effects.effect import Columns
-from bench.effects.signals import Axis, Number, Scope, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.effect import Stage
+from bench.effects.signals import Axis, AxisState, Number, Scope, Values
+from bench.effects.torque import Torque
 from bench.units import Quantity
 
 
-class CurrentOffsetDrift(Columns, MisreadEffort):
+class CurrentOffsetDrift(Torque):
     name = "current_offset_drift"
     summary = "the zero of the current sensor drifts during the recording"
+    stage = Stage.CURRENT_SENSOR
     quantities = (Quantity("rate", "r", "N*m/s", null=0.0),)
     needed = 0.8  # more than a constant torque gives it: of the squares of one, r*t takes (T**2/2)**2/(T**3/3)/T = 3/4
 
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        return values["rate"] * at.time
+
     def sought(self, scope: Scope) -> bool:
         return not scope.one_way
-
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return [[(signals.time, 0)]]
-
-    def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        return effort - values["rate"] * time
 
 
 EFFECT = CurrentOffsetDrift()

@@ -9,26 +9,28 @@ Source: A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019 (EMPS, asymmetric fr
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
-from bench.effects.acting import AXIS, DirectedFriction, Native, ResistingTorque, Spec, add_resisting_torque
-from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.mjcf import AXIS, Spec, add_resisting_torque
+from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Values
+from bench.effects.torque import Friction
 from bench.units import Quantity
 
 
-class DirectionDependentFriction(DirectedFriction, Native, ResistingTorque):
+class DirectionDependentFriction(Friction):
     name = "direction_dependent_friction"
     summary = "friction differs between the two directions"
     of_speed = True
+    directed = True
     quantities = (
         Quantity("coulomb_difference", "D_0", "N*m", null=0.0),
         Quantity("viscous_difference", "D_w", "N*m*s/rad", null=0.0, preset=0.0),
     )
-    dry = slice(1)
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return [[(np.full_like(signals.time, 0.5), 0)], [(0.5 * signals.velocity * signals.sign, 0)]]
+    def friction(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        return 0.5 * at.direction * values["coulomb_difference"]
+
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        """Half of the viscous difference, in either direction."""
+        return 0.5 * values["viscous_difference"] * abs(at.velocity)
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Dry friction resists in both directions: more of a difference is a torque that drives."""
@@ -38,9 +40,9 @@ class DirectionDependentFriction(DirectedFriction, Native, ResistingTorque):
         """A constant torque, wherever the axis moves."""
         return ("torque_offset",)
 
-    def native(self, values: Mapping[str, float], friction_scaled: bool) -> bool:
+    def native(self, values: Mapping[str, float], friction_varies: bool) -> bool:
         """Dry friction alone is native: half of the difference is a constant torque, at rest and in motion."""
-        return values["viscous_difference"] == 0.0 and not friction_scaled
+        return values["viscous_difference"] == 0.0 and not friction_varies
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """Half of what is left of the two levels as friction of the joint, half of their difference as torque."""
@@ -48,12 +50,6 @@ class DirectionDependentFriction(DirectedFriction, Native, ResistingTorque):
         forward, backward = max(level + half, 0.0), max(level - half, 0.0)
         spec.joint(AXIS).frictionloss = 0.5 * (forward + backward)
         add_resisting_torque(spec, 0.5 * (forward - backward))
-
-    def friction_difference(self, values: Values, axis: Axis) -> Number:
-        return values["coulomb_difference"]
-
-    def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        return 0.5 * values["viscous_difference"] * abs(at.velocity)
 
 
 EFFECT = DirectionDependentFriction()

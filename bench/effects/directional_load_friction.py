@@ -15,21 +15,21 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.acting import FollowsLoad, FrictionLaw, LoadTorque
 from bench.effects.effect import LOSSIEST, Fitted
 from bench.effects.shape import Shape, grid_of
-from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.signals import Axis, AxisState, Base, Number, Values
+from bench.effects.torque import Friction, FrictionLaw
 from bench.units import Quantity
 
 #: Ratios that are tried, and again between the neighbours of the best.
 RATIOS = tuple(float(ratio) for ratio in np.geomspace(0.1, 10.0, 25))
 
 
-class DirectionalLoadFriction(FollowsLoad):
+class DirectionalLoadFriction(Friction):
     name = "directional_load_friction"
     summary = "friction by transmitted torque differs between driving and being driven"
     copies_torque = True
+    follows_load = True
     quantities = (
         Quantity("motor_coefficient", "K_m", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),
         Quantity("load_ratio", "K_e/K_m", "dimensionless", lower=0.0),
@@ -38,12 +38,12 @@ class DirectionalLoadFriction(FollowsLoad):
     shapes = (Shape(quantities[1], RATIOS, reach=0.3),)
     replaces = frozenset({"load_dependent_friction"})
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return [[(signals.sign * np.abs(signals.torque + shape[0] * signals.load), 0)]]
+    def friction(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        return values["motor_coefficient"] * abs(at.effort + values["load_ratio"] * at.load)
 
     def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
         """The best ratio beside a load, or none without one."""
-        if not fitted.places(LoadTorque).size:
+        if not fitted.places(lambda effect: effect.transmitted).size:
             return None
         best = max(fitted.tried(self, grid_of(self.shapes, fitted.scope)), key=lambda tried: tried.gain).shape[0]
         step = RATIOS[1] / RATIOS[0]
@@ -52,14 +52,11 @@ class DirectionalLoadFriction(FollowsLoad):
 
     def unlike(self, fitted: Fitted) -> tuple[float, ...] | None:
         """As much friction by the load's torque as by the motor's, if there is a load."""
-        return (1.0,) if fitted.places(LoadTorque).size else None
+        return (1.0,) if fitted.places(lambda effect: effect.transmitted).size else None
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         motor, ratio = strengths[0], shape[0]
         return {"motor_coefficient": motor, "load_ratio": ratio, "load_coefficient": motor * ratio}
-
-    def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
-        return values["motor_coefficient"] * abs(at.effort + values["load_ratio"] * at.load)
 
     def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:
         """Of both torques; what the load resists is minus what acts from outside."""

@@ -2,33 +2,32 @@
 
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
-Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are searched. Every effect is an `Effect`.
-The kind that it derives from says what it does, its attributes what else is true of it; the rest of the bench reads
-both, and knows no effect by name.
+Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are searched. An effect derives from the kind
+that it is; its attributes declare what else is true of it. The rest of the bench reads both, and knows no effect by
+name.
 
-    in the torque balance   Columns: Occasional, Coupling, Contact
-    over position           Wave (`bench.effects.waves`)
-    in the recording        Distortion, Lag
-    in a simulation (`bench.effects.acting`)
-      of the mechanics      Native; in every step ResistingTorque, LoadTorque, ScalesTorque, VaryingInertia, or dry
-                            friction: RaisesFriction, FollowsLoad, ScalesFriction, DirectedFriction, CarriesFriction
-      of the electronics    DriveLimit, TorqueLag, TorqueLoss
-      of the sensors        MisreadMotion, MisreadEffort, FilteredSignal
+    without memory          Torque, Friction, Inertia: one function is column and simulation (`bench.effects.torque`)
+    over position           Wave, HarmonicTorque (`bench.effects.waves`)
+    with memory             Bristles, Coupling and Contact, Lag, DriveLimit
+    in one recording only   Occasional
+    in the measurement      Distortion, EncoderFault, Lag; and a Torque whose stage is a sensor
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from enum import IntEnum
 from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import NORMAL95, Array, recursive_filter
+from bench.arrays import NORMAL95, Array, namespace, recursive_filter
+from bench.effects.mjcf import Spec
 from bench.effects.shape import LAG, Shape, Shapes, grid_of, is_pitch
-from bench.effects.signals import Axis, Base, Scope, Signals, Values
+from bench.effects.signals import Axis, Base, Number, Scope, Signals, Values
 from bench.rig.rig import Rig
 from bench.trace.filter import Column, GaussianFilter
 from bench.trace.trace import Trace
@@ -45,6 +44,20 @@ BEHIND = (0.02, 0.98)
 LOSSIEST = 0.7
 #: Lags that a search tries first - s.
 LAGS = (3e-4, 8e-4, 2e-3, 4e-3, 8e-3)
+#: Coefficients of the axis for which a strength is the quantity itself.
+UNIT = Base(1.0, 1.0, 1.0)
+
+
+class Stage(IntEnum):
+    """Where an effect acts, in the order of the signal chain from the recording to the load."""
+
+    RECORDER = 0
+    ENCODER = 1
+    CURRENT_SENSOR = 2
+    CURRENT_LOOP = 3
+    TORQUE_CONSTANT = 4
+    COMMUTATION = 5
+    MECHANICS = 6
 
 
 @dataclass(frozen=True)
@@ -100,7 +113,7 @@ class Fitted(Protocol):
     def determined(self) -> NDArray[np.bool_]: ...
     @property
     def span(self) -> Array: ...
-    def places(self, kind: type[Effect]) -> NDArray[np.intp]: ...
+    def places(self, true_of: Callable[[Effect], bool]) -> NDArray[np.intp]: ...
     @property
     def stretches(self) -> Sequence[Signals]: ...
     def seen(self, columns: ColumnsOf, of_motion: bool) -> Array: ...
@@ -117,6 +130,7 @@ class Effect(ABC):
         quantities: its parameters, with unit and bounds.
         derived: quantities reported too, which follow from them.
         shapes: the nonlinear quantities, in the order in which all methods take them.
+        stage: where it acts.
         needed: share of the squared residual above noise that it must explain (see `tests.studies.blind.margins`).
         looks_like: names of effects without a shape that some recordings cannot distinguish from it, which fits decide.
         repeatable: an axis may have several, each of another shape (harmonics, events).
@@ -129,6 +143,13 @@ class Effect(ABC):
         of_speed: its torque depends on speed alone.
         external: a torque of motion and time alone, which varies: behind a coupling it may act on the load as on the
             motor.
+        transmitted: a torque of the load, which the transmission carries and friction may follow.
+        constant: a transmitted torque that never varies: in motion of one direction it looks like dry friction.
+        spring: a transmitted torque that pulls back to a position; its first strength is the stiffness - N*m/rad
+            (N/m) -, its second a constant.
+        directed: dry friction that differs between the directions.
+        scales_friction: dry friction in proportion to the level that other effects make.
+        follows_load: dry friction caused by the torque of the load, which `AxisState.load` holds.
         filters_motion: noise of the motion passes through it, and so biases its strength or shape.
     """
 
@@ -137,6 +158,7 @@ class Effect(ABC):
     quantities: ClassVar[tuple[Quantity, ...]]
     derived: ClassVar[tuple[Quantity, ...]] = ()
     shapes: ClassVar[tuple[Shape, ...]] = ()
+    stage: ClassVar[Stage] = Stage.MECHANICS
     needed: ClassVar[float] = 0.25
     looks_like: ClassVar[tuple[str, ...]] = ()
     repeatable: ClassVar[bool] = False
@@ -146,11 +168,22 @@ class Effect(ABC):
     rescales_torque: ClassVar[bool] = False
     of_speed: ClassVar[bool] = False
     external: ClassVar[bool] = False
+    transmitted: ClassVar[bool] = False
+    constant: ClassVar[bool] = False
+    spring: ClassVar[bool] = False
+    directed: ClassVar[bool] = False
+    scales_friction: ClassVar[bool] = False
+    follows_load: ClassVar[bool] = False
     filters_motion: ClassVar[bool] = False
 
     def __reduce__(self) -> str:
         """Pickled by its name in its module: there is one object of each effect."""
         return "EFFECT"
+
+    @property
+    def of_measurement(self) -> bool:
+        """Whether it is a fault of the measurement rather than physics of the axis."""
+        return self.stage <= Stage.CURRENT_SENSOR
 
     @property
     def positive(self) -> frozenset[str]:
@@ -164,6 +197,14 @@ class Effect(ABC):
     def defaults(self, axis: Axis) -> Values:
         """Values of quantities that may be left out - SI."""
         return {quantity.name: quantity.preset for quantity in self.quantities if quantity.preset is not None}
+
+    def native(self, values: Mapping[str, float], friction_varies: bool) -> bool:
+        """Whether MuJoCo simulates it by itself with these values; `friction_varies`: others change friction."""
+        return type(self).add is not Effect.add
+
+    def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
+        """Add a native effect to the MuJoCo model; `name` is free to name the new elements."""
+        raise NotImplementedError(f"{self.name} is not native")
 
     def least(self, axis: Axis) -> Values:
         """Lower bounds of quantities beyond which it is not this effect on such an axis - SI."""
@@ -316,7 +357,7 @@ class Coupling(Columns):
         return True
 
 
-class Contact(Columns):
+class Contact(Coupling):
     """Parts that meet and part: what their impacts leave comes in bursts, and the instant of one hangs on the last."""
 
     @abstractmethod
@@ -347,23 +388,77 @@ class Distortion(Effect):
         """The recording without this fault."""
 
 
+class EncoderFault(Distortion):
+    """The encoder errs, and the drive believes it."""
+
+    stage = Stage.ENCODER
+
+    @abstractmethod
+    def measured(self, values: Values, position: Number, velocity: Number) -> tuple[Number, Number]:
+        """Position and velocity as the encoder measures them, from the true ones - rad (m), rad/s (m/s)."""
+
+    @abstractmethod
+    def actual(self, values: Mapping[str, float], position: Array, velocity: Array) -> tuple[Array, Array]:
+        """True position and velocity from those that the encoder measured, (n,) each."""
+
+    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+        """The recording of the true motion."""
+        values = self.report((), shape, UNIT)
+        position, velocity = self.actual(values, signals.position, signals.velocity)
+        return replace(signals, position=position, velocity=velocity)
+
+
 class Lag(Distortion):
     """A first-order lag, T*dy/dt + y = u; two at once show as their difference, so a recording tells but one.
 
     Attributes:
-        signal: that is behind: `velocity` or `current`, as recorded, or `torque`, as it acts.
+        signal: that lags: `velocity` or `current` between the drive and the recording, or the `torque` that acts behind
+            the reported current.
     """
 
     quantities = (Quantity("time_constant", "T", "s", lower=0.0, null=0.0),)
     shapes = (Shape(quantities[0], LAGS, reach=1.0, measure=LAG),)
+    stage = Stage.RECORDER
     signal: ClassVar[str]
+
+    def lagging(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
+        """The signal behind the lag (n,), from the samples before it at a constant step - s."""
+        return lagged(samples, values["time_constant"], step)
+
+    def leading(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
+        """The signal before the lag (n,), from the samples behind it."""
+        return unlagged(samples, values["time_constant"], step)
+
+    def stepped(self, values: Values, reported: Number, before: Number, step: float) -> tuple[Number, Number]:
+        """Torque that acts of a reported one that is held over a step: at the middle, and at the end of it.
+
+        Exact; `before` is what acts at its start.
+        """
+        passed = -0.5 * step / values["time_constant"]
+        half = namespace(passed).exp(passed)
+        return reported + (before - reported) * half, reported + (before - reported) * half**2
 
     def delays(self, shape: Sequence[float], source: str) -> tuple[float, float, float]:
         """Lags to undo in columns of motion, in others, and in the effort, if speed comes from `source` - s."""
-        behind = shape[0]
+        lag = shape[0]
         if self.signal == "velocity":  # what is made of the reported speed
-            return (behind if source == "velocity" else 0.0), 0.0, 0.0
-        return (behind, behind, 0.0) if self.signal == "torque" else (0.0, 0.0, behind)
+            return (lag if source == "velocity" else 0.0), 0.0, 0.0
+        return (lag, lag, 0.0) if self.signal == "torque" else (0.0, 0.0, lag)
+
+    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+        """Where the axis is, as position summed from the reported speed v lags by T*v; or the torque that acts."""
+        values, step = self.report((), shape, UNIT), signals.sample_period
+        if self.signal == "velocity":
+            return replace(signals, position=signals.position + values["time_constant"] * signals.velocity)
+        passed = self.lagging if self.signal == "torque" else self.leading
+        return replace(signals, torque=passed(values, signals.torque, step))
+
+    def corrected(self, trace: Trace, values: Mapping[str, float]) -> Trace:
+        """The recording with its signal as the drive has it."""
+        samples = trace[self.signal].copy()
+        for part in trace.segments:
+            samples[part] = self.leading(values, samples[part], trace.sample_period)
+        return trace.with_signals({self.signal: samples}, {})
 
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
         """By the tick within which current and speed were taken."""
@@ -388,3 +483,30 @@ def smoothed(trace: Trace, smooth: GaussianFilter, name: str, *orders: int) -> A
     parts = [part for part in trace.segments if part.stop - part.start > 4 * smooth.margin]
     found = [smooth(trace[name][part], *orders) for part in parts]
     return np.concatenate([np.empty((len(orders), 0)), *found], axis=1)
+
+
+# In the drive, and in the joint.
+
+
+class DriveLimit(Effect):
+    """A limit of the drive: visible where the drive runs the model, and hardly where the recording tracks it."""
+
+    stage = Stage.CURRENT_LOOP
+
+    @abstractmethod
+    def flowing(
+        self, values: Values, axis: Axis, velocity: Number, demand: Number, before: Number, step: float
+    ) -> tuple[Number, Number]:
+        """Effort that flows at a demand: mean over the step, and at its end; `before` is that at its start."""
+
+    @abstractmethod
+    def shown_in(self, trace: Trace, rig: Rig, values: Mapping[str, float]) -> Trace:
+        """The part of a recording in which it is visible."""
+
+
+class Bristles(Columns):
+    """It replaces dry friction as a whole, including what other effects add and scale."""
+
+    def sought(self, scope: Scope) -> bool:
+        """Not in motion of one direction, where such friction looks like a torque, e.g. like an unbalance."""
+        return super().sought(scope) and not scope.one_way

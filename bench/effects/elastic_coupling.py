@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
-from bench.effects.acting import Native, Spec, add_coupling_joint
 from bench.effects.effect import Coupling, Load
+from bench.effects.mjcf import Spec, add_coupling_joint
 from bench.effects.shape import FREQUENCY, Shape, Shapes
 from bench.effects.signals import Axis, Base, Signals
 from bench.trace.filter import Column
@@ -40,7 +40,7 @@ OVERDAMPED, DULL = 1.0, 0.5
 TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
 
 
-class ElasticCoupling(Coupling, Native):
+class ElasticCoupling(Coupling):
     name = "elastic_coupling"
     summary = "motor and load are joined by a spring and damper"
     filters_motion = True

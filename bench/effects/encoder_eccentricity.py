@@ -8,16 +8,14 @@ Source: A. Ernst, Digital Linear and Angular Metrology, 1998 (eccentricity of gr
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from bench.arrays import NORMAL95, Array, namespace
-from bench.effects.acting import MisreadMotion
-from bench.effects.effect import Distortion, Fitted, Proposal
+from bench.effects.effect import EncoderFault, Fitted, Proposal
 from bench.effects.shape import Shape
 from bench.effects.signals import Base, Number, Scope, Signals, Values
-from bench.effects.waves import PHASE, OncePerRevolution, amplitude_and_phase
+from bench.effects.waves import PHASE, Wave, amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -27,7 +25,7 @@ AMPLITUDES = (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3)
 STEPS = 5
 
 
-class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
+class EncoderEccentricity(Wave, EncoderFault):
     name = "encoder_eccentricity"
     summary = "measured position errs once per revolution"
     quantities = (Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5, null=0.0), PHASE)
@@ -35,10 +33,6 @@ class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
         Shape(Quantity("sine", "s", "rad"), additive=True),
         Shape(Quantity("cosine", "c", "rad"), additive=True),
     )
-
-    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
-        angle, velocity = true_motion(signals.position, signals.velocity, *shape)
-        return replace(signals, position=angle, velocity=velocity)
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """To first order, where the balance is linear in both shapes: it lacks J times the acceleration's error.
@@ -71,12 +65,12 @@ class EncoderEccentricity(OncePerRevolution, Distortion, MisreadMotion):
         """By the drift of an integrated position, and by the half tick within which it was taken."""
         return [float(np.linalg.norm(shape)) * (scope.drift + 0.5 * scope.latched * scope.rms_speed / NORMAL95)] * 2
 
-    def seen(self, values: Values, position: Number, velocity: Number) -> tuple[Number, Number]:
+    def measured(self, values: Values, position: Number, velocity: Number) -> tuple[Number, Number]:
         angle, amplitude = position + values["phase"], values["amplitude"]
         xp = namespace(angle)
         return position + amplitude * xp.sin(angle), velocity * (1.0 + amplitude * xp.cos(angle))
 
-    def unseen(self, values: Mapping[str, float], position: Array, velocity: Array) -> tuple[Array, Array]:
+    def actual(self, values: Mapping[str, float], position: Array, velocity: Array) -> tuple[Array, Array]:
         amplitude, phase = values["amplitude"], values["phase"]
         return true_motion(position, velocity, amplitude * np.cos(phase), amplitude * np.sin(phase))
 

@@ -8,33 +8,33 @@ recording's start - s.
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from bench.arrays import namespace
-from bench.effects.acting import ResistingTorque, ScalesFriction
 from bench.effects.shape import DURATION, Shape
-from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.signals import Axis, AxisState, Base, Number, Values
+from bench.effects.torque import Friction
 from bench.units import Quantity
 
 #: Share of the dry amplitude that viscous friction has where none is given.
 ALL = 1.0
 
 
-class FrictionWarmup(ScalesFriction, ResistingTorque):
+class FrictionWarmup(Friction):
     name = "friction_warmup"
     summary = "friction decays over time as the axis warms up"
+    scales_friction = True
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, null=0.0),
         Quantity("time_constant", "T", "s", lower=0.0),
         Quantity("viscous_share", "s", "dimensionless", lower=0.0, preset=ALL, minor=True),
     )
     shapes = (Shape(quantities[1], (0.7, 1.5, 3.0, 6.0, 12.0), measure=DURATION),)
-    dry = slice(1)
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        cold = np.exp(-signals.time / shape[0])
-        return [[(signals.friction * cold, 0)], [(signals.velocity * cold, 0)]]
+    def friction(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        return at.friction * _cold(values, at)
+
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        """Viscous friction of the cold axis."""
+        return values["viscous_share"] * _cold(values, at) * axis.viscous * at.velocity
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Amplitude relative to the Coulomb friction of the warm axis, and the same of viscous friction over it."""
@@ -46,14 +46,8 @@ class FrictionWarmup(ScalesFriction, ResistingTorque):
         """Dry friction decays; how viscous friction does tells little where that is small."""
         return base.coulomb > 0.0 and strengths[0] > 0.0
 
-    def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
-        return 1.0 + _cold(values, at)
 
-    def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        return values["viscous_share"] * _cold(values, at) * axis.viscous * at.velocity
-
-
-def _cold(values: Values, at: Moment) -> Number:
+def _cold(values: Values, at: AxisState) -> Number:
     """A*exp(-t/T)."""
     passed = -at.time / values["time_constant"]
     return values["relative_amplitude"] * namespace(passed).exp(passed)

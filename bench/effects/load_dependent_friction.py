@@ -6,28 +6,22 @@ mu - load friction coefficient, not negative; M_motor - motor torque - N*m (N).
 Source: M. Linderoth, A. Stolt, A. Robertsson, R. Johansson, IROS 2013 (load-dependent friction of a gear).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-import numpy as np
-
-from bench.effects.acting import FrictionLaw, RaisesFriction
 from bench.effects.effect import LOSSIEST
-from bench.effects.signals import Axis, Moment, Number, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.signals import Axis, AxisState, Number, Values
+from bench.effects.torque import Friction, FrictionLaw
 from bench.units import Quantity
 
 
-class LoadDependentFriction(RaisesFriction):
+class LoadDependentFriction(Friction):
     name = "load_dependent_friction"
     summary = "friction grows with the magnitude of the transmitted torque"
     copies_torque = True
     quantities = (Quantity("load_friction_coefficient", "mu", "dimensionless", lower=0.0, upper=LOSSIEST, null=0.0),)
     looks_like = ("torque_scale",)
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return [[(signals.sign * np.abs(signals.torque), 0)]]
-
-    def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
+    def friction(self, values: Values, axis: Axis, at: AxisState) -> Number:
         return values["load_friction_coefficient"] * abs(at.effort)
 
     def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, namespace
-from bench.effects.acting import ResistingTorque
 from bench.effects.effect import Fitted, Occasional, Proposal, Standout
 from bench.effects.shape import Shape, Shapes
-from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Values
+from bench.effects.torque import Torque
 from bench.units import Quantity
 
 #: Points in time between which events are sought.
@@ -45,7 +44,7 @@ FEW = 4
 PLACES = 5
 
 
-class LoadTorqueEvent(Occasional, ResistingTorque):
+class LoadTorqueEvent(Occasional, Torque):
     name = "load_torque_event"
     summary = "an external torque acts for a stretch of time"
     external = True
@@ -57,10 +56,15 @@ class LoadTorqueEvent(Occasional, ResistingTorque):
     shapes = tuple(Shape(instant, reach=0.05, additive=True) for instant in quantities[1:])
     needed = 0.5  # more than of others: with a window of time to choose freely, an event fits a part of anything
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """One within the stretch; its edges shared between the samples around them."""
-        start, end = ((signals.began + signals.time - edge) / signals.sample_period + 0.5 for edge in shape)
-        return [[(np.clip(start, 0.0, 1.0) - np.clip(end, 0.0, 1.0), 0)]]
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        """What acts of it within a step around the moment, on average."""
+        time, torque = at.began + at.time, values["torque"]
+        xp = namespace(torque)
+        none, all_of_it = xp.zeros_like(time - values["start"]), xp.ones_like(time - values["start"])
+        begun, over = (
+            xp.minimum(xp.maximum((time - values[edge]) / at.step + 0.5, none), all_of_it) for edge in ("start", "end")
+        )
+        return torque * (begun - over)
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """The best window of time, all of them compared through cumulative sums.
@@ -118,11 +122,6 @@ class LoadTorqueEvent(Occasional, ResistingTorque):
             if after - before > RESOLVED * scope.width:
                 place += np.linspace(before, after, PLACES).tolist()
         return [(start, end) for start, end in product(*places) if start < end]
-
-    def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        time, torque = at.began + at.time, values["torque"]
-        xp = namespace(torque)
-        return xp.where((time >= values["start"]) & (time < values["end"]), torque, xp.zeros_like(torque))
 
 
 def _rows_around(shape: Sequence[float], time: Array) -> Array:

@@ -5,31 +5,26 @@
 A - relative amplitude; q - angle - rad.
 """
 
-from collections.abc import Sequence
-
-from bench.effects.acting import ScalesFriction
-from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.effects.waves import PHASE, OncePerRevolution, once_per_revolution, wave
-from bench.trace.filter import Column
+from bench.effects.signals import Axis, AxisState, Base, Number, Values
+from bench.effects.torque import Friction
+from bench.effects.waves import PHASE, Wave
 from bench.units import Quantity
 
 
-class PositionDependentFriction(OncePerRevolution, ScalesFriction):
+class PositionDependentFriction(Wave, Friction):
     name = "position_dependent_friction"
     summary = "friction level varies with position"
+    scales_friction = True
     quantities = (
         Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5, null=0.0),
         PHASE,
     )
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return once_per_revolution(signals.position, signals.friction)
-
     def unit(self, base: Base) -> float:
         return base.coulomb
 
-    def friction_factor(self, values: Values, axis: Axis, at: Moment) -> Number:
-        return 1.0 + wave(values, "relative_amplitude", at.position)
+    def friction(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        return at.friction * self.wave(values, at.position)
 
 
 EFFECT = PositionDependentFriction()

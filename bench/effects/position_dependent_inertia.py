@@ -3,18 +3,18 @@
     M = J(q)*alpha + J'(q)*omega**2/2, J(q) = J*(1 + A*sin(n*q + phi))
 
 A - relative amplitude; n - harmonic; q - angle - rad. Lagrange's equation of the kinetic energy J(q)*omega**2/2.
-With J*sin(n*q)*alpha = d/dt(J*sin(n*q)*omega) - J*n*cos(n*q)*omega**2, only raw products are differentiated.
 """
 
-from bench.arrays import Array, namespace
-from bench.effects.acting import ResistingTorque, VaryingInertia
-from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.effects.waves import PHASE, Harmonic, harmonics, wave
+from bench.arrays import namespace
+from bench.effects.shape import Shapes
+from bench.effects.signals import Axis, Base, Number, Signals, Values
+from bench.effects.torque import Inertia, kinetic
+from bench.effects.waves import PHASE, Wave, harmonics, phase_angle, turned
 from bench.trace.filter import Column
 from bench.units import Quantity
 
 
-class PositionDependentInertia(Harmonic, VaryingInertia, ResistingTorque):
+class PositionDependentInertia(Wave, Inertia):
     name = "position_dependent_inertia"
     summary = "inertia varies with position, with its velocity-squared torque"
     shapes = (harmonics(1, 4),)
@@ -24,20 +24,20 @@ class PositionDependentInertia(Harmonic, VaryingInertia, ResistingTorque):
         PHASE,
     )
 
-    def of_wave(self, signals: Signals, number: float, sine: Array, cosine: Array) -> list[Column]:
-        omega, half = signals.velocity, 0.5 * number * signals.velocity**2
-        return [[(omega * sine, 1), (-half * cosine, 0)], [(omega * cosine, 1), (half * sine, 0)]]
-
     def unit(self, base: Base) -> float:
         return base.inertia
 
-    def added_inertia(self, values: Values, axis: Axis, at: Moment) -> Number:
-        return axis.inertia * wave(values, "relative_amplitude", at.position)
+    def inertia(self, values: Values, axis: Axis, position: Number) -> tuple[Number, Number]:
+        angle, amplitude = phase_angle(values, position), axis.inertia * values["relative_amplitude"]
+        xp = namespace(angle)
+        return amplitude * xp.sin(angle), amplitude * values["harmonic"] * xp.cos(angle)
 
-    def resisting_torque(self, values: Values, axis: Axis, at: Moment) -> Number:
-        slope = axis.inertia * values["relative_amplitude"] * values["harmonic"]
-        angle = values["harmonic"] * at.position + values["phase"]
-        return 0.5 * slope * namespace(angle).cos(angle) * at.velocity**2
+    def columns_of(self, signals: Signals, shapes: Shapes) -> list[Column]:
+        """Of several harmonics, whose waves are made at once."""
+        columns = list[Column]()
+        for number, (sine, cosine) in turned(signals.position, [shape[0] for shape in shapes]):
+            columns += [kinetic(signals, sine, number * cosine), kinetic(signals, cosine, -number * sine)]
+        return columns
 
 
 EFFECT = PositionDependentInertia()

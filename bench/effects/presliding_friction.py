@@ -16,7 +16,8 @@ from typing import ClassVar
 import numpy as np
 
 from bench.arrays import Array, recurrence
-from bench.effects.acting import AXIS, BRISTLES, CarriesFriction, Native, Spec, passive_motor
+from bench.effects.effect import Bristles
+from bench.effects.mjcf import AXIS, BRISTLES, Spec, passive_motor
 from bench.effects.shape import ANGLE, Shape, Shapes
 from bench.effects.signals import Axis, Base, Scope, Signals
 from bench.trace.filter import Column
@@ -28,7 +29,7 @@ LEAST = 1e-3
 SLIDES = 10.0
 
 
-class PreslidingFriction(CarriesFriction, Native):
+class PreslidingFriction(Bristles):
     name = "presliding_friction"
     summary = "bristle-like hysteresis before breakaway and after reversal (Dahl, LuGre)"
     quantities = (

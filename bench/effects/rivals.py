@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, recursive_filter
-from bench.effects.effect import Columns, Effect
+from bench.effects.effect import Columns, Effect, Stage
 from bench.effects.shape import DURATION, FREQUENCY, SPEED, TRAVEL, Shape, Shapes
 from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
@@ -130,6 +130,7 @@ class VaryingGain(Columns):
     name = "outside_gain"
     summary = "a torque per ampere that changes with current or speed"
     decoy = True
+    stage = Stage.COMMUTATION
     copies_torque = True
     quantities = ()
 
@@ -149,6 +150,7 @@ class OtherWave(Columns):
     name = "outside_wave"
     summary = "a wave of position of another form"
     decoy = True
+    stage = Stage.COMMUTATION
     copies_torque = True
     quantities = (Quantity("harmonic", "n", "dimensionless", lower=0.0, linear_unit="rad/m"),)
     shapes = (Shape(quantities[0], (1.0,), whole=True),)

@@ -1,4 +1,4 @@
-"""What effects are given: samples of a recording and what it is able to show; a simulated axis, its state in a step.
+"""What effects are given: samples of a recording and what it can show; a simulated axis and its state in a step.
 
 What belongs to a simulation is numbers, or arrays (k,) of axes side by side, of any library of the array API standard.
 """
@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -60,6 +60,14 @@ class Signals:
     began: float = 0.0
     known: Column = ()
     of_motion: Array | float = 0.0
+
+    @property
+    def state(self) -> AxisState:
+        """State of the axis at the samples; friction has its sign."""
+        effort, friction, step = self.torque, self.friction, self.sample_period
+        return AxisState(
+            self.time, self.position, self.velocity, effort, self.began, self.load, friction=friction, step=step
+        )
 
     @cached_property
     def course(self) -> Array:
@@ -153,17 +161,19 @@ class Axis:
     winding: Winding | None = None
 
 
-@dataclass(frozen=True)
-class Moment:
-    """State of axes at the middle of a step.
+class AxisState(NamedTuple):
+    """State of an axis that a torque without memory depends on: at the middle of a step (k,), or at samples (n,).
 
     Attributes:
-        time: since the recording's start - s -; a number, or (k,).
-        position: rad (m) - (k,).
-        velocity: rad/s (m/s) - (k,).
-        effort: of the motor - N*m (N) - (k,).
-        began: start of the recording, counted from that of the first where several are joined - s -; a number, or (k,).
-        load: resisting torque of the load, as the transmission carries it, where friction follows it - N*m (N) - (k,).
+        time: since the recording's start - s.
+        position: rad (m).
+        velocity: rad/s (m/s).
+        effort: torque that reaches the stage of the effect - N*m (N).
+        began: start of the recording, counted from that of the first where several are joined - s.
+        load: resisting torque of the load, as the transmission carries it, where friction follows it - N*m (N).
+        friction: level of dry friction that other effects make - N*m (N).
+        direction: of the motion for which a level of friction is wanted, 1 or -1.
+        step: over which a torque is averaged - s.
     """
 
     time: Number
@@ -172,3 +182,6 @@ class Moment:
     effort: Number
     began: Number = 0.0
     load: Number = 0.0
+    friction: Number = 0.0
+    direction: float = 1.0
+    step: float = 0.0

@@ -8,13 +8,10 @@ Source: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7), 1
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from bench.arrays import namespace
-from bench.effects.acting import FrictionLaw, RaisesFriction
 from bench.effects.shape import SPEED, Shape, Shapes
-from bench.effects.signals import Axis, Base, Moment, Number, Scope, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Values
+from bench.effects.torque import Friction, FrictionLaw
 from bench.units import Quantity
 
 #: Share of the highest speed within which a rise towards standstill ends; a wider one is curvature, as drag has it.
@@ -22,7 +19,7 @@ from bench.units import Quantity
 RISE = 0.2
 
 
-class StribeckFriction(RaisesFriction):
+class StribeckFriction(Friction):
     name = "stribeck_friction"
     summary = "friction rises as speed falls towards zero"
     of_speed = True
@@ -32,8 +29,9 @@ class StribeckFriction(RaisesFriction):
     )
     shapes = (Shape(quantities[1], (0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 20.0), measure=SPEED),)
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return [[(signals.sign * np.exp(-((signals.velocity / shape[0]) ** 2)), 0)]]
+    def friction(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)
+        return (values["static_friction"] - axis.coulomb) * namespace(fallen).exp(fallen)
 
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         """Static friction is Coulomb friction plus the rise."""
@@ -51,10 +49,6 @@ class StribeckFriction(RaisesFriction):
         return {"static_friction": axis.coulomb}
 
     least = null  # friction that falls towards standstill would drive the axis on
-
-    def friction_excess(self, values: Values, axis: Axis, at: Moment) -> Number:
-        fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)
-        return (values["static_friction"] - axis.coulomb) * namespace(fallen).exp(fallen)
 
     def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw:
         return FrictionLaw(values["static_friction"] - float(axis.coulomb), values["stribeck_velocity"])

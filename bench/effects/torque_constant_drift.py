@@ -10,13 +10,10 @@ Source: T. Sebastian, Temperature effects on torque production and efficiency of
 Transactions on Industry Applications 31(2), 1995.
 """
 
-from collections.abc import Sequence
-
-from bench.effects.acting import MisreadEffort
-from bench.effects.effect import Columns
+from bench.effects.effect import Stage
 from bench.effects.shape import Shapes
-from bench.effects.signals import Axis, Number, Scope, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.signals import Axis, AxisState, Number, Scope, Values
+from bench.effects.torque import Torque
 from bench.units import Quantity
 
 #: Relative change over a recording at most: ferrite magnets that warm by 150 K. Without a bound a rate that fades the
@@ -24,24 +21,22 @@ from bench.units import Quantity
 MOST = 0.3
 
 
-class TorqueConstantDrift(Columns, MisreadEffort):
+class TorqueConstantDrift(Torque):
     name = "torque_constant_drift"
     summary = "torque per ampere changes during the recording"
+    stage = Stage.CURRENT_SENSOR
     copies_torque = True
     quantities = (Quantity("rate", "r", "1/s", null=0.0),)
     # of what changes at once at half time, t takes (3*T**2/8)**2/(T**3/3)/(T/2) = 27/32 of the squares, and a
     # compensation that is switched on is no drift
     needed = 0.85
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """The motor's torque times time: what the rig's constant overstates."""
-        return [[(-signals.torque * signals.time, 0)]]
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        """What the rig's constant overstates."""
+        return -values["rate"] * at.time * at.effort
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
         return all(abs(rate) * scope.duration <= MOST for (rate,) in strengths)
-
-    def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        return effort * (1.0 + values["rate"] * time)
 
 
 EFFECT = TorqueConstantDrift()

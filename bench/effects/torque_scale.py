@@ -9,33 +9,30 @@ are s times as heavy as in the MJCF look alike, but for armature and friction, w
 
 from collections.abc import Mapping, Sequence
 
-from bench.effects.acting import MisreadEffort
-from bench.effects.effect import Columns
-from bench.effects.signals import Axis, Base, Number, Scope, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.effect import Stage
+from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Values
+from bench.effects.torque import Torque
 from bench.trace.signals import KNOWN_TORQUE
 from bench.units import Quantity
 
 
-class TorqueScale(Columns, MisreadEffort):
+class TorqueScale(Torque):
     name = "torque_scale"
     summary = "reported torque is a multiple of the torque that acts"
+    stage = Stage.CURRENT_SENSOR
     rescales_torque = True
     quantities = (Quantity("scale", "s", "dimensionless", lower=0.2, upper=5.0, null=1.0),)
     looks_like = ("unbalance", "load_dependent_friction")
 
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        """What the reading has too much; its strength is 1/s - 1."""
+        return at.effort - at.effort / values["scale"]
+
     def sought(self, scope: Scope) -> bool:
         return KNOWN_TORQUE in scope.signals
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """-M_reported: what the reading lacks, per unit of 1/s - 1."""
-        return [[(-signals.torque, 0)]]
-
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         return {"scale": 1.0 / max(1.0 + strengths[0], 1e-9)}
-
-    def acted(self, values: Values, axis: Axis, effort: Number, time: Number) -> Number:
-        return effort / values["scale"]
 
 
 EFFECT = TorqueScale()

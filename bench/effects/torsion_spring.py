@@ -11,25 +11,26 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bench.effects.acting import AXIS, Native, Spec, Spring
 from bench.effects.effect import Fitted, Proposal
-from bench.effects.signals import Axis, Base, Moment, Number, Signals, Values
-from bench.trace.filter import Column
+from bench.effects.mjcf import AXIS, Spec
+from bench.effects.signals import Axis, AxisState, Base, Number, Values
+from bench.effects.torque import Torque
 from bench.units import Quantity
 
 
-class TorsionSpring(Spring, Native):
+class TorsionSpring(Torque):
     name = "torsion_spring"
     summary = "a torque proportional to position"
     external = True
+    transmitted = True
+    spring = True
     quantities = (
         Quantity("stiffness", "c", "N*m/rad", lower=0.0, null=0.0),
         Quantity("reference", "q_0", "rad", preset=0.0, minor=True),
     )
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Position, and minus one for the torque c*q_0."""
-        return [[(signals.position, 0)], [(-np.ones_like(signals.time), 0)]]
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        return values["stiffness"] * (at.position - values["reference"])
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """None where a constant torque explains as much."""
@@ -40,9 +41,6 @@ class TorsionSpring(Spring, Native):
     def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
         stiffness, torque = (*strengths, 0.0)[:2]
         return {"stiffness": stiffness, "reference": torque / stiffness if stiffness else 0.0}
-
-    def load_torque(self, values: Values, at: Moment) -> Number:
-        return values["stiffness"] * (at.position - values["reference"])
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         joint = spec.joint(AXIS)

@@ -5,27 +5,25 @@
 A - N*m; q - angle - rad.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from bench.effects.acting import LoadTorque, Native, Spec, passive_motor
-from bench.effects.signals import Axis, Moment, Number, Signals, Values
-from bench.effects.waves import PHASE, OncePerRevolution, once_per_revolution, wave
-from bench.trace.filter import Column
+from bench.effects.mjcf import Spec, passive_motor
+from bench.effects.signals import Axis, AxisState, Number, Values
+from bench.effects.torque import Torque
+from bench.effects.waves import PHASE, Wave
 from bench.units import Quantity
 
 
-class Unbalance(OncePerRevolution, LoadTorque, Native):
+class Unbalance(Wave, Torque):
     name = "unbalance"
     summary = "an eccentric mass under gravity, once per revolution"
     external = True
+    transmitted = True
     quantities = (Quantity("amplitude", "A", "N*m", lower=0.0, null=0.0), PHASE)
     looks_like = ("torque_scale",)
 
-    def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        return once_per_revolution(signals.position, 1.0)
-
-    def load_torque(self, values: Values, at: Moment) -> Number:
-        return wave(values, "amplitude", at.position)
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        return self.wave(values, at.position)
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
         """A torque of one period a revolution: an eccentric body would add inertia that J holds already."""

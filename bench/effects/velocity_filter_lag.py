@@ -8,15 +8,11 @@ dv/dt.
 Source: W. Leonhard, Control of Electrical Drives (filtered speed feedback).
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
-
 import numpy as np
 
 from bench.arrays import NORMAL95, rms
-from bench.effects.acting import FilteredSignal
 from bench.effects.effect import Detected, Lag, smoothed
-from bench.effects.signals import Scope, Signals
+from bench.effects.signals import Scope
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 from bench.trace.noise import white_noise
@@ -37,15 +33,11 @@ DISAGREE, EXPLAINED = 1.5, 0.7
 MENDED = 0.1
 
 
-class VelocityFilterLag(Lag, FilteredSignal):
+class VelocityFilterLag(Lag):
     name = "velocity_filter_lag"
     summary = "reported velocity lags the motion"
     filters_motion = True
     signal = "velocity"
-
-    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
-        """Where the axis is: a position that is summed from the reported speed v is behind by T*v, exactly."""
-        return replace(signals, position=signals.position + shape[0] * signals.velocity)
 
     def sought(self, scope: Scope) -> bool:
         """Where speed alone is recorded; beside it, position tells the lag by itself."""

@@ -12,8 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from bench.arrays import NORMAL95, Array, namespace
-from bench.effects.acting import DriveLimit
-from bench.effects.effect import Detected, smoothed
+from bench.effects.effect import Detected, DriveLimit, smoothed
 from bench.effects.signals import Axis, Number, Values
 from bench.errors import InputError
 from bench.rig.rig import Rig

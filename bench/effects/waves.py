@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, namespace
-from bench.effects.effect import Columns, Effect
+from bench.effects.effect import Effect
 from bench.effects.shape import Shape, Shapes
-from bench.effects.signals import Base, Number, Scope, Signals, Values
+from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Signals, Values
+from bench.effects.torque import Torque
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -27,9 +28,18 @@ FOLLOWED = 0.8
 class Wave(Effect):
     """It repeats with position: its quantities are an amplitude, a harmonic if that is searched, and the phase."""
 
+    @property
+    def once_per_revolution(self) -> bool:
+        """Whether it is a wave of one revolution, of which a linear axis has none."""
+        return not any(slot.whole for slot in self.shapes)
+
+    def sought(self, scope: Scope) -> bool:
+        """Where something turns, if it is a wave of a revolution."""
+        return super().sought(scope) and (scope.kind.turns or not self.once_per_revolution)
+
     def wave_number(self, shape: Sequence[float]) -> float:
         """Wave number over position - 1 (rad/m)."""
-        return shape[0]
+        return 1.0 if self.once_per_revolution else shape[0]
 
     def unit(self, base: Base) -> float:
         """Strength of amplitude one."""
@@ -41,34 +51,36 @@ class Wave(Effect):
         harmonic = super().report((), shape, base)
         return {self.quantities[0].name: amplitude / self.unit(base), **harmonic, PHASE.name: phase}
 
+    def wave(self, values: Values, position: Number) -> Number:
+        """The wave at a position, in the unit of its amplitude."""
+        angle = phase_angle(values, position)
+        return values[self.quantities[0].name] * namespace(angle).sin(angle)
 
-class Harmonic(Wave, Columns):
-    """A wave of torque whose harmonic is searched."""
+
+class HarmonicTorque(Wave, Torque):
+    """A torque in proportion to a wave whose harmonic is searched."""
+
+    repeatable = True
 
     @abstractmethod
-    def of_wave(self, signals: Signals, number: float, sine: Array, cosine: Array) -> list[Column]:
-        """Columns of a wave of such a wave number, whose sine and cosine (n,) are given."""
+    def carrier(self, at: AxisState) -> Number:
+        """Resisting torque where the wave is one - N*m (N) per unit of its amplitude."""
+
+    def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
+        """The wave of the torque."""
+        return self.carrier(at) * self.wave(values, at.position)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        """Sine and cosine."""
+        """Sine and cosine, nothing where the wave is faster than the samples can follow."""
         return self.columns_of(signals, [shape])
 
     def columns_of(self, signals: Signals, shapes: Shapes) -> list[Column]:
         """Of waves of several harmonics, one after the other."""
-        waves = turned(signals.position, [shape[0] for shape in shapes])
-        return [column for number, wave in waves for column in self.of_wave(signals, number, *wave)]
-
-
-class OncePerRevolution(Wave):
-    """A wave of one revolution, of which a linear axis has none."""
-
-    def sought(self, scope: Scope) -> bool:
-        """Where something turns."""
-        return super().sought(scope) and scope.kind.turns
-
-    def wave_number(self, shape: Sequence[float]) -> float:
-        """One cycle a revolution."""
-        return 1.0
+        carrier, columns = self.carrier(signals.state), list[Column]()
+        for number, waves in turned(signals.position, [shape[0] for shape in shapes]):
+            carried = carrier * followed(signals, number)
+            columns += [[(carried * wave, 0)] for wave in waves]
+        return columns
 
 
 def harmonics(first: int, last: int) -> Shape:
@@ -80,11 +92,6 @@ def harmonics(first: int, last: int) -> Shape:
 def amplitude_and_phase(sine: float, cosine: float) -> tuple[float, float]:
     """A, phi of A*sin(x + phi) = sine*sin(x) + cosine*cos(x); phi - rad in (-pi, pi]."""
     return float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))
-
-
-def once_per_revolution(position: Array, of: Array | float) -> list[Column]:
-    """Columns of a wave of one revolution along a motion (n,), times what it is a wave of (n,)."""
-    return [[(of * np.sin(position), 0)], [(of * np.cos(position), 0)]]
 
 
 def turned(position: Array, numbers: Sequence[float]) -> Iterator[tuple[float, tuple[Array, Array]]]:
@@ -111,7 +118,6 @@ def followed(signals: Signals, number: float) -> Array:
     return 0.5 + 0.5 * np.cos(np.pi * np.clip((of_nyquist - FOLLOWED) / (1.0 - FOLLOWED), 0.0, 1.0))
 
 
-def wave(values: Values, amplitude: str, position: Number) -> Number:
-    """The wave at a position, in the unit of the quantity that is its amplitude."""
-    angle = values.get("harmonic", 1.0) * position + values[PHASE.name]
-    return values[amplitude] * namespace(angle).sin(angle)
+def phase_angle(values: Values, position: Number) -> Number:
+    """n*q + phi - rad -; one cycle a revolution where no harmonic is given."""
+    return values.get("harmonic", 1.0) * position + values[PHASE.name]

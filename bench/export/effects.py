@@ -30,7 +30,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import made_like, namespace
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.effects.acting import AXIS, BRISTLES, CarriesFriction
+from bench.effects.effect import Bristles
+from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.signals import Number
 from bench.errors import InputError
 from bench.plant.model_file import StoredModel, load_models
@@ -334,7 +335,7 @@ class Mjx:
 
 def bristled(models: Iterable[StoredModel]) -> NDArray[np.bool_]:
     """Of which joints' models native bristles carry the friction (joints,)."""
-    return np.array([any(isinstance(p.effect, CarriesFriction) for p in m.model.native) for m in models], dtype=bool)
+    return np.array([any(isinstance(p.effect, Bristles) for p in m.model.native) for m in models], dtype=bool)
 
 
 def require(model: mujoco.MjModel, joints: Iterable[str]) -> None:

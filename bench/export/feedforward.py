@@ -24,7 +24,7 @@ import numpy as np
 from mujoco.batch import Batch
 
 from bench.arrays import Array, rms
-from bench.effects.acting import AXIS, BRISTLES
+from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References

@@ -28,8 +28,8 @@ import mujoco
 import numpy as np
 
 from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
-from bench.effects.acting import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.effects.effect import Effect
+from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.effects.present import named
 from bench.errors import InputError
 from bench.files import read_text

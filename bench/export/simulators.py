@@ -2,7 +2,7 @@
 
 All values are on the joint's side of a gear, as `bench.export.mjcf` has them, but where a simulator has the gear too.
 Effects are asked: for what MuJoCo makes of them natively, by building the axis with each alone; for their friction in
-others' words (`bench.effects.acting.FrictionLaw`).
+others' words (`bench.effects.torque.FrictionLaw`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from typing import Any
 
 import mujoco
 
-from bench.effects.acting import AXIS, DRIVE, LOAD_TORQUE, FrictionLaw, RaisesFriction
+from bench.effects.mjcf import AXIS, DRIVE, LOAD_TORQUE
+from bench.effects.torque import Friction, FrictionLaw
 from bench.errors import InputError
 from bench.export.mjcf import SEEN, STEPPED, armature_of
 from bench.names import plain
@@ -80,7 +81,7 @@ class SimulatedJoint:
     def friction(self) -> tuple[FrictionLaw, dict[str, str]]:
         """Dry friction beside Coulomb's; and the effects that are its `rise` and its share of the `load`, the first."""
         model, found, names = self.stored.model, {"rise": FrictionLaw(), "load": FrictionLaw()}, {}
-        for effect, values in model.acting(RaisesFriction):
+        for effect, values in model.acting(Friction):
             law = effect.law(values, model.axis)
             kind = "rise" if law is not None and law.rise else "load"
             if law is not None and kind not in names:

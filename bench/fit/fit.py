@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.effects.acting import Friction
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import (
+    Bristles,
     Columns,
     ColumnsOf,
     Contact,
@@ -27,6 +27,7 @@ from bench.effects.effect import (
     Proposal,
 )
 from bench.effects.signals import Base, Scope, Signals
+from bench.effects.torque import Friction
 from bench.fit.dependence import Dependence, dependence
 from bench.fit.hypothesis import (
     Hypothesis,
@@ -199,9 +200,9 @@ class Fit:
         """What the columns are to explain (m,) - N*m (N)."""
         return self.layout.effort
 
-    def places(self, kind: type[Effect]) -> NDArray[np.intp]:
-        """Places among the columns of the strengths of effects of a kind (k,)."""
-        return np.flatnonzero(np.isin(self.owners, self.hypothesis.of_kind(kind)))
+    def places(self, true_of: Callable[[Effect], bool]) -> NDArray[np.intp]:
+        """Places among the columns of the strengths of effects of which something is true (k,)."""
+        return np.flatnonzero(np.isin(self.owners, self.hypothesis.having(true_of)))
 
     @property
     def time(self) -> Array:
@@ -263,7 +264,7 @@ class Fit:
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
             columns = rows.memory.get((*known, moving, rows.motion), lambda: self.beside.table(made, moving))
             worth = self.gains(columns, 1) * (self.residual @ columns > 0.0)  # none without a load behind it
-        elif isinstance(effect, Friction) or effect.copies_torque or not self.determined.all():
+        elif isinstance(effect, Friction | Bristles) or effect.copies_torque or not self.determined.all():
             columns = self.seen(made, False)
             worth = self.gains(columns, columns.shape[1] // len(shapes))
         else:  # their products with each other are kept, those with what is fitted need none of them filtered

@@ -26,20 +26,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.effects.acting import (
-    CarriesFriction,
-    ConstantTorque,
-    DirectedFriction,
-    FollowsLoad,
-    FrictionLevel,
-    LoadTorque,
-    MisreadEffort,
-    ScalesFriction,
-    ScalesTorque,
-    Spring,
-    TorqueLoss,
-)
 from bench.effects.effect import (
+    Bristles,
     Columns,
     Coupling,
     Distortion,
@@ -49,6 +37,7 @@ from bench.effects.effect import (
 )
 from bench.effects.shape import is_pitch
 from bench.effects.signals import Scope, Signals
+from bench.effects.torque import Friction
 from bench.fit.rows import Rows, effort_of, known_of
 from bench.trace.filter import Column
 from bench.trace.motion import SIGN_REACH, Conditioning
@@ -70,8 +59,6 @@ SERIES = 4
 UNSEEN = 0.1
 #: Change of what copies of torque miss, as share of it, at which they are in line with what is found.
 IN_LINE = 0.01
-#: What the torque passes from its reading to the motion, by kinds of effects that copy it.
-STAGES = (MisreadEffort, TorqueLoss, ScalesTorque, FrictionLevel)
 
 
 @dataclass(frozen=True)
@@ -313,15 +300,15 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, missing
     term, effect = hypothesis.terms[index], hypothesis.terms[index].effect
     if not isinstance(effect, Columns):
         return np.empty((seen.effort.size, 0))
-    if isinstance(effect, ScalesFriction | CarriesFriction):
+    if effect.scales_friction or isinstance(effect, Bristles):
         seen = with_friction(seen, hypothesis, index)
-    if isinstance(effect, FollowsLoad):
+    if effect.follows_load:
         seen = with_load(seen, ((other, other.pull) for other in hypothesis.terms))
     if missing is not None:
         return _copied(seen, effect, term.shape, lag, missing)
     if not isinstance(effect, Coupling):
         columns = seen.kept(effect.columns, term.shape, lag=lag)
-        constant = isinstance(effect, Spring) and hypothesis.of_kind(ConstantTorque, DirectedFriction)
+        constant = effect.spring and hypothesis.having(lambda other: other.constant or other.directed)
         return columns * (1.0, 0.0) if constant else columns  # a balance has one constant
     outer = [(each.effect, each.shape, each.load) for each in hypothesis.terms if each.load]
     loads = [(other, shape, load) for other, shape, load in outer if isinstance(other, Columns) and other.external]
@@ -445,20 +432,20 @@ def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
 
     sgn(omega) and what terms add to it, times what scales it: before the one at the index, or all where it carries it.
     """
-    carries = index in hypothesis.of_kind(CarriesFriction)
+    carries = index in hypothesis.of_kind(Bristles)
     acting = [
         (term.effect, term.shape, term.level)
         for k, term in enumerate(hypothesis.terms)
-        if isinstance(term.effect, FrictionLevel) and term.level and k != index
-        if k < index or carries or not isinstance(term.effect, ScalesFriction)
+        if isinstance(term.effect, Friction) and term.level and k != index
+        if k < index or carries or not term.effect.scales_friction
     ]
     if not acting:
         return seen
-    acting.sort(key=lambda each: isinstance(each[0], ScalesFriction))  # stable: all that adds first
+    acting.sort(key=lambda each: each[0].scales_friction)  # stable: all that adds first
 
     def change(signals: Signals) -> Signals:
         for effect, shape, level in acting:
-            signals = replace(signals, friction=signals.friction + effect.level(signals, shape, level))
+            signals = replace(signals, friction=signals.friction + effect.signed(signals, level, shape))
         return signals
 
     return seen.with_signals(change)
@@ -469,7 +456,7 @@ def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows
     known = [
         (term.effect, term.shape, strengths)
         for term, strengths in pulls
-        if strengths and isinstance(term.effect, LoadTorque)
+        if strengths and isinstance(term.effect, Columns) and term.effect.transmitted
     ]
     if not known:
         return seen
@@ -508,13 +495,8 @@ def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[i
     copies, found = hypothesis.having(lambda effect: effect.copies_torque), {}
     if not copies:
         return found
-
-    def stage(index: int) -> int:
-        passed = (place for place, kind in enumerate(STAGES) if isinstance(hypothesis.terms[index].effect, kind))
-        return next(passed, STAGES.index(ScalesTorque))
-
     lost = layout.effort - layout.columns @ theta
-    for index in sorted(copies, key=stage):
+    for index in sorted(copies, key=lambda index: hypothesis.terms[index].effect.stage):
         own = layout.owners == index
         found[index], lost = lost, lost + layout.columns[:, own] @ theta[own]
     return found
@@ -526,7 +508,7 @@ def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[n
     Levels of dry friction are strengths over K_0, what acts on the load behind a coupling over its inertia, where these
     are positive; what loads the transmission is asked for where the friction of a term follows it.
     """
-    coulomb, follows = float(theta[owners == COULOMB][0]), bool(hypothesis.of_kind(FollowsLoad))
+    coulomb, follows = float(theta[owners == COULOMB][0]), bool(hypothesis.having(lambda effect: effect.follows_load))
     coupling = hypothesis.coupling
     inertia = 0.0 if coupling is None else float(theta[owners == coupling][0])
 
@@ -534,11 +516,11 @@ def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[n
         return tuple((own / whole).tolist()) if whole > 0.0 else ()
 
     def seen(term: Term, own: Array) -> Term:
-        level = share(own, coulomb) if isinstance(term.effect, FrictionLevel) else ()
+        level = share(own, coulomb) if isinstance(term.effect, Friction) else ()
         load = None if term.load is None else share(own, inertia)
         pull = term.pull
         if follows:
-            pull = tuple(own.tolist()) if isinstance(term.effect, LoadTorque) else ()
+            pull = tuple(own.tolist()) if term.effect.transmitted else ()
         return replace(term, level=level, load=load, pull=pull)
 
     return hypothesis.with_terms(seen(term, theta[owners == index]) for index, term in enumerate(hypothesis.terms))
@@ -556,10 +538,10 @@ def updated(
 
 def _alike(found: Hypothesis, before: Hypothesis) -> bool:
     """Whether no column depends on a strength of another term, by a load or friction that multiplies, that changed."""
-    levels = len(found.of_kind(FrictionLevel))
-    scaled = levels > 1 and found.of_kind(ScalesFriction)
-    carried = levels > 0 and found.of_kind(CarriesFriction)
-    loaded = any(term.load is not None for term in found.terms) or found.of_kind(FollowsLoad)
+    levels = len(found.of_kind(Friction))
+    scaled = levels > 1 and found.having(lambda effect: effect.scales_friction)
+    carried = levels > 0 and found.of_kind(Bristles)
+    loaded = any(term.load is not None for term in found.terms) or found.having(lambda effect: effect.follows_load)
     if not (scaled or carried or loaded):
         return True
     now, then = (

@@ -19,7 +19,7 @@ Integration is MuJoCo's semi-implicit Euler, made exact for this equation in two
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
@@ -28,23 +28,11 @@ import mujoco
 
 from bench.assets import asset
 from bench.axis_kind import COULOMB, ROTARY, VISCOUS, AxisKind
-from bench.effects.acting import (
-    AXIS,
-    LOAD,
-    LOAD_TORQUE,
-    MOTOR,
-    CarriesFriction,
-    Electronics,
-    Mechanism,
-    MisreadEffort,
-    MisreadMotion,
-    Native,
-    RaisesFriction,
-    ScalesFriction,
-)
-from bench.effects.effect import Coupling, Effect
+from bench.effects.effect import Bristles, Coupling, Effect, Stage
+from bench.effects.mjcf import AXIS, LOAD, LOAD_TORQUE, MOTOR
 from bench.effects.present import Present
 from bench.effects.signals import Axis, Winding
+from bench.effects.torque import Friction
 from bench.errors import InputError
 from bench.rig.rig import Load, Rig
 from bench.rig.values import LARGEST_INERTIA, LARGEST_VISCOUS
@@ -55,8 +43,8 @@ Kind = TypeVar("Kind", bound=Effect)
 
 #: What acts between the effort that is asked for and the one that moves the axis; and with what the drive sees of the
 #: motion, all that it has to do with.
-OF_TORQUE = (Electronics, MisreadEffort)
-IN_THE_LOOP = (*OF_TORQUE, MisreadMotion)
+OF_TORQUE = frozenset({Stage.CURRENT_SENSOR, Stage.CURRENT_LOOP, Stage.TORQUE_CONSTANT})
+IN_THE_LOOP = OF_TORQUE | {Stage.ENCODER}
 #: Share of the motion that dry friction takes away in one step while it sticks; MuJoCo's default of 0.9 creeps.
 STICKING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 #: The ground that is drawn under an axis.
@@ -232,6 +220,10 @@ class AxisModel:
         """Effects of a kind, or of one of several."""
         return tuple(present for present in self.effects if isinstance(present.effect, kind))
 
+    def at_stage(self, stages: Collection[Stage]) -> tuple[Present, ...]:
+        """Effects of some stages."""
+        return tuple(present for present in self.effects if present.effect.stage in stages)
+
     def acting(self, kind: type[Kind]) -> list[tuple[Kind, dict[str, float]]]:
         """The same with the values of their quantities - SI."""
         return [(p.effect, dict(p.values)) for p in self.effects if isinstance(p.effect, kind)]
@@ -240,19 +232,19 @@ class AxisModel:
     def native(self) -> tuple[Present, ...]:
         """Mechanisms that MuJoCo makes by itself."""
         # dry friction that changes in every step, or is carried by what bends to its level
-        scaled = bool(self.of_kind((ScalesFriction, RaisesFriction, CarriesFriction)))
-        able = [(p, p.effect) for p in self.effects if isinstance(p.effect, Native)]
-        return tuple(p for p, effect in able if effect.native(dict(p.values), scaled))
+        varies = bool(self.of_kind(Bristles)) or any(not p.effect.directed for p in self.of_kind(Friction))
+        return tuple(p for p in self.effects if p.effect.native(dict(p.values), varies))
 
     @cached_property
     def ticked(self) -> tuple[Present, ...]:
         """Mechanisms that have to act in every step."""
-        return tuple(present for present in self.of_kind(Mechanism) if present not in self.native)
+        of_mechanics = self.at_stage((Stage.COMMUTATION, Stage.MECHANICS))
+        return tuple(present for present in of_mechanics if present not in self.native)
 
     @property
     def stepped(self) -> tuple[Present, ...]:
         """Effects that change friction, inertia or torque of the axis in every step."""
-        return *self.ticked, *self.of_kind(OF_TORQUE)
+        return *self.ticked, *self.at_stage(OF_TORQUE)
 
     @property
     def coupled(self) -> bool:
@@ -262,7 +254,7 @@ class AxisModel:
     @property
     def all_native(self) -> bool:
         """Whether MuJoCo runs the whole axis and its drive by itself."""
-        return not self.ticked and not self.of_kind(IN_THE_LOOP)
+        return not self.ticked and not self.at_stage(IN_THE_LOOP)
 
     @property
     def structure(self) -> tuple[str, ...]:
@@ -273,7 +265,6 @@ class AxisModel:
         """Editable MuJoCo model with all that is native in it; `timestep` - s."""
         spec = build_spec(self.parameters, timestep)
         for count, present in enumerate(self.native):
-            assert isinstance(present.effect, Native)
             present.effect.add(spec, f"{present.name} {count}", dict(present.values), self.axis)
         return spec
 

@@ -18,7 +18,8 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.acting import DRIVE, MisreadMotion
+from bench.effects.effect import EncoderFault
+from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.stepped_effects import on_axes, per_axis, stacked
@@ -95,7 +96,7 @@ class CascadeDrive:
         self._integral: Values = 0.0
         start = per_axis(references.velocity[0])
         self._friction = None if emulated is None else _EmulatedFriction(emulated, period, start)
-        self._encoders = on_axes(axes, MisreadMotion)
+        self._encoders = on_axes(axes, EncoderFault)
 
     @classmethod
     def of(cls, drives: Sequence[FollowReferences], axes: Sequence[AxisModel]) -> CascadeDrive:
@@ -115,7 +116,7 @@ class CascadeDrive:
         the axis against its friction, whether that sits in the mechanics or in the software.
         """
         for some in self._encoders:
-            turned, moving = some.effect.seen(some.values, some.of(position), some.of(velocity))
+            turned, moving = some.effect.measured(some.values, some.of(position), some.of(velocity))
             position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
         error = self._speed_demand[k] - self._position_gain * position - velocity
         wanted = self._gain * error + self._integral + self._feedforward[k]

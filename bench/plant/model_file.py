@@ -28,7 +28,7 @@ import numpy as np
 import tomli_w
 
 from bench.axis_kind import AxisKind, axis_kind
-from bench.effects.acting import AXIS, LOAD, MOTOR
+from bench.effects.mjcf import AXIS, LOAD, MOTOR
 from bench.effects.present import Present, known_quantity, named, parse_value
 from bench.effects.signals import Winding
 from bench.errors import InputError

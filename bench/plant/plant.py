@@ -15,8 +15,9 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.acting import Friction
+from bench.effects.effect import Bristles
 from bench.effects.present import Present
+from bench.effects.torque import Friction
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
 from bench.plant.drive import Cascade, FollowReferences, References, add_pid, pid_inputs
@@ -126,7 +127,7 @@ class Plant:
         if abs(self.substeps * self.timestep / period - 1.0) > 1e-9:
             allowed = f"allowed: the control period of {period:g} s or a whole part of it"
             raise InputError("simulation.timestep", f"found {self.timestep:g} s", allowed)
-        friction = self.model.of_kind(Friction)
+        friction = self.model.of_kind((Friction, Bristles))
         if self.emulated and friction:
             allowed = 'allowed: in the rig, `[simulation] friction = "mechanics"`'
             raise InputError(f"effect {friction[0].name}", "found friction made by the drive", allowed)

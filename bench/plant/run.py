@@ -14,7 +14,7 @@ from mujoco.batch import MODEL_FIELDS, Batch
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.effects.acting import AXIS, DRIVE
+from bench.effects.mjcf import AXIS, DRIVE
 from bench.effects.signals import Number
 from bench.errors import InputError, SimulationError
 from bench.plant.drive import TORQUE, CascadeDrive, FollowReferences, References

@@ -1,4 +1,4 @@
-"""What drive and recording have of motion and current: sensors' faults are in both, filters in the recording alone."""
+"""What drive and recording have of motion and current: sensors' faults are in both, lags in the recording alone."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.axis_kind import ROTARY, AxisKind
-from bench.effects.acting import FilteredSignal, MisreadEffort, MisreadMotion
+from bench.effects.effect import EncoderFault, Lag, Stage
+from bench.effects.signals import AxisState
+from bench.effects.torque import Torque
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import References
@@ -21,39 +23,46 @@ from bench.trace.trace import Trace
 
 def reported(model: AxisModel, position: Array, velocity: Array, step: float) -> tuple[Array, Array]:
     """What sensors report of one axis' true motion, (n,) each at a constant step - s."""
-    for effect, values in model.acting(MisreadMotion):
-        position, velocity = effect.seen(values, position, velocity)
-    for effect, values in filters(model, "velocity"):
-        velocity = effect.recorded(values, velocity, step)
+    for effect, values in model.acting(EncoderFault):
+        position, velocity = effect.measured(values, position, velocity)
+    for lag, values in lags(model, "velocity"):
+        velocity = lag.lagging(values, velocity, step)
     return position, velocity
 
 
-def filters(model: AxisModel, signal: str) -> list[tuple[FilteredSignal, dict[str, float]]]:
-    """Effects with their values that filter a signal, `velocity` or `current`, before it is recorded."""
-    return [(effect, values) for effect, values in model.acting(FilteredSignal) if effect.signal == signal]
+def lags(model: AxisModel, signal: str) -> list[tuple[Lag, dict[str, float]]]:
+    """Lags of a signal, `velocity`, `current` or `torque`, with their values."""
+    return [(effect, values) for effect, values in model.acting(Lag) if effect.signal == signal]
 
 
 def true_velocity(model: AxisModel, velocity: Array, step: float) -> Array:
-    """Velocity that the encoder saw, from the reported one, (n,): filters undone."""
-    for effect, values in reversed(filters(model, "velocity")):
-        velocity = effect.unrecorded(values, velocity, step)
+    """Velocity that the encoder measured, from the reported one, (n,): lags undone."""
+    for lag, values in reversed(lags(model, "velocity")):
+        velocity = lag.leading(values, velocity, step)
     return velocity
 
 
 def true_motion(model: AxisModel, position: Array, velocity: Array) -> tuple[Array, Array]:
-    """Motion from what the encoder saw of it, (n,) each."""
-    for effect, values in reversed(model.acting(MisreadMotion)):
-        position, velocity = effect.unseen(values, position, velocity)
+    """Motion from what the encoder measured of it, (n,) each."""
+    for effect, values in reversed(model.acting(EncoderFault)):
+        position, velocity = effect.actual(values, position, velocity)
     return position, velocity
 
 
 def true_effort(model: AxisModel, effort: Array, since: float, step: float) -> Array:
-    """Effort of one axis that acted, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
+    """Effort of one axis that flowed, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
     time = since + step * np.arange(effort.size, dtype=np.float64)
-    for effect, values in reversed(filters(model, "current")):
-        effort = effect.unrecorded(values, effort, step)
-    for effect, values in model.acting(MisreadEffort):
-        effort = effect.acted(values, model.axis, effort, time)
+    for lag, values in reversed(lags(model, "current")):
+        effort = lag.leading(values, effort, step)
+    return remaining(model, Stage.CURRENT_SENSOR, effort, time)
+
+
+def remaining(model: AxisModel, stage: Stage, effort: Array, time: Array) -> Array:
+    """Effort (n,) of one axis after what effects take of it at a stage that does not depend on the motion."""
+    still = np.zeros_like(effort)
+    for effect, values in model.acting(Torque):
+        if effect.stage == stage:
+            effort = effort - effect.torque(values, model.axis, AxisState(time, still, still, effort))
     return effort
 
 
@@ -62,8 +71,8 @@ def reported_states(model: AxisModel, states: States) -> States:
     step = float(states.time[1] - states.time[0])
     position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
     torque = states.torque[:, 0]
-    for effect, values in filters(model, "current"):
-        torque = effect.recorded(values, torque, step)
+    for lag, values in lags(model, "current"):
+        torque = lag.lagging(values, torque, step)
     return replace(states, position=position[:, None], velocity=velocity[:, None], torque=torque[:, None])
 
 

@@ -3,7 +3,7 @@
 They act as at the middle of the step, which keeps the integration second order: MuJoCo's position is there already (see
 `bench.plant.axis_model`), velocity is extrapolated from the last two steps. Friction levels combine as
 
-    forward, backward = (K_0 + sum of excesses +- sum of differences/2)*product of factors, neither below zero,
+    forward, backward = (K_0 + sum of what is added in the direction)*product of factors, neither below zero,
 
 of which MuJoCo's dry friction takes the mean, so that sticking stays exact, and a torque half of the difference.
 
@@ -16,9 +16,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar, cast
 
 import mujoco
 import numpy as np
@@ -26,28 +26,15 @@ from mujoco.batch import Batch
 from numpy.typing import NDArray
 
 from bench.arrays import Array, namespace
-from bench.effects.acting import (
-    AXIS,
-    BRISTLES,
-    DirectedFriction,
-    DriveLimit,
-    FollowsLoad,
-    LoadTorque,
-    MisreadEffort,
-    RaisesFriction,
-    ResistingTorque,
-    ScalesFriction,
-    ScalesTorque,
-    TorqueLag,
-    TorqueLoss,
-    VaryingInertia,
-)
-from bench.effects.effect import Effect
+from bench.effects.effect import DriveLimit, Effect, Lag, Stage
+from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.present import Present
-from bench.effects.signals import Axis, Moment, Number, Winding
+from bench.effects.signals import Axis, AxisState, Number, Winding
+from bench.effects.torque import Friction, Inertia, Torque
 from bench.plant.axis_model import AxisModel
 
 Kind = TypeVar("Kind", bound=Effect)
+Kind_co = TypeVar("Kind_co", bound=Effect, covariant=True)
 #: Makes NumPy's numbers and arrays those of a library.
 Made = Callable[[Any], Number]
 
@@ -107,25 +94,35 @@ class SteppedEffects:
         self._step, self._none = step, made(per_axis([0.0] * len(models)))
         self._coulomb = made(per_axis([model.parameters.coulomb_friction for model in models]))
         self._bristled = made(np.squeeze(bristled)) if np.any(bristled) else None
-        self._flowing = on_axes(models, DriveLimit, made)
-        self._acting = on_axes(models, TorqueLag, made)
-        self._delivered = on_axes(models, TorqueLoss, made)
-        self._acted = on_axes(models, MisreadEffort, made)
-        self._excesses = on_axes(models, RaisesFriction, made, ticked=True)
-        self._scales = on_axes(models, ScalesFriction, made, ticked=True)
-        self._differences = on_axes(models, DirectedFriction, made, ticked=True)
-        self._loads = on_axes(models, LoadTorque, made) if on_axes(models, FollowsLoad) else []
-        self._inertia = on_axes(models, VaryingInertia, made, ticked=True)
-        self._resisting = on_axes(models, ResistingTorque, made, ticked=True)
-        self._factors = on_axes(models, ScalesTorque, made, ticked=True)
+        everything = on_axes(models, Effect, made)
+        self._flowing = of_kind(everything, DriveLimit)
+        self._lags = [some for some in of_kind(everything, Lag) if some.effect.signal == "torque"]
+        torques = of_kind(everything, Torque)
+        self._sensors, self._motor = (
+            [some for some in torques if some.effect.stage == stage]
+            for stage in (Stage.CURRENT_SENSOR, Stage.TORQUE_CONSTANT)
+        )
+        follow = any(some.effect.follows_load for some in torques)
+        self._loads = [some for some in torques if some.effect.transmitted] if follow else []
+        ticked = of_kind(on_axes(models, Effect, made, ticked=True), Torque)
+        self._commutation = [some for some in ticked if some.effect.stage == Stage.COMMUTATION]
+        self._resisting = [
+            some
+            for some in ticked
+            if some.effect.stage == Stage.MECHANICS and type(some.effect).torque is not Friction.torque
+        ]
+        self._inertia = of_kind(ticked, Inertia)
+        # stable: those that add before those that scale what is added
+        self._frictions = sorted(of_kind(ticked, Friction), key=lambda some: some.effect.scales_friction)
+        self._directed = any(some.effect.directed for some in self._frictions)
 
     def start(self, velocity: Number) -> Remembered:
         """Before a first step, of a velocity - rad/s (m/s) - (..., axes)."""
-        return Remembered(velocity, tuple(0.0 * some.of(velocity) for some in (*self._flowing, *self._acting)))
+        return Remembered(velocity, tuple(0.0 * some.of(velocity) for some in (*self._flowing, *self._lags)))
 
     def again(self, memory: Remembered, where: Number, velocity: Number) -> Remembered:
         """A memory that begins anew with a velocity - rad/s (m/s) - where a bool is true, (..., axes) each."""
-        xp, drives = namespace(velocity), (*self._flowing, *self._acting)
+        xp, drives = namespace(velocity), (*self._flowing, *self._lags)
         kept = [xp.where(some.of(where), 0.0 * one, one) for some, one in zip(drives, memory.kept, strict=True)]
         return Remembered(xp.where(where, velocity, memory.velocity), tuple(kept))
 
@@ -146,85 +143,82 @@ class SteppedEffects:
             position: MuJoCo's, half a step on - rad (m) - (..., axes).
             velocity: at the start of the step - rad/s (m/s) - (..., axes).
             demand: effort that the drive asks for - N*m (N) - (..., axes).
-            began: the recording, as `Moment` has it - s - one for all axes, or (axes,).
+            began: the recording, as `AxisState` has it - s - one for all axes, or (axes,).
         """
         middle, time = 1.5 * velocity - 0.5 * memory.velocity, time + 0.5 * self._step
-        reported, torque, kept = self._driven(memory.kept, time, middle, demand)
-        at = Moment(time, position, middle, torque, began)
-        if self._factors:
-            for some in self._factors:
-                factor = some.effect.torque_factor(some.values, some.axis, some.moment(at))
-                torque = some.with_these(torque, some.of(torque) * factor)
-            at = Moment(time, position, middle, torque, began)
+        at = AxisState(time, position, middle, demand, began, step=self._step)
+        reported, torque, kept = self._driven(memory.kept, at)
+        at = at._replace(effort=torque)
         friction, offset = self._friction(at)
         applied = self._none - offset
         for some in self._resisting:
-            resisting = some.effect.resisting_torque(some.values, some.axis, some.moment(at))
-            applied = some.with_these(applied, some.of(applied) - resisting)
+            applied = some.with_these(applied, some.of(applied) - some.torque(at))
         inertia = None
         for some in self._inertia:
             before = self._none if inertia is None else inertia
-            more = some.effect.added_inertia(some.values, some.axis, some.moment(at))
+            more, _ = some.effect.inertia(some.values, some.axis, some.of(position))
             inertia = some.with_these(before, some.of(before) + more)
         return Acts(reported, torque, applied, friction, inertia, Remembered(velocity, kept))
 
-    def _driven(
-        self, before: tuple[Number, ...], time: Number, velocity: Number, demand: Number
-    ) -> tuple[Number, Number, tuple[Number, ...]]:
+    def _driven(self, before: tuple[Number, ...], at: AxisState) -> tuple[Number, Number, tuple[Number, ...]]:
         """In the order of the signal: what flows of a demand, what that truly is, what acts, what torque it makes.
 
         Returns what is reported, the torque, and what is kept of both.
         """
-        reported, kept, memories = demand, [], iter(before)
+        reported, kept, memories = at.effort, [], iter(before)
         for some in self._flowing:
-            wanted, speed = some.of(demand), some.of(velocity)
+            wanted, speed = some.of(at.effort), some.of(at.velocity)
             flows, end = some.effect.flowing(some.values, some.axis, speed, wanted, next(memories), self._step)
             reported = some.with_these(reported, flows)
             kept.append(end)
-        torque = reported
-        for some in self._acted:
-            torque = some.with_these(torque, some.effect.acted(some.values, some.axis, some.of(torque), some.of(time)))
-        for some in self._acting:
-            acts, end = some.effect.acting(some.values, some.of(torque), next(memories), self._step)
+        torque = _less(reported, self._sensors, at)
+        for some in self._lags:
+            acts, end = some.effect.stepped(some.values, some.of(torque), next(memories), self._step)
             torque = some.with_these(torque, acts)
             kept.append(end)
-        for some in self._delivered:
-            torque = some.with_these(torque, some.effect.delivered(some.values, some.axis, some.of(torque)))
-        return reported, torque, tuple(kept)
+        return reported, _less(_less(torque, self._motor, at), self._commutation, at), tuple(kept)
 
-    def _friction(self, at: Moment) -> tuple[Number | None, Number]:
+    def _friction(self, at: AxisState) -> tuple[Number | None, Number]:
         """Mean level of dry friction over both directions, None where no effect changes it, and half the difference."""
-        if not (self._excesses or self._scales or self._differences):
+        if not self._frictions:
             return None, 0.0
-        level = self._coulomb
         if self._loads:
             load = self._none  # that the transmission carries
             for some in self._loads:
-                load = some.with_these(load, some.of(load) + some.effect.load_torque(some.values, some.moment(at)))
-            at = replace(at, load=load)
-        for some in self._excesses:
-            excess = some.effect.friction_excess(some.values, some.axis, some.moment(at))
-            level = some.with_these(level, some.of(level) + excess)
-        half = self._none
-        for some in self._differences:
-            difference = some.effect.friction_difference(some.values, some.axis)
-            half = some.with_these(half, some.of(half) + 0.5 * difference)
-        for some in self._scales:
-            factor = some.effect.friction_factor(some.values, some.axis, some.moment(at))
-            level, half = (some.with_these(each, some.of(each) * factor) for each in (level, half))
-        xp = namespace(level)
-        if not self._differences:
-            return xp.maximum(level, 0.0), 0.0
-        forward, backward = xp.maximum(level + half, 0.0), xp.maximum(level - half, 0.0)
+                load = some.with_these(load, some.of(load) + some.torque(at))
+            at = at._replace(load=load)
+        xp, forward = namespace(self._coulomb), self._level(at)
+        if not self._directed:
+            return xp.maximum(forward, 0.0), 0.0
+        backward = xp.maximum(self._level(at._replace(direction=-1.0)), 0.0)
+        forward = xp.maximum(forward, 0.0)
         mean, offset = 0.5 * (forward + backward), 0.5 * (forward - backward)
-        if self._bristled is not None:  # bristles bend to the level of their direction, and hold no torque beside
+        if self._bristled is not None:  # bristles bend to the level of their direction, and no torque acts with them
             mean = xp.where(self._bristled, xp.where(at.velocity > 0.0, forward, backward), mean)
             offset = xp.where(self._bristled, self._none, offset)
         return mean, offset
 
+    def _level(self, at: AxisState) -> Number:
+        """Level of dry friction in one direction."""
+        level = self._coulomb
+        for some in self._frictions:
+            these, state = some.of(level), some.state(at)
+            if some.effect.scales_friction:
+                state = state._replace(friction=these)
+            level = some.with_these(level, these + some.effect.friction(some.values, some.axis, state))
+        return level
+
+
+def _less(effort: Number, effects: Sequence[EffectOnAxes[Torque]], at: AxisState) -> Number:
+    """Effort that remains of one after what each of some effects takes."""
+    for some in effects:
+        reached = some.of(effort)
+        effort = some.with_these(effort, reached - some.torque(at._replace(effort=effort)))
+    return effort
+
 
 @dataclass(frozen=True)
-class EffectOnAxes(Generic[Kind]):
+class EffectOnAxes(Generic[Kind_co]):
     """One effect on some axes of several.
 
     Attributes:
@@ -236,18 +230,20 @@ class EffectOnAxes(Generic[Kind]):
         axis: constants of these axes, alike.
     """
 
-    effect: Kind
+    effect: Kind_co
     count: int
     index: Number | None
     places: Number | None
     values: dict[str, Number]
     axis: Axis
 
-    def moment(self, at: Moment) -> Moment:
-        """What these axes see of a moment."""
-        if self.index is None:
-            return at
-        return Moment(*(self.of(each) for each in (at.time, at.position, at.velocity, at.effort, at.began, at.load)))
+    def state(self, at: AxisState) -> AxisState:
+        """State of these axes."""
+        return at if self.index is None else AxisState(*(self.of(each) for each in at))
+
+    def torque(self: EffectOnAxes[Torque], at: AxisState) -> Number:
+        """Its torque on these axes, in a state of all."""
+        return self.effect.torque(self.values, self.axis, self.state(at))
 
     def of(self, values: Number) -> Number:
         """Of values of all axes, or one for all, those of these axes."""
@@ -279,6 +275,11 @@ def on_axes(
                 found.setdefault((present.name, count[present.name]), {})[row] = present
                 count[present.name] += 1
     return [_gathered(models, found[key], kind, made) for key in sorted(found)]
+
+
+def of_kind(effects: Sequence[EffectOnAxes[Effect]], kind: type[Kind]) -> list[EffectOnAxes[Kind]]:
+    """Those of a kind, in their order."""
+    return [cast(EffectOnAxes[Kind], some) for some in effects if isinstance(some.effect, kind)]
 
 
 def _gathered(

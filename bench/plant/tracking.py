@@ -23,13 +23,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.acting import Mechanism, MisreadEffort, TorqueLag, TorqueLoss
+from bench.effects.effect import Stage
 from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References, add_pid
 from bench.plant.plant import DIVERGED, ClosedLoop, PlannedInputs, Plant, States
 from bench.plant.run import run, run_loops
-from bench.plant.sensing import filters, reported, reported_states, true_effort, true_motion, true_velocity
+from bench.plant.sensing import lags, remaining, reported, reported_states, true_effort, true_motion, true_velocity
 from bench.rig.rig import Rig
 from bench.trace.motion import integrated, measured_velocity, stretches_of
 from bench.trace.trace import Trace
@@ -143,13 +143,13 @@ def _loops(
     longest = _longest_step(model.spec(LONGEST_STEP))
     substeps = math.ceil(trace.sample_period / longest * (1.0 - 1e-9))
     timestep, velocity = trace.sample_period / substeps, measured_velocity(trace)
-    spec, mechanics = model.spec(timestep), model.with_effects(model.of_kind(Mechanism))
+    spec, mechanics = model.spec(timestep), model.with_effects(model.at_stage((Stage.COMMUTATION, Stage.MECHANICS)))
     add_pid(spec, holding_cascade(held.inertia or model.parameters.inertia, timestep, bandwidth))
     try:
         compiled = spec.compile()
     except ValueError as error:
         raise SimulationError(f"MuJoCo refuses the model: {str(error).splitlines()[0]}") from error
-    every = 1 if filters(model, "velocity") else substeps  # a filter needs every step, and nothing else does
+    every = 1 if lags(model, "velocity") else substeps  # a lag needs every step, and nothing else does
     for part in stretches_of(trace) if parts is None else parts:
         ticks, start = (part.stop - part.start - 1) * substeps + 1, trace.start_of(part)
         loop = ClosedLoop(
@@ -187,10 +187,10 @@ def _holding_inputs(
 
     elapsed = timestep * np.arange(count, dtype=np.float64)
     acting = None  # at all ticks, where faults of its sensor and lags are undone
-    if model.of_kind((MisreadEffort, TorqueLag)) or filters(model, "current"):
+    if model.at_stage((Stage.CURRENT_SENSOR,)) or lags(model, "torque") or lags(model, "current"):
         acting = true_effort(model, recorded(time[0] + elapsed), float(time[0]) - trace.start_of(part), timestep)
-        for effect, values in model.acting(TorqueLag):
-            acting = effect.acting_along(values, acting, timestep)
+        for lag, values in lags(model, "torque"):
+            acting = lag.lagging(values, acting, timestep)
 
     def between(start: int, stop: int) -> Array:
         """Read between samples."""
@@ -199,8 +199,7 @@ def _holding_inputs(
         # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts
         lead = np.interp(ticks, time, position) + timestep / 2.0 * wanted
         effort = recorded(ticks) if acting is None else acting[start:stop]
-        for effect, values in model.acting(TorqueLoss):
-            effort = effect.delivered(values, model.axis, effort)
+        effort = remaining(model, Stage.TORQUE_CONSTANT, effort, ticks - trace.start_of(part))
         beside = np.zeros_like(effort) if known is None else np.interp(ticks, time, known[part])
         return np.stack([lead, wanted, effort, beside], axis=-1)
 

@@ -16,7 +16,6 @@ from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.where import Where
-from bench.effects.acting import Sensing
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.packed import pack
@@ -54,7 +53,7 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
     effects = [
         {
             "name": each.name,
-            "kind": "measurement" if isinstance(each.effect, Sensing) else "physics",
+            "kind": "measurement" if each.effect.of_measurement else "physics",
             **picked(each, "parameters", "ambiguous_with", "evidence"),
             "probability": likely.of_any((each.name, *each.ambiguous_with)),
             "alternatives": [{"name": one, "probability": p} for one, p in likely.instead_of(each.name).items()],
@@ -240,7 +239,7 @@ def called(effect: NamedEffect) -> str:
 
 
 def _sensors(found: Diagnosis) -> list[str]:
-    return [words(effect.name) for effect in found.effects if isinstance(effect.effect, Sensing)]
+    return [words(effect.name) for effect in found.effects if effect.effect.of_measurement]
 
 
 def _answers(found: Diagnosis) -> dict[str, str]:

@@ -5,36 +5,20 @@ from __future__ import annotations
 import inspect
 import math
 
-from bench.effects import acting as ways
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Effect
+from bench.effects.effect import DriveLimit, Effect, EncoderFault, Lag, Stage
 from bench.effects.present import named
+from bench.effects.torque import Friction, Inertia, Torque
 from bench.report.document import Table, table
 from bench.units import Quantity
 
-#: The method by which effects of a kind act in a simulation, and where.
-PLACES: tuple[tuple[type[Effect], str, str], ...] = (
-    (ways.Native, "add", "in the MuJoCo model"),
-    (ways.RaisesFriction, "friction_excess", "in every step, level of dry friction"),
-    (ways.ScalesFriction, "friction_factor", "in every step, level of dry friction"),
-    (ways.DirectedFriction, "friction_difference", "in every step, level of dry friction"),
-    (ways.ResistingTorque, "resisting_torque", "in every step, resisting torque"),
-    (ways.ScalesTorque, "torque_factor", "in every step, motor torque"),
-    (ways.VaryingInertia, "added_inertia", "in every step, inertia"),
-    (ways.DriveLimit, "flowing", "between demanded and reported current"),
-    (ways.TorqueLag, "acting", "between reported current and torque"),
-    (ways.TorqueLoss, "delivered", "between reported current and torque"),
-    (ways.MisreadMotion, "seen", "between motion and drive"),
-    (ways.MisreadEffort, "acted", "between the current that is read and the one that flows"),
-    (ways.FilteredSignal, "recorded", "between drive and recording"),
-)
-#: What is simulated where, in a word.
-SIMULATED = (
-    (ways.Native, "MuJoCo model"),
-    (ways.Mechanism, "every step"),
-    (ways.Electronics, "electronics"),
-    (ways.Sensing, "sensor"),
-)
+#: Where a torque acts, by its stage.
+STAGES = {
+    Stage.CURRENT_SENSOR: "between the current that is read and the one that flows",
+    Stage.TORQUE_CONSTANT: "between reported current and torque",
+    Stage.COMMUTATION: "in every step, motor torque",
+    Stage.MECHANICS: "in every step, resisting torque",
+}
 
 
 def effects_table() -> Table:
@@ -42,8 +26,7 @@ def effects_table() -> Table:
     rows = []
     for name, effect in sorted(catalogue().items()):
         quantities = ", ".join(f"{quantity.name} [{unit_of(quantity)}]" for quantity in effect.quantities)
-        where = next((place for kind, place in SIMULATED if isinstance(effect, kind)), "")
-        rows.append((name, effect.summary, quantities, where))
+        rows.append((name, effect.summary, quantities, simulated(effect)))
     return table("", ("effect", "what it is~", "quantities~", "simulated"), rows)
 
 
@@ -64,9 +47,41 @@ def effect_page(name: str) -> str:
     return "\n".join(lines)
 
 
+def simulated(effect: Effect) -> str:
+    """What simulates it, in a word."""
+    if is_native(effect):
+        return "MuJoCo model"
+    if effect.of_measurement:
+        return "sensor"
+    return "every step" if effect.stage >= Stage.COMMUTATION else "electronics"
+
+
+def is_native(effect: Effect) -> bool:
+    """Whether MuJoCo simulates it by itself, at some of its values at least."""
+    return type(effect).add is not Effect.add
+
+
 def acting(effect: Effect) -> dict[str, str]:
     """Methods through which an effect is simulated, and where each acts, in words."""
-    return {method: place for kind, method, place in PLACES if isinstance(effect, kind)}
+    found = {"add": "in the MuJoCo model"} if is_native(effect) else {}
+    if is_native(effect) and type(effect).native is Effect.native:
+        return found
+    if isinstance(effect, Friction):
+        found["friction"] = "in every step, level of dry friction"
+    if isinstance(effect, Torque) and type(effect).torque is not Friction.torque:
+        found["torque"] = STAGES[effect.stage]
+    if isinstance(effect, Inertia):
+        found["inertia"] = "in every step, inertia"
+    if isinstance(effect, DriveLimit):
+        found["flowing"] = "between demanded and reported current"
+    if isinstance(effect, EncoderFault):
+        found["measured"] = "between motion and drive"
+    if isinstance(effect, Lag):
+        torque = effect.signal == "torque"
+        found["stepped" if torque else "lagging"] = (
+            "between reported current and torque" if torque else "between drive and recording"
+        )
+    return found
 
 
 def unit_of(quantity: Quantity) -> str:

@@ -12,9 +12,8 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.diagnosis.diagnosis import Diagnosis, diagnose
-from bench.effects.acting import MisreadMotion
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Lag
+from bench.effects.effect import EncoderFault, Lag
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
@@ -100,12 +99,12 @@ def axis_of(found: Diagnosis, trace: Trace, rig: Rig) -> Axis:
 
 def _moved(trace: Trace, found: Diagnosis) -> Trace | None:
     """The recording without the errors of its sensors of motion that its diagnosis names; None without them."""
-    misread = [(one.effect, one.values) for one in found.effects if isinstance(one.effect, MisreadMotion)]
+    misread = [(one.effect, one.values) for one in found.effects if isinstance(one.effect, EncoderFault)]
     if not misread or not {"position", "velocity"} <= trace.signals.keys():
         return None
     position, velocity = trace["position"], trace["velocity"]
     for effect, values in misread:
-        position, velocity = effect.unseen(values, position, velocity)
+        position, velocity = effect.actual(values, position, velocity)
     return trace.with_signals({"position": position, "velocity": velocity}, {})
 
 

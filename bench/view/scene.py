@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.acting import AXIS, MOTOR
+from bench.effects.mjcf import AXIS, MOTOR
 from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.mjcf_file import read_spec
 from bench.rig.rig import Load

@@ -10,17 +10,17 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from bench.axis_kind import LINEAR
-from bench.effects.acting import DriveLimit, ScalesFriction, Sensing
 from bench.effects.catalogue import catalogue, simpler_forms
 from bench.effects.effect import (
     Coupling,
+    DriveLimit,
     Effect,
     Lag,
     Occasional,
 )
 from bench.effects.present import Present
 from bench.effects.signals import Scope
-from bench.effects.waves import OncePerRevolution
+from bench.effects.waves import Wave
 from bench.names import words
 from bench.plant.plant import Plant
 from bench.plant.profile_names import NAMES
@@ -29,9 +29,15 @@ from bench.report.numbers import number, share
 from bench.units import Quantity
 from signature import Signature, rig
 
+
+def turns_once(effect: Effect) -> bool:
+    """Whether it is a wave of one revolution."""
+    return isinstance(effect, Wave) and effect.once_per_revolution
+
+
 #: What is true of an effect, in words.
 DECLARED: tuple[tuple[Callable[[Effect], bool], str], ...] = (
-    (lambda effect: isinstance(effect, OncePerRevolution), "It has a meaning on rotary axes alone."),
+    (turns_once, "It has a meaning on rotary axes alone."),
     (lambda effect: effect.repeatable, "An axis may have several of it, each of another shape."),
     (
         lambda effect: isinstance(effect, Occasional),
@@ -44,7 +50,7 @@ DECLARED: tuple[tuple[Callable[[Effect], bool], str], ...] = (
     (lambda effect: isinstance(effect, Coupling), "It joins motor and load: an axis has one such effect."),
     (lambda effect: effect.external, "It may act on the load of a coupling rather than on the motor."),
     (
-        lambda effect: isinstance(effect, ScalesFriction),
+        lambda effect: effect.scales_friction,
         "It multiplies the level of dry friction, what other effects add to it included.",
     ),
 )
@@ -64,7 +70,7 @@ def page(effect: Effect, found: Signature | None) -> str:
         found: what it does to a recording; None where the bench does not know which values suit an axis.
     """
     equations, source = said(effect)
-    kind = "a fault of the measurement" if isinstance(effect, Sensing) else "physics of the axis"
+    kind = "a fault of the measurement" if effect.of_measurement else "physics of the axis"
     sections = [
         ("", f"`{effect.name}`, {kind}: {effect.summary}."),
         ("", "" if found is None else picture(effect, found)),
@@ -127,7 +133,7 @@ def parameters(effect: Effect) -> str:
     """The effect's quantities as a table."""
     lines = ["| quantity | symbol | unit | on a linear axis | values | absent at |", "|---|---|---|---|---|---|"]
     for one in effect.quantities:
-        linear = "–" if isinstance(effect, OncePerRevolution) else unit_cell(LINEAR.unit(one))
+        linear = "–" if turns_once(effect) else unit_cell(LINEAR.unit(one))
         null = "" if one.null is None else f"{one.null:g}".replace("inf", "∞")
         cells = (f"`{one.name}`", escaped(readable(one.symbol)), unit_cell(unit_of(one)), linear, bounds(one), null)
         lines.append(f"| {' | '.join(cells)} |")
@@ -149,7 +155,7 @@ def in_mujoco(effect: Effect, found: Signature | None) -> str:
     if added:
         shown = "```xml\n" + "\n".join(added) + "\n```"
         rest = ["`bench export` puts it into your own MJCF. Beside the bare axis the picture's model has", shown]
-    elif isinstance(effect, Sensing):
+    elif effect.of_measurement:
         rest = ["It is none of the motion: a model that is exported leaves it out."]
     else:
         rest = ["MuJoCo has no such part: `bench.Effects` makes it in [a loop of your own](../../export.md)."]

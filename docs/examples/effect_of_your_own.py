@@ -5,29 +5,26 @@ Offered as an entry point, `simulate` and `diagnose` know it by name: see CONTRI
 
 import bench
 from bench.assets import asset
-from bench.effects.acting import ScalesTorque
-from bench.effects.effect import Columns
+from bench.effects.effect import Stage
+from bench.effects.torque import Torque
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
 from bench.units import Quantity
 
 
-class MagnetWarming(Columns, ScalesTorque):
+class MagnetWarming(Torque):
     """Torque per ampere falls in proportion to time: M = r*t*M_motor, r - 1/s."""
 
     name = "magnet_warming"
     summary = "torque per ampere falls in proportion to time"
+    stage = Stage.TORQUE_CONSTANT
     copies_torque = True
     quantities = (Quantity("rate", "r", "1/s", lower=0.0, null=0.0),)
 
-    def columns(self, signals, shape):
-        """What the rig's constant overstates, per unit of the rate: the motor's torque times time."""
-        return [[(signals.time * signals.torque, 0)]]
-
-    def torque_factor(self, values, axis, at):
-        """What is left of the torque."""
-        return 1.0 - values["rate"] * at.time
+    def torque(self, values, axis, at):
+        """What is lost of the motor's torque, of which the column is that at a rate of one."""
+        return values["rate"] * at.time * at.effort
 
 
 rig = bench.load_rig(asset("data", "rigs", "sh30701p.toml"))

@@ -8,8 +8,8 @@ from types import ModuleType
 import pytest
 
 import bench
-from bench.effects.acting import ResistingTorque
 from bench.effects.catalogue import catalogue
+from bench.effects.torque import Torque
 from bench.trace.read import read
 from bench.units import Quantity
 from tests.diagnosis.command import started
@@ -83,14 +83,14 @@ def test_the_page_of_an_effect_says_what_the_effect_says(name):
     assert re.search(r"## In MuJoCo\n\n- ", text)
 
 
-class Creep(ResistingTorque):
+class Creep(Torque):
     """An effect of somebody else's."""
 
     name = "belt_creep"
     summary = "the belt creeps"
     quantities = (Quantity("rate", "r_c", "1/s", lower=0.0, null=0.0),)
 
-    def resisting_torque(self, values, axis, at):
+    def torque(self, values, axis, at):
         """In proportion to | the * rate."""
         return values["rate"]
 

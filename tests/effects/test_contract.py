@@ -6,21 +6,12 @@ from itertools import product
 import numpy as np
 import pytest
 
-from bench.effects.acting import AXIS as AXIS_JOINT
-from bench.effects.acting import (
-    Friction,
-    MisreadEffort,
-    Native,
-    RaisesFriction,
-    ResistingTorque,
-    ScalesFriction,
-    ScalesTorque,
-    TorqueLoss,
-)
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Columns, Coupling, Effect
+from bench.effects.effect import Bristles, Columns, Coupling, Effect
+from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
-from bench.effects.signals import Base, Moment, Signals
+from bench.effects.signals import AxisState, Base, Signals
+from bench.effects.torque import Friction, Inertia, Torque
 from bench.plant.axis_model import build_spec
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
@@ -30,19 +21,12 @@ from tests.plant.open_loop import open_loop
 #: Those of other packages are held by their own tests.
 EFFECTS = sorted(name for name, effect in catalogue().items() if type(effect).__module__.startswith("bench."))
 SHORT = Reversals(0.4).references()
-#: What methods of a step are of null values.
-NEUTRAL = (
-    (RaisesFriction, "friction_excess", 0.0),
-    (ScalesFriction, "friction_factor", 1.0),
-    (ResistingTorque, "resisting_torque", 0.0),
-    (ScalesTorque, "torque_factor", 1.0),
-)
 #: Effects that the torque balance holds as columns of raw signals.
 BALANCED = [
     name for name in EFFECTS if isinstance(catalogue()[name], Columns) and not isinstance(catalogue()[name], Coupling)
 ]
 #: Effects that only take energy from the motion.
-DISSIPATIVE = [n for n in EFFECTS if isinstance(catalogue()[n], Friction) or n == "quadratic_drag"]
+DISSIPATIVE = [n for n in EFFECTS if isinstance(catalogue()[n], Friction | Bristles) or n == "quadratic_drag"]
 
 
 def with_null(name):
@@ -65,7 +49,7 @@ def test_null_values_leave_the_trajectory_as_it_is(name):
 def test_null_values_do_nothing_where_they_act(name):
     """Not only are absent effects left out: acting on null values does nothing either."""
     effect, values, axis = catalogue()[name], dict(with_null(name).values), model().axis
-    if isinstance(effect, Native) and not isinstance(effect, Coupling):
+    if type(effect).add is not Effect.add and not isinstance(effect, Coupling):
         motions = []
         for adds in (False, True):
             spec = build_spec(PARAMETERS, PERIOD)
@@ -73,14 +57,13 @@ def test_null_values_do_nothing_where_they_act(name):
                 effect.add(spec, name, values, axis)
             motions.append(open_loop(spec, 0.5 * np.sin(np.arange(4000) / 300.0), 0.1, 3.0))
         np.testing.assert_array_equal(motions[0].velocity, motions[1].velocity)
-    at = Moment(0.1, np.array([0.3, -2.0]), np.array([5.0, -0.1]), np.array([1.0, -0.2]))
-    for kind, method, neutral in NEUTRAL:
-        if isinstance(effect, kind):
-            np.testing.assert_array_equal(getattr(effect, method)(values, axis, at), np.full(2, neutral))
-    if isinstance(effect, MisreadEffort):
-        np.testing.assert_array_equal(effect.acted(values, axis, at.effort, at.time), at.effort)
-    if isinstance(effect, TorqueLoss):
-        np.testing.assert_array_equal(effect.delivered(values, axis, at.effort), at.effort)
+    position, velocity, effort = np.array([[0.3, -2.0], [5.0, -0.1], [1.0, -0.2]])
+    at = AxisState(0.1, position, velocity, effort, load=0.3, friction=0.06, step=PERIOD)
+    found = [effect.torque(values, axis, at)] if isinstance(effect, Torque) else []
+    found += [effect.friction(values, axis, at)] if isinstance(effect, Friction) else []
+    found += effect.inertia(values, axis, position) if isinstance(effect, Inertia) else []
+    for each in found:
+        np.testing.assert_array_equal(np.broadcast_to(each, 2), np.zeros(2))
 
 
 @pytest.mark.parametrize("name", EFFECTS)

@@ -16,10 +16,10 @@ DELAY = 1e-3 / (np.e - 1.0)
 
 def test_lags_a_ramp_and_is_undone():
     time = PERIOD * np.arange(400)
-    found = EFFECT.recorded({"time_constant": 2e-3}, 100.0 * time, PERIOD)
+    found = EFFECT.lagging({"time_constant": 2e-3}, 100.0 * time, PERIOD)
     np.testing.assert_allclose(found, 100.0 * (time - 2e-3 * (1.0 - np.exp(-time / 2e-3))), atol=1e-9)
     wave = np.sin(2.0 * np.pi * 5.0 * PERIOD * np.arange(4000))
-    back = EFFECT.unrecorded(VALUES[NAME], EFFECT.recorded(VALUES[NAME], wave, PERIOD), PERIOD)
+    back = EFFECT.leading(VALUES[NAME], EFFECT.lagging(VALUES[NAME], wave, PERIOD), PERIOD)
     np.testing.assert_allclose(back[100:-1], wave[100:-1], atol=1e-3)
 
 

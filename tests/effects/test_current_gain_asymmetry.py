@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bench.effects.acting import Sensing
 from tests.effects.axes import FREE, VALUES, moved, present, signals
 from tests.effects.damaged import HIDDEN, cut_off, diagnosed, inertia_holds, names, rounded, stale, uneven
 
@@ -25,7 +24,7 @@ def test_one_per_cent_gives_no_false_name(single):
         if effect.name == NAME:
             low, high = effect.parameters["gain_difference"].ci95
             assert low < -0.01 < high
-            assert isinstance(effect.effect, Sensing)
+            assert effect.effect.of_measurement
     assert inertia_holds(found)
 
 

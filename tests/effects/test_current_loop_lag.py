@@ -23,9 +23,9 @@ def test_along_a_recording_as_step_by_step():
         reported = np.sin(omega * time)
         before, middles = reported[:1], []
         for value in reported:
-            middle, before = EFFECT.acting({"time_constant": time_constant}, np.array([value]), before, step)
+            middle, before = EFFECT.stepped({"time_constant": time_constant}, np.array([value]), before, step)
             middles.append(middle[0])
-        along = EFFECT.acting_along({"time_constant": time_constant}, reported, step)
+        along = EFFECT.lagging({"time_constant": time_constant}, reported, step)
         settled = time > 30.0 * time_constant
         phase = np.arctan(omega * time_constant)
         exact = np.cos(phase) * np.sin(omega * time - phase)

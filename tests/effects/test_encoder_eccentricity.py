@@ -14,14 +14,14 @@ VALUES = {"amplitude": 0.05, "phase": 0.9}
 
 def test_velocity_is_the_derivative_of_position():
     time = PERIOD * np.arange(4000)
-    position, velocity = EFFECT.seen(VALUES, 20.0 * time, np.full_like(time, 20.0))
+    position, velocity = EFFECT.measured(VALUES, 20.0 * time, np.full_like(time, 20.0))
     np.testing.assert_allclose(np.gradient(position, PERIOD)[1:-1], velocity[1:-1], atol=1e-4)
     assert np.ptp(velocity) > 1.9
 
 
 def test_undone():
     position, velocity = np.linspace(-20.0, 20.0, 500), np.linspace(5.0, -5.0, 500)
-    back = EFFECT.unseen(VALUES, *EFFECT.seen(VALUES, position, velocity))
+    back = EFFECT.actual(VALUES, *EFFECT.measured(VALUES, position, velocity))
     np.testing.assert_allclose(back, (position, velocity), atol=1e-12)
 
 
@@ -29,7 +29,7 @@ def proposed(stiffness):
     """The bare fit of an eccentric axis on a spring - N*m/rad -, and what is proposed beside it."""
     motion = moved(5.0, drift=3.0)
     trace = recorded(motion, lambda motion: stiffness * motion.position)
-    position, velocity = EFFECT.seen(VALUES, motion.position, motion.velocity)
+    position, velocity = EFFECT.measured(VALUES, motion.position, motion.velocity)
     wrong = {
         "position": trace["position"] + position - motion.position,
         "velocity": trace["velocity"] + velocity - motion.velocity,

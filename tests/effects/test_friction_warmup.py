@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.effects.signals import Axis, Base, Moment
+from bench.effects.signals import Axis, Base
 from tests.effects.axes import FREE, Present, moved, signals
 from tests.effects.recording import signals as recording
 
@@ -38,7 +38,6 @@ def test_what_a_fit_found_moves_as_it_was_fitted(share):
     values = effect.report(strengths, [0.3], base)
     assert values == pytest.approx({**VALUES, "viscous_share": share})
     axis = Axis(0.0, 0.0, base.viscous, base.coulomb, 0.0)
-    at = Moment(recorded.time, recorded.position, recorded.velocity, recorded.torque)
-    dry = base.coulomb * recorded.friction * (effect.friction_factor(values, axis, at) - 1.0)
-    viscous = effect.resisting_torque(values, axis, at)
+    at = recorded.state._replace(friction=base.coulomb * recorded.friction)
+    dry, viscous = effect.friction(values, axis, at), effect.torque(values, axis, at)
     np.testing.assert_allclose(np.array(strengths) @ columns, dry + viscous, atol=1e-12)

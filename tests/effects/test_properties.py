@@ -8,25 +8,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.acting import (
-    CarriesFriction,
-    FollowsLoad,
-    FrictionLevel,
-    LoadTorque,
-    Mechanism,
-    Native,
-    ScalesFriction,
-    Spring,
-)
 from bench.effects.effect import (
+    UNIT,
+    Bristles,
     Columns,
     Coupling,
     Distortion,
+    Effect,
     Lag,
     Occasional,
+    Stage,
 )
-from bench.effects.signals import Moment
-from bench.effects.waves import OncePerRevolution, Wave
+from bench.effects.torque import Friction, Inertia, Torque, unit_axis
+from bench.effects.waves import Wave
 from bench.plant.axis_model import build_spec
 from bench.trace.signals import KNOWN_TORQUE
 from bench.validation.independent.effects import KINDS
@@ -39,7 +33,6 @@ from tests.effects.recording import (
     changed,
     differ,
     every,
-    made,
     plain,
     raw,
     reported,
@@ -64,8 +57,8 @@ def test_it_copies_torque_if_its_columns_are_made_of_torque(effect):
 @every
 def test_it_scales_or_carries_friction_if_its_columns_follow_the_level_others_make(effect):
     louder = changed(effect, friction=2.0 * RECORDED.friction)
-    assert louder == isinstance(effect, (ScalesFriction, CarriesFriction))
-    if isinstance(effect, ScalesFriction):
+    assert louder == (effect.scales_friction or isinstance(effect, Bristles))
+    if effect.scales_friction:
         none, once, twice = (
             np.array(raw(effect, replace(RECORDED, friction=factor * RECORDED.friction))) for factor in (0.0, 1.0, 2.0)
         )
@@ -138,8 +131,7 @@ def test_a_wave_repeats_with_its_number_and_what_repeats_is_a_wave(effect):
 @every
 def test_it_turns_only_if_it_is_a_wave_of_a_revolution(effect):
     """A linear axis has none; a harmonic is a pitch there."""
-    once = isinstance(effect, OncePerRevolution)
-    assert once == (isinstance(effect, Wave) and not any(slot.whole for slot in effect.shapes))
+    once = isinstance(effect, Wave) and effect.once_per_revolution
     assert not (once and effect.name in KINDS and KINDS[effect.name].on_linear_axis)
     weighed = [replace(scope, signals=scope.signals | {KNOWN_TORQUE}) for scope in SCOPES if not scope.kind.turns]
     asked = [effect.sought(scope) for scope in weighed]
@@ -172,12 +164,14 @@ def test_several_of_a_repeatable_one_are_distinguished(effect):
 @every
 def test_the_level_of_friction_is_what_its_columns_make_of_dry_friction(effect):
     """Column by column: dry friction all of it, friction in proportion to speed none of it."""
-    if not isinstance(effect, FrictionLevel):
+    if not isinstance(effect, Friction):
         return
     shape, faster = shape_of(effect), replace(RECORDED, velocity=2.0 * RECORDED.velocity)
     columns, scaled = plain(effect, RECORDED), plain(effect, faster)
+    units = [[1.0] * count + [0.0] * (len(columns) - count) for count in range(len(columns) + 1)]
     for k in range(len(columns)):
-        level = effect.level(RECORDED, shape, [float(j == k) for j in range(len(columns))])
+        below, level = (effect.signed(RECORDED, unit, shape) for unit in units[k : k + 2])
+        level = level - below
         viscous = not differ([2.0 * columns[k]], [scaled[k]]) and np.any(columns[k])
         np.testing.assert_allclose(level, 0.0 * columns[k] if viscous else columns[k], atol=1e-12)
 
@@ -187,29 +181,33 @@ def test_stiffness_is_the_slope_of_its_torque_over_position(effect):
     higher, lower = (plain(effect, replace(RECORDED, position=RECORDED.position + by)) for by in (0.5, -0.5))
     slopes = [a - b for a, b in zip(higher, lower, strict=True)]
     straight = slopes and all(np.ptp(slope) < 1e-9 for slope in slopes)
-    assert isinstance(effect, Spring) == bool(straight and sum(float(s[0]) for s in slopes))
-    if isinstance(effect, Spring):
+    assert effect.spring == bool(straight and sum(float(s[0]) for s in slopes))
+    if effect.spring:
         assert [float(s[0]) for s in slopes] == pytest.approx([1.0, 0.0])  # and what its reference makes constant
 
 
 @every
-def test_a_torque_of_the_load_is_its_columns_in_a_simulation(effect):
-    """What a gear transmits is the same to the balance and to MuJoCo."""
-    if isinstance(effect, LoadTorque):
-        moment = Moment(RECORDED.time, RECORDED.position, RECORDED.velocity, RECORDED.effort)
-        found = effect.load_torque(reported(effect), moment)
-        np.testing.assert_allclose(made(effect), found * np.ones(RECORDED.time.size), atol=1e-12)
+def test_a_torque_without_memory_is_the_sum_of_its_columns(effect):
+    """It is linear in its strengths, so the same to the balance and to a step."""
+    if isinstance(effect, Torque) and not isinstance(effect, Inertia):
+        columns, shape = plain(effect, RECORDED), shape_of(effect)
+        strengths = [0.02, -0.013][: len(columns)]
+        found = effect.torque(effect.report(strengths, shape, UNIT), unit_axis(RECORDED), RECORDED.state)
+        if isinstance(effect, Friction):
+            found = found + effect.signed(RECORDED, strengths, shape)
+        np.testing.assert_allclose(np.array(strengths) @ columns, found * np.ones(RECORDED.time.size), atol=1e-12)
 
 
 @every
 def test_friction_follows_a_load_if_its_columns_do(effect):
-    assert isinstance(effect, FollowsLoad) == changed(effect, load=np.sin(RECORDED.time))
+    assert effect.follows_load == changed(effect, load=np.sin(RECORDED.time))
 
 
 @every
 def test_what_may_act_on_a_load_is_a_torque_of_motion_and_time_alone(effect):
     """A load has no motor torque, no friction here and no harmonics of a motor; a constant only twists the coupling."""
-    outer = isinstance(effect, Mechanism) and isinstance(effect, Columns) and not isinstance(effect, Coupling)
+    outer = effect.stage == Stage.MECHANICS and isinstance(effect, Columns)
+    outer = outer and not isinstance(effect, Coupling | Friction)
     if outer:
         shaken = np.random.default_rng(0).normal(size=RECORDED.time.size)
         alone = not changed(effect, torque=shaken, effort=shaken, friction=shaken, sign=shaken)
@@ -222,7 +220,7 @@ def test_what_may_act_on_a_load_is_a_torque_of_motion_and_time_alone(effect):
 @every
 def test_a_coupling_gives_the_axis_a_second_degree_of_freedom(effect):
     joints = 1
-    if isinstance(effect, Native):
+    if type(effect).add is not Effect.add:
         spec = build_spec(PARAMETERS, PERIOD)
         effect.add(spec, effect.name, {**effect.defaults(AXIS), **reported(effect)}, AXIS)
         joints = spec.compile().nv

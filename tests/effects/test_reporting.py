@@ -5,7 +5,6 @@ Asked are all effects that there are, those of other packages too where some are
 
 import numpy as np
 
-from bench.effects.acting import ConstantTorque
 from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Columns, Distortion, Effect, Lag
 from bench.effects.present import Present
@@ -63,7 +62,7 @@ def test_a_constant_torque_is_its_strength_in_every_motion(effect):
     """So that in one direction it stands for dry friction as large."""
     constant = isinstance(effect, Columns) and not effect.shapes
     constant = constant and [column.tolist() for column in plain(effect, RECORDED)] == [[1.0] * RECORDED.time.size]
-    assert isinstance(effect, ConstantTorque) == constant
+    assert effect.constant == constant
     if constant:
         values = effect.report([-0.08], (), BASE)
         assert Present.of(effect.name, values).values == tuple(values.items())

@@ -8,12 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.effects.acting import FilteredSignal, MisreadEffort, MisreadMotion, Sensing, TorqueLag
-from bench.effects.effect import Columns, Distortion, Lag
+from bench.effects.effect import Distortion, EncoderFault, Lag
 from bench.trace.signals import SI_UNITS
 from bench.trace.trace import Trace
 from tests.effects.axes import model
-from tests.effects.recording import BASE, RECORDED, STEP, every, made, reported, shape_of
+from tests.effects.recording import BASE, RECORDED, STEP, every, reported, shape_of
 
 AXIS = model().axis
 #: A sine that passes a lag: time - s -, and its angular frequency - rad/s.
@@ -33,30 +32,27 @@ def assert_lags(late, time_constant):
 @every
 def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
     shape = shape_of(effect)
-    if isinstance(effect, MisreadMotion):
+    if isinstance(effect, EncoderFault):
         values = effect.report([], shape, BASE)
-        position, velocity = effect.seen(values, RECORDED.position, RECORDED.velocity)
+        position, velocity = effect.measured(values, RECORDED.position, RECORDED.velocity)
         found = effect.see(replace(RECORDED, position=position, velocity=velocity), shape)
         np.testing.assert_allclose(found.position, RECORDED.position, atol=1e-9)
         np.testing.assert_allclose(found.velocity, RECORDED.velocity, atol=1e-7)
-        again = effect.unseen(values, position, velocity)
+        again = effect.actual(values, position, velocity)
         np.testing.assert_allclose(again, [RECORDED.position, RECORDED.velocity], atol=1e-7)
         return
     if not isinstance(effect, Distortion):
-        assert not isinstance(effect, TorqueLag)
         return
-    if isinstance(effect, FilteredSignal) and effect.signal == "velocity":
-        late = effect.recorded(effect.report([], shape, BASE), RECORDED.velocity, STEP)
+    if isinstance(effect, Lag) and effect.signal == "velocity":
+        late = effect.lagging(effect.report([], shape, BASE), RECORDED.velocity, STEP)
         summed = np.concatenate([[0.0], np.cumsum(0.5 * STEP * (late[1:] + late[:-1]))])
         off = effect.see(replace(RECORDED, velocity=late, position=summed), shape).position - RECORDED.position
         assert np.ptp(off) < 1e-3 * np.ptp(summed - RECORDED.position)
         return
     values, found = effect.report([], shape, BASE), effect.see(RECORDED, shape)
-    if isinstance(effect, MisreadEffort):
-        acts = effect.acted(values, AXIS, RECORDED.torque, RECORDED.time)
-    else:
-        undo = effect.acting_along if isinstance(effect, TorqueLag) else effect.unrecorded
-        acts = undo(values, RECORDED.torque, STEP)
+    assert isinstance(effect, Lag)
+    undo = effect.lagging if effect.signal == "torque" else effect.leading
+    acts = undo(values, RECORDED.torque, STEP)
     np.testing.assert_allclose(found.torque, acts, atol=1e-12)
 
 
@@ -70,45 +66,31 @@ def test_a_delay_is_that_of_the_simulated_signal(effect):
     twice = [lag for source in sources for lag in effect.delays([2.0 * value for value in shape], source)]
     assert twice == pytest.approx([2.0 * lag for lag in declared])
     assert any(declared)
-    passes = effect.acting_along if isinstance(effect, TorqueLag) else effect.recorded
-    assert_lags(passes(reported(effect), WAVE, TICK), max(declared))
+    assert_lags(effect.lagging(reported(effect), WAVE, TICK), max(declared))
 
 
 @every
 def test_a_lag_of_the_effort_is_that_of_the_recorded_one_and_is_undone(effect):
     """A sine comes out of the recorder as behind a first-order lag of the declared time, and back as it was."""
-    if not isinstance(effect, FilteredSignal) or effect.signal != "current":
+    if not isinstance(effect, Lag) or effect.signal != "current":
         return
-    assert isinstance(effect, Lag)
     shape = shape_of(effect)
     *motion, declared = effect.delays(shape, "velocity")
     assert motion == [0.0, 0.0]
     values = effect.report([], shape, BASE)
-    late = effect.recorded(values, WAVE, TICK)
+    late = effect.lagging(values, WAVE, TICK)
     assert_lags(late, declared)
-    np.testing.assert_allclose(effect.unrecorded(values, late, TICK)[5000:-1], WAVE[5000:-1], atol=1e-3)
-
-
-@every
-def test_what_a_sensor_of_the_current_misreads_is_what_its_columns_explain(effect):
-    """Reported less acting effort is the columns' sum, so far as it is small; nothing else of a sensor has columns."""
-    if not isinstance(effect, Sensing):
-        return
-    assert isinstance(effect, MisreadEffort) == (isinstance(effect, Columns) or shows_effort(effect))
-    if isinstance(effect, Columns):
-        values = reported(effect)
-        acts = effect.acted(values, AXIS, RECORDED.effort, RECORDED.time)
-        np.testing.assert_allclose(made(effect), RECORDED.effort - acts, atol=1e-12)
+    np.testing.assert_allclose(effect.leading(values, late, TICK)[5000:-1], WAVE[5000:-1], atol=1e-3)
 
 
 @every
 def test_it_mends_the_signal_it_filters_and_no_other(effect):
-    if not isinstance(effect, FilteredSignal):
+    if not isinstance(effect, Lag) or effect.signal == "torque":
         return
     assert effect.signal in SI_UNITS
     values = reported(effect)
     spoilt = {"position": RECORDED.position, "current": RECORDED.torque, "velocity": RECORDED.velocity}
-    spoilt[effect.signal] = effect.recorded(values, spoilt[effect.signal], STEP)
+    spoilt[effect.signal] = effect.lagging(values, spoilt[effect.signal], STEP)
     units = {"position": "rad", "velocity": "rad/s", "current": "A"}
     mended = effect.corrected(Trace(RECORDED.time, spoilt, units, "reversals"), values)
     for name, true in (("position", RECORDED.position), ("current", RECORDED.torque), ("velocity", RECORDED.velocity)):
@@ -119,7 +101,7 @@ def test_it_mends_the_signal_it_filters_and_no_other(effect):
 
 @every
 def test_what_changes_the_torque_to_be_explained_is_a_fault_of_a_sensor(effect):
-    assert isinstance(effect, Sensing) or not shows_effort(effect)
+    assert effect.of_measurement or not shows_effort(effect)
 
 
 def shows_effort(effect):

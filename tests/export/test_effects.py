@@ -6,8 +6,9 @@ import pytest
 from mujoco.batch import Batch
 
 import bench
-from bench.effects.acting import AXIS, DRIVE, MisreadMotion
 from bench.effects.catalogue import catalogue
+from bench.effects.effect import EncoderFault
+from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
 from bench.export.mjcf import ArmatureShare, armature_of, onto
 from bench.plant.drive import CascadeDrive, References, side_by_side
@@ -20,7 +21,7 @@ MOTION = Reversals(0.4, 40.0)
 TIME = PERIOD * np.arange(round(MOTION.duration / PERIOD) + 1)
 REFERENCES = References(TIME, *MOTION.at(TIME))
 #: What the drive sees is the drive's own matter, which here is written by hand.
-ACTING = [name for name in VALUES if not isinstance(catalogue()[name], MisreadMotion)]
+ACTING = [name for name in VALUES if not isinstance(catalogue()[name], EncoderFault)]
 TOGETHER = ("stribeck_friction", "friction_warmup", "torque_ripple", "presliding_friction", "current_loop_lag")
 
 

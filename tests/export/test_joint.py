@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.effects.acting import AXIS, DRIVE
+from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
 from bench.export.mjcf import (
     ArmatureShare,

@@ -54,7 +54,7 @@ COPIES = {
     "load_dependent_friction": ((), 0.3, lambda m, w, q: 1.0 - 0.3 * np.sign(w) * np.sign(m)),
     "current_gain_asymmetry": ((), 0.09, lambda m, w, q: 1.0 + 0.045 * np.sign(m)),
     "torque_constant_drift": ((), 0.02, lambda m, w, q: 1.0 + 0.02 * TIME),
-    "torque_ripple": ((3.0,), 0.3, lambda m, w, q: 1.0 - 0.3 * np.sin(3.0 * q)),
+    "torque_ripple": ((3.0,), 0.3, lambda m, w, q: 1.0 + 0.3 * np.sin(3.0 * q)),
 }
 
 

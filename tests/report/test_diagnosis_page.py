@@ -8,7 +8,6 @@ import pytest
 
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.name import NamedEffect
-from bench.effects.acting import Sensing
 from bench.effects.catalogue import catalogue
 from bench.report.diagnosis import diagnosis, verdict_sentence
 from bench.report.document import Chart, Table, TimeGraph
@@ -111,7 +110,7 @@ def test_the_verdict_fits_what_was_found(diagnosed):
 
 
 def test_a_fault_of_a_sensor_is_no_missing_physics(diagnosed):
-    sensor = next(effect for effect in catalogue().values() if isinstance(effect, Sensing))
+    sensor = next(effect for effect in catalogue().values() if effect.of_measurement)
     wrong = NamedEffect(sensor, {}, (), {})
     assert "was wrong in the measurement" in verdict_sentence(replace(diagnosed, effects=[wrong]))
 

@@ -22,7 +22,7 @@ from mujoco import sysid
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.effects.acting import AXIS, DRIVE, LOAD
+from bench.effects.mjcf import AXIS, DRIVE, LOAD
 from bench.fit.identify import identify
 from bench.plant.axis_model import AxisParameters, build_spec, disk_inertia, half_step_inertia
 from bench.rig.rig import Rig

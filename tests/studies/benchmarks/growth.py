@@ -12,9 +12,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from bench.effects.acting import FrictionLevel
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
+from bench.effects.torque import Friction
 from bench.fit.estimate import Estimate
 from bench.fit.hypothesis import Hypothesis, Layout, Term, lay_out
 from bench.fit.identify import identify
@@ -140,7 +140,7 @@ def columns(rows: Rows, names: Sequence[str]) -> Layout:
     for name in names:
         effect = kinds[name]
         shape = tuple(shape.grid[len(shape.grid) // 2] if shape.grid else SHAPE for shape in effect.shapes)
-        strengths = len(effect.columns(rows.stretches[0].signals, shape)) if isinstance(effect, FrictionLevel) else 0
+        strengths = len(effect.columns(rows.stretches[0].signals, shape)) if isinstance(effect, Friction) else 0
         terms.append(Term(effect, shape, level=(0.5,) * strengths))
     return lay_out(replace(rows, memory=Memory()), Hypothesis(tuple(terms)))
 
