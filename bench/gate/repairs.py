@@ -129,9 +129,9 @@ def _beyond_motion(trace: Trace, part: slice) -> tuple[Array, Array]:
 
 
 def _median(values: Array) -> Array:
-    from scipy.ndimage import median_filter  # 0.1 s, which commands without a fit need not pay
-
-    return median_filter(values, WINDOW, mode="nearest")
+    """Of the neighbours of each value (n,); beyond an end that value is repeated."""
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(values, WINDOW // 2, mode="edge"), WINDOW)
+    return np.partition(around, WINDOW // 2, axis=1)[:, WINDOW // 2]
 
 
 def _whole_steps(jump: Array, step: Array, limit: float, least: float) -> NDArray[np.int64]:
@@ -145,12 +145,8 @@ def _whole_steps(jump: Array, step: Array, limit: float, least: float) -> NDArra
 
 def _alone(jump: Array) -> NDArray[np.bool_]:
     """Where a jump stands out of its neighbours; a repeated sample's two stand beside each other."""
-    from scipy.ndimage import maximum_filter1d
-
-    size = np.pad(np.abs(jump), 2)
-    before, after = size[:-4], size[4:]
-    around = np.maximum(maximum_filter1d(before, 3, mode="nearest", origin=1), after)
-    return np.abs(jump) > ALONE * around
+    size = np.pad(np.abs(jump), (4, 2))
+    return np.abs(jump) > ALONE * np.maximum.reduce([size[:-6], size[1:-5], size[2:-4], size[6:]])
 
 
 def _repeated(trace: Trace) -> NDArray[np.bool_]:

@@ -22,8 +22,6 @@ from multiprocessing import Pipe
 from pathlib import Path
 from typing import Generic, Literal, TypeVar
 
-import psutil
-
 from bench.allocation import KEPT
 from bench.bounds import shown
 
@@ -154,6 +152,8 @@ def watched() -> bool:
 
 def _memory(number: int) -> int:
     """Resident memory of a process - bytes; 0 if it has died."""
+    import psutil  # 0.03 s, which reading a file need not pay
+
     try:
         return psutil.Process(number).memory_info().rss
     except psutil.NoSuchProcess:

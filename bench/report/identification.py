@@ -28,7 +28,6 @@ from bench.report.parts import checks_section, noise_band, origin, parameters_ta
 from bench.report.serial import known, picked, serialised
 from bench.rig.rig import Rig
 from bench.trace.motion import Motion, condition, motion
-from bench.trace.stream import stream
 from bench.trace.trace import Trace
 
 if TYPE_CHECKING:  # MuJoCo: 0.1 s
@@ -111,6 +110,8 @@ def moved(
     found, cutoff = [], estimate.cutoff if estimate.cutoff > 0.0 else None
     shift = rig.axis_kind.parameter(MISALIGNMENT)  # of torque against speed, which each recording has of its own
     for index, trace in enumerate(traces):
+        from bench.trace.stream import stream
+
         first = gate(read(trace) if read is not None else next(stream(trace, rig.trace)), rig).trace
         (effort, _), (own, _) = rig.net_effort(first), rig.own_effort(first)
         filtered = motion(first, effort, rig.driven(first), condition(first, own, cutoff))

@@ -10,7 +10,7 @@ import json
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from bench.errors import InputError
 from bench.names import short
@@ -20,9 +20,10 @@ from bench.structured import parse_toml
 from bench.trace.channel import ARRAYS, Recording
 from bench.trace.choose import GivenOptions
 from bench.trace.from_arrays import Arrays, recording_of
-from bench.trace.inspect import ColumnSummary, Inspection, inspect_recording
-from bench.trace.read import read_recording
 from bench.trace.trace import Trace, assemble, join
+
+if TYPE_CHECKING:
+    from bench.trace.inspect import ColumnSummary, Inspection
 
 Given: TypeAlias = Trace | str | Path | Arrays
 GivenRig: TypeAlias = Rig | str | Path | Mapping[str, Any]
@@ -83,7 +84,11 @@ def trace_of(given: Given, rig: Rig, units: Units | None = None) -> Trace:
 
 
 def _recorded(given: str | Path | Arrays, units: Units | None) -> Recording:
-    return (read_recording(given) if isinstance(given, str | Path) else recording_of(given)).stated(units)
+    if not isinstance(given, str | Path):
+        return recording_of(given).stated(units)
+    from bench.trace.read import read_recording  # the readers of all formats: 0.1 s with pyarrow
+
+    return read_recording(given).stated(units)
 
 
 def _drafted_for(every: Sequence[Given | Iterator[Trace]], units: Units | None) -> Rig:
@@ -122,6 +127,8 @@ def drafted(recording: Recording, axis: str | None = None) -> tuple[Rig, str, st
 
     InputError where the recording leaves open what only the user knows.
     """
+    from bench.trace.inspect import inspect_recording
+
     name, found = Path(recording.origin).name, inspect_recording(recording, GivenOptions(axis=axis))
     text = draft(found, axis=axis)
     rig = Rig.of(parse_toml(text, name), f"rig drafted from {name}")

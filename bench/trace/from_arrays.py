@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from bench.errors import InputError
 from bench.trace.channel import ARRAYS, Channel, Recording, split_label, with_units
 from bench.trace.choose import GivenOptions
-from bench.trace.readers.arrow import channel_of
 from bench.trace.signals import signal_of
 from bench.units import parse
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 #: Name that Arrow gives an index of pandas without one.
 _INDEX = "__index_level_0__"
@@ -61,6 +62,10 @@ def _channels(signals: Arrays, origin: str) -> Iterator[Channel]:
     if isinstance(signals, Mapping):
         found = (_channel(label, values, origin) for label, values in signals.items())
     else:
+        import pyarrow as pa  # 0.05 s
+
+        from bench.trace.readers.arrow import channel_of
+
         try:
             table = _index_named(pa.table(signals))
         except TypeError as error:
@@ -75,6 +80,8 @@ def _channels(signals: Arrays, origin: str) -> Iterator[Channel]:
 
 def _index_named(table: pa.Table) -> pa.Table:
     """The table with the index of pandas as its time, where that has no name, no whole numbers and is the only one."""
+    import pyarrow as pa
+
     names = table.column_names
     if _INDEX not in names or "time" in names or pa.types.is_integer(table.schema.field(_INDEX).type):
         return table
@@ -83,6 +90,10 @@ def _index_named(table: pa.Table) -> pa.Table:
 
 def _channel(label: str, values: ArrayLike, origin: str) -> Channel:
     """Channel of one array; a defect where it holds anything but a number for each sample."""
+    import pyarrow as pa
+
+    from bench.trace.readers.arrow import channel_of
+
     channel = Channel(*split_label(label), np.empty(0), origin)
     try:
         array = np.asarray(values)

@@ -38,6 +38,8 @@ def prepare(path: Path) -> None:
     """
     if path.suffix.lower() != ".mp4":
         raise InputError(path, f"found the ending '{path.suffix}'", "allowed: .mp4")
+    if os.environ.get("MUJOCO_GL") == "off":  # as every command begins
+        del os.environ["MUJOCO_GL"]
     if platform.system() == "Linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         os.environ.setdefault("MUJOCO_GL", "egl")
     _encoder()
