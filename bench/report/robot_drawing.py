@@ -155,13 +155,20 @@ def simplified(vertices: Array, faces: Faces, most: int) -> tuple[Array, Faces]:
     cells = float(CELLS)
     while True:
         keys = np.floor((vertices - low) / max(reach, 1e-300) * cells).astype(np.int64)
-        _, cell, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
-        kept = cell.reshape(-1)[faces]
+        _, cell, count = np.unique(_packed(keys, CELLS + 1), return_inverse=True, return_counts=True)
+        kept = cell[faces]
         kept = kept[(kept[:, 0] != kept[:, 1]) & (kept[:, 1] != kept[:, 2]) & (kept[:, 2] != kept[:, 0])]
-        _, first = np.unique(np.sort(kept, axis=1), axis=0, return_index=True)
+        _, first = np.unique(_packed(np.sort(kept, axis=1), count.size), return_index=True)
         if first.size <= most or cells < 2.0:
             break
         cells *= FEWER
-    middle = np.zeros((count.size, 3))
-    np.add.at(middle, cell.reshape(-1), vertices)
+    middle = np.column_stack([np.bincount(cell, column) for column in vertices.T])
     return middle / count[:, None], kept[np.sort(first)]
+
+
+def _packed(triples: NDArray[np.int64], end: int) -> NDArray[np.int64]:
+    """One number for each three of 0 to below an end (n, 3), in the same order: NumPy sorts rows in 12 times the time.
+
+    Cells are at most (CELLS + 1)**3, of which three take 60 bits.
+    """
+    return (triples[:, 0] * end + triples[:, 1]) * end + triples[:, 2]
