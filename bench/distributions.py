@@ -112,7 +112,7 @@ def _refined(degrees: float, tail: float, value: float) -> float:
         density = math.exp(log_scale - 0.5 * (degrees + 1.0) * math.log1p(value * value / degrees))
         step = left / (value * density) * math.log(left / tail)
         value *= math.exp(step)
-        if abs(step) <= 1e-15:
+        if abs(step) <= 1e-9:  # the next one is of its square
             break
     return value
 
