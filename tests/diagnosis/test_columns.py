@@ -10,8 +10,8 @@ from scipy.interpolate import CubicSpline
 from bench.axis_kind import INERTIA, ROTARY
 from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.where import BINS, LEAST, Coordinate, _account, _welch, bins_of, by_chance, coordinates, where
-from bench.effects.backlash import load_positions
 from bench.effects.catalogue import catalogue
+from bench.effects.dead_zone import load_positions
 from bench.effects.effect import lagged
 from bench.effects.presliding_friction import bristles
 from bench.effects.signals import Signals

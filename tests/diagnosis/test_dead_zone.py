@@ -7,8 +7,8 @@ import pytest
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import search
-from bench.effects.backlash import likeliest_shape
 from bench.effects.catalogue import catalogue
+from bench.effects.impacts import likeliest_shape
 from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
 from bench.validation.independent.effects import Backlash, CoggingTorque, LoadTorqueEvent, PositionDependentInertia

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
-from bench.effects.backlash import CONTACTS, contacts_of
 from bench.effects.catalogue import catalogue
+from bench.effects.impacts import CONTACTS, contacts_of
 from bench.effects.shape import extended, places
 from tests.effects.recording import scopes
 

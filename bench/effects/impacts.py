@@ -1,0 +1,165 @@
+"""Search of a dead zone's shape in a recording, and how far that is determined.
+
+Impacts are short and hard, and the instant of one depends on how the load left the other side of the gap: a few rows
+have large residuals whatever the shape. So shapes are compared by Cauchy's likelihood, sum(log(1 + (r/s)**2)), which
+tolerates them. A softer contact looks like a wider gap, and each impact errs by its own instant: a ridge along which
+the likelihood is rough, so that its curvature at the top does not give the covariance of the shape. How the likeliest
+shape moves does, when stretches of the recording are resampled with replacement (block bootstrap).
+Source: P. J. Huber, E. M. Ronchetti, Robust Statistics, 2nd ed., 2009, ch. 7; B. Efron, R. J. Tibshirani, An
+Introduction to the Bootstrap, 1993, sec. 8.6.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.arrays import Array, symmetric_inverse
+from bench.effects.dead_zone import dead_zone_columns
+from bench.effects.effect import Fitted
+from bench.effects.shape import FREQUENCY, extended
+from bench.effects.signals import Scope
+
+#: Factors of gap, frequency and damping within which a recording does not tell a contact from another.
+INDISTINCT = (1.01, 1.1, 1.1)
+#: Gaps in travel of the motor at the recording's RMS speed over one filter width, wide ones closer, as impacts shift by
+#: more widths of the filter the wider the gap is; contacts - rad/s; damping ratio.
+GAPS = (*np.geomspace(0.005, 0.8, 24).tolist(), *np.geomspace(0.88, 8.0, 24).tolist())
+CONTACTS = tuple(2.0 * np.pi * f for f in (40.0, 80.0, 130.0, 210.0))
+DAMPING = 0.4
+#: Offsets around a shape in each round of refinement - gap, frequency, damping - and their size at first, as factor
+#: e**offset. Refinement starts from the likeliest shapes of several contacts, and ends with the likeliest of all.
+OFFSETS = np.stack([m.ravel() for m in np.meshgrid(np.linspace(-1, 1, 5), [-1, 0, 1], [-1, 0, 1], indexing="ij")], 1)
+SPREAD = (0.12, 0.4, 0.5)
+ROUNDS, STARTS, ALL_STARTS = 6, 3, 2
+#: Residual in noise floors beyond which a row counts less and less, and reweightings of the least squares.
+SCALE, REWEIGHTED = 3.0, 6
+#: Samples of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
+TOGETHER = 4_000_000
+#: Factors e**x around a shape that are compared for its spread: of gap, frequency and damping.
+AROUND = (np.linspace(-0.12, 0.12, 7), np.linspace(-0.6, 0.6, 5), np.linspace(-0.5, 0.5, 3))
+#: Length of what is drawn: longer than a load rings after an impact - s.
+STRETCH = 0.2
+#: Standard errors that all resampled recordings share, as shares: a contact of microns hardly stands out of the noise
+#: of the motion that presses it, and rebounds run faster than samples follow, so the likeliest one is softer and damps
+#: more. Of 39 drawn axes (`python -m tests.studies.blind --only backlash`, seeds 101 and 102) the logarithms of
+#: gap, frequency and damping ratio err by .03, .50 and 1.46 by root mean square, 1.34 of it too much damping.
+SHARED = np.array([0.02, 0.45, 1.4])
+#: Resampled recordings.
+DRAWS = 400
+
+
+@dataclass(frozen=True)
+class Likely:
+    """A dead zone's shape (4,), its negative logarithm of likelihood, and the load's spring rate that comes of it."""
+
+    shape: Array
+    misfit: float
+    spring_rate: float
+
+    def around(self, factors: Array) -> Array:
+        """Shapes (k, 4) around it, with the spring that was found beside it."""
+        return np.column_stack([self.shape[:3] * factors, np.full(len(factors), self.spring_rate)])
+
+
+def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
+    """Gap, contact's frequency and damping ratio, and spring's rate beside a fit without them; see `load_positions`.
+
+    None where no shape of the first grid takes squares that promise more.
+    """
+
+    def likeliest(shapes: Array, columns: Array) -> Likely:
+        found = []
+        for shape, column in zip(shapes, columns.T, strict=True):
+            theta, unlikely = cauchy(np.vstack([fitted.columns.T, column]), fitted.effort, SCALE * fitted.floor)
+            rate, stiffness = float(shape[3]), _stiffness(fitted, theta[:-1])
+            if rate > 0.0 and theta[-1] > 0.0 and stiffness > 0.0:
+                rate = stiffness / float(theta[-1])
+            found.append(Likely(shape, float(unlikely.sum()), rate))
+        return min(found, key=lambda likely: likely.misfit)
+
+    travel = fitted.scope.rms_speed * fitted.scope.width
+    contacts = contacts_of(fitted.scope)
+    load = fitted.base.inertia - fitted.scope.rotor_inertia
+    pulled = max(_stiffness(fitted, fitted.theta), 0.0) / load if load > 0.0 else 0.0  # by a spring on the load's side
+    axes = [np.array(contacts), np.array(GAPS) * travel, np.array([DAMPING]), np.unique([0.0, pulled])]
+    grid = np.stack([m.ravel() for m in np.meshgrid(*axes, indexing="ij")], axis=1)[:, [1, 0, 2, 3]]
+    shapes = np.split(grid, len(contacts))  # each contact in steps of its own, of which a soft one needs few
+    columns = [_columns(fitted, part) for part in shapes]
+    if not promises(float(fitted.gains(np.concatenate(columns, axis=1), 1).max())):
+        return None
+    starts = sorted(map(likeliest, shapes, columns), key=lambda likely: likely.misfit)[:STARTS]
+    for level in range(1, ROUNDS):
+        offsets = np.exp(OFFSETS * np.array(SPREAD) * 0.6 ** (level - 1))
+        around = np.concatenate([start.around(offsets) for start in starts])
+        columns = np.split(_columns(fitted, around), len(starts), axis=1)
+        refined = map(likeliest, np.split(around, len(starts)), columns)
+        starts = [min(pair, key=lambda likely: likely.misfit) for pair in zip(starts, refined, strict=True)]
+        starts = sorted(starts, key=lambda likely: likely.misfit)[: STARTS if level < ALL_STARTS else 1]
+    return tuple(float(value) for value in starts[0].shape)
+
+
+def _columns(fitted: Fitted, shapes: Array) -> Array:
+    """Columns (m, k) of many shapes, few at a time where the recording is long."""
+    few = max(1, TOGETHER // max(fitted.time.size, 1))
+    parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
+    made = [fitted.seen(dead_zone_columns(fitted.stretches, part), of_motion=True) for part in parts]
+    return np.concatenate(made, axis=1)
+
+
+def contacts_of(scope: Scope) -> list[float]:
+    """Frequencies of contact that a search begins with - rad/s: one that swings faster than samples follow is rigid."""
+    fastest = np.pi / scope.sample_period
+    return sorted({min(contact, fastest) for contact in extended(CONTACTS, FREQUENCY.factor(scope))})
+
+
+def _stiffness(fitted: Fitted, theta: Array) -> float:
+    return float(theta[fitted.places(lambda effect: effect.spring)][:1].sum())
+
+
+def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:
+    """Coefficients (p,) of columns (p, m) by reweighted least squares; each row's -log of Cauchy's likelihood (m,)."""
+    size = np.sqrt(np.einsum("ij,ij->i", columns, columns) / effort.size) + 1e-300
+    columns = columns / size[:, None]
+    weight, left, theta = np.ones(effort.size), effort, np.zeros(size.size)
+    for _ in range(REWEIGHTED):
+        weighted = columns * weight
+        theta = symmetric_inverse(weighted @ columns.T, 1e-12) @ (weighted @ effort)
+        left = effort - theta @ columns
+        weight = 1.0 / (1.0 + (left / scale) ** 2)
+    return theta / size, np.log1p((left / scale) ** 2)
+
+
+def open_torque(fitted: Fitted, shape: Sequence[float]) -> Array:
+    """By how much the torque of a contact is undetermined in each row - N*m (N) per unit of load inertia - (m,).
+
+    Rows soon after an impact are: its instant depends on how the load left the other side of the gap.
+    """
+    shapes = np.tile(shape, (2 * len(INDISTINCT) + 1, 1))
+    for k, factor in enumerate(INDISTINCT):
+        shapes[2 * k + 1, k] *= factor
+        shapes[2 * k + 2, k] /= factor
+    columns = fitted.seen(dead_zone_columns(fitted.stretches, shapes), of_motion=True)
+    return np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
+
+
+def spread(fitted: Fitted, shape: Sequence[float], place: int) -> Array:
+    """Covariance of gap, frequency and damping (3, 3) of the contact whose column has a place, by resampled recordings.
+
+    Along the ridge of softer contacts and wider gaps curvature does not give it.
+    """
+    contact, spring_rate = np.array(shape[:3]), shape[3]
+    offsets = np.stack([m.ravel() for m in np.meshgrid(*AROUND, indexing="ij")], axis=1)
+    shapes = np.column_stack([contact * np.exp(offsets), np.full(len(offsets), spring_rate)])
+    others, time = fitted.columns.T.copy(), fitted.time
+    edges = np.unique(np.searchsorted(time, np.arange(time[0], time[-1], STRETCH)))
+    misfits = []
+    for column in _columns(fitted, shapes).T:
+        others[place] = column
+        misfits.append(np.add.reduceat(cauchy(others, fitted.effort, SCALE * fitted.floor)[1], edges))
+    rng = np.random.default_rng(0)
+    drawn = rng.multinomial(edges.size, np.full(edges.size, 1.0 / edges.size), size=DRAWS)
+    likeliest = offsets[np.argmin(np.stack(misfits) @ drawn.T, axis=0)]
+    step = np.array([axis[1] - axis[0] for axis in AROUND])
+    relative = likeliest.T @ likeliest / DRAWS + np.diag(step**2 / 12.0 + SHARED**2)
+    return relative * np.outer(contact, contact)
