@@ -62,20 +62,25 @@ def dependence(rows: Rows, laid: Layout, theta: Array, offset: bool = False) -> 
     columns = np.column_stack([laid.columns, *(column for _, column, _ in tested.values())])
     owners = np.array([*laid.owners, *tested], dtype=object)
     noise = np.block([[laid.noise, shared.T], [shared, own]])
-    every = equations_of(rows, replace(laid, columns=columns, owners=owners, noise=noise))
+    laid = replace(laid, columns=columns, owners=owners, noise=noise)
+    every = equations_of(rows, laid, np.array([0, rows.time.size]))
     base = [name for name in every.names if name not in tested and (offset or name in laid.owners)]
     least = rows.conditioning.effort_noise**2 / rows.conditioning.filter.stride
+    without = every.only(lambda each: each in base)
+    plain, _ = solved(without.total, without.moment.sum(axis=0), without.count * without.noise)
     found: dict[float, Dependence] = {}
     for name, (on, _, _) in tested.items():
-        without, having = (every.only(lambda each, kept=kept: each in kept) for kept in (base, [*base, name]))
-        (plain, _), (fitted, inverse) = (
-            solved(one.total, one.moment.sum(axis=0), one.count * one.noise) for one in (without, having)
-        )
-        covariance, reach = estimated(having.scores(fitted), inverse, least)
+        kept = [*base, name]
+        having = every.only(lambda each, kept=kept: each in kept)
+        fitted, inverse = solved(having.total, having.moment.sum(axis=0), having.count * having.noise)
+        saved = (without.residual_power(plain) - having.residual_power(fitted)) / having.count
+        if saved <= (LEAST * rms(laid.effort)) ** 2:
+            continue
+        scores = equations_of(rows, laid).only(lambda each, kept=kept: each in kept).scores(fitted)
+        covariance, reach = estimated(scores, inverse, least)
         at = having.names.index(name)
         size = abs(float(fitted[at])) / max(reach * float(np.sqrt(covariance[at, at])), 1e-300)
-        saved = (without.residual_power(plain) - having.residual_power(fitted)) / having.count
-        if size > CLEAR and saved > (LEAST * rms(laid.effort)) ** 2:
+        if size > CLEAR:
             moved = dict(zip(without.names, (np.delete(fitted, at) - plain).tolist(), strict=True))
             found[size] = Dependence(on, moved)
     return found[max(found)] if found else None

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from itertools import chain
 
 import numpy as np
@@ -53,12 +53,12 @@ OPEN_SHARE = 0.3
 SURE = 3.0
 #: Share of the residual from which on an effect is suggested.
 SUGGESTED = 0.25
-#: How far a search of several shapes may wander, in units of how far a grid's shape reaches: along a valley without an
-#: end, as of a coupling that damps everything, it went on until numbers overflowed.
+#: How far a search of shapes may wander, in units of how far a grid's shape reaches: along a valley without an end, as
+#: of a coupling that damps everything, it went on until numbers overflowed.
 FURTHEST = 10.0
-#: Of a search of all shapes at once: step of its derivatives, in the same units; saving at which it ends, relative; and
-#: steps at most.
-JOINT_STEP, JOINT_ENOUGH, JOINT_MOST = 1e-3, 1e-3, 8
+#: Of a search of shapes, in the same units: points to each side from which it may start, step of its derivatives and
+#: least step; saving at which it ends, relative; steps at most.
+ASIDE, SHAPE_STEP, SHAPE_NEAR, SHAPE_ENOUGH, MOST = 0.5, 1e-3, 1e-4, 1e-5, 20
 #: Numbers of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
 TOGETHER = 8_000_000
 
@@ -421,69 +421,72 @@ def by_hint(rows: Rows, hypothesis: Hypothesis) -> tuple[str, dict[str, float]]:
 
 def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:
     """Search one term's shape for the least residual, the others held; `over_noise`: the least over its noise."""
-    from scipy.optimize import fminbound, minimize  # 0.2 s, which only a named effect has to pay
-
-    term, scope = hypothesis.terms[index], rows.scope
-    free = term.searched(scope)
-    if not free:
-        return fit(rows, hypothesis)
-    if isinstance(term.effect, Distortion) and hypothesis.coupling is not None:
-        rows_tried = rows.held  # what follows behind the coupling is kept while the motion is corrected a little
-        fit(rows_tried, hypothesis)
-    else:
-        rows_tried = rows
-
-    def at(offset: Array) -> Hypothesis:
-        return hypothesis.with_term(index, term.moved(offset, scope))
-
-    def misfit(offset: Array) -> float:
-        tried = fit(rows_tried, at(offset))
-        return float(np.log(max(tried.squares / tried.noise.white**2 if over_noise else tried.squares, 1e-300)))
-
-    if len(free) == 1:
-        best = np.atleast_1d(fminbound(lambda x: misfit(np.array([x])), -1.0, 1.0, xtol=4e-3))
-        return fit(rows, at(np.asarray(best, dtype=np.float64)))
-    simplex = np.vstack([np.zeros(len(free)), 0.5 * np.eye(len(free))])
-    best = minimize(
-        misfit,
-        np.zeros(len(free)),
-        method="Nelder-Mead",
-        bounds=[(-FURTHEST, FURTHEST)] * len(free),
-        options={"initial_simplex": simplex, "xatol": 3e-3, "fatol": 1e-4, "maxfev": 120},
-    )
-    return fit(rows, at(np.asarray(best.x)))
+    return _projected(rows, hypothesis, [index], over_noise)
 
 
 def together(fitted: Fit) -> Fit:
-    """Search the shapes of all terms at once for the least residual: in a valley between two, one alone stands still.
-
-    Gauss and Newton's steps over the shapes, strengths solved for at each (G. H. Golub, V. Pereyra, SIAM Journal on
-    Numerical Analysis 10, 1973, 413-432). Shapes without a derivative, as of an instant between two rows, are held.
-    """
-    from scipy.optimize import least_squares  # 0.2 s, which only several named effects have to pay
-
-    scope, terms = fitted.scope, fitted.terms
-    ends = np.cumsum([len(term.searched(scope)) for term in terms])
-    if not ends.any():
-        return fitted
-
-    def at(offset: Array) -> Fit:
-        moved = fitted.hypothesis
-        steps = np.split(np.clip(offset, -FURTHEST, FURTHEST), ends[:-1])
-        for index, (term, own) in enumerate(zip(terms, steps, strict=True)):
-            moved = moved.with_term(index, term.moved(own, scope))
-        return fit(fitted.rows, moved)
-
-    best = least_squares(
-        lambda offset: at(offset).residual / fitted.floor,
-        np.zeros(int(ends[-1])),
-        diff_step=JOINT_STEP,
-        x_scale=1.0,
-        ftol=JOINT_ENOUGH,
-        max_nfev=JOINT_MOST,
-    )
-    found = at(best.x)
+    """Search the shapes of all terms at once: in a valley between two, a search of one stands still."""
+    found = _projected(fitted.rows, fitted.hypothesis, range(len(fitted.terms)))
     return found if found.squares < fitted.squares else fitted
+
+
+def _projected(rows: Rows, hypothesis: Hypothesis, indices: Sequence[int], over_noise: bool = False) -> Fit:
+    """Search shapes of terms, strengths solved for at each: Gauss and Newton's steps by variable projection.
+
+    G. H. Golub, V. Pereyra, SIAM Journal on Numerical Analysis 10, 1973, 413-432. The shape of one term starts from the
+    best of points to each side, as it comes from a grid. One without a derivative, as of an instant between two rows,
+    is held.
+    """
+    from scipy.optimize import least_squares  # 0.2 s, which only a named effect has to pay
+
+    scope, terms = rows.scope, [hypothesis.terms[index] for index in indices]
+    counts = [len(term.searched(scope)) for term in terms]
+    if not any(counts):
+        return fit(rows, hypothesis)
+    rows_tried = _kept_behind(rows, hypothesis, terms)
+
+    def at(offset: Array) -> Hypothesis:
+        moved = hypothesis
+        for index, term, own in zip(indices, terms, np.split(offset, np.cumsum(counts)[:-1]), strict=True):
+            moved = moved.with_term(index, term.moved(own, scope))
+        return moved
+
+    @cache
+    def residual_at(place: tuple[float, ...]) -> Array:
+        found = fit(rows_tried, at(np.array(place)))
+        return found.residual / (found.noise.white if over_noise else scale)
+
+    def residual(offset: Array) -> Array:
+        return residual_at(tuple(offset.tolist()))
+
+    def slopes(offset: Array) -> Array:
+        steps = SHAPE_STEP * np.eye(offset.size)
+        return np.stack([(residual(offset + step) - residual(offset)) / SHAPE_STEP for step in steps], axis=1)
+
+    scale, starts = fit(rows_tried, hypothesis).rms or 1.0, np.zeros((1, sum(counts)))
+    if len(terms) == 1:
+        starts = np.concatenate([starts, ASIDE * np.eye(counts[0]), -ASIDE * np.eye(counts[0])])
+    begun = min(starts, key=lambda offset: float(np.sum(residual(offset) ** 2)))
+    found = least_squares(
+        residual,
+        begun,
+        slopes,  # pyright: ignore[reportArgumentType] - its stub knows names only
+        (-FURTHEST, FURTHEST),
+        x_scale=1.0,
+        ftol=SHAPE_ENOUGH,
+        xtol=SHAPE_NEAR,
+        max_nfev=MOST,
+    )
+    return fit(rows, at(found.x))
+
+
+def _kept_behind(rows: Rows, hypothesis: Hypothesis, terms: Sequence[Term]) -> Rows:
+    """The recording in which terms are searched: what follows behind a coupling stays while they correct the motion."""
+    if hypothesis.coupling is None or not any(isinstance(term.effect, Distortion) for term in terms):
+        return rows
+    held = rows.held
+    fit(held, hypothesis)  # which makes it
+    return held
 
 
 def unbiased(fitted: Fit) -> Fit:

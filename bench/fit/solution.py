@@ -172,9 +172,9 @@ class NormalEquations:
         return max(float(self.power.sum() - 2.0 * theta @ moment + theta @ self.total @ theta), 0.0)
 
 
-def equations_of(rows: Rows, laid: Layout) -> NormalEquations:
-    """Normal equations of columns that are laid out and, behind them, a constant."""
-    edges = block_edges(rows.time, rows.conditioning.filter.width)
+def equations_of(rows: Rows, laid: Layout, edges: NDArray[np.int64] | None = None) -> NormalEquations:
+    """Normal equations of columns that are laid out and, behind them, a constant; of blocks between edges (b + 1,)."""
+    edges = block_edges(rows.time, rows.conditioning.filter.width) if edges is None else edges
     products = _products(np.vstack([laid.columns.T, np.ones(laid.effort.size), laid.effort]), edges)
     return NormalEquations(
         names=(*laid.owners, OFFSET),
