@@ -36,7 +36,7 @@ def pinned(name):
     return exact
 
 
-OPTIONAL = ("mcap", "tdms", "hdf5", "mdf", "video")
+OPTIONAL = ("mcap", "tdms", "hdf5", "mdf", "video", "lab")
 
 
 def test_lower_bounds_are_the_oldest_versions_that_are_tested():

@@ -85,12 +85,14 @@ def _ask(folder: Path, out: Path) -> None:
 
 
 def _report(data: Path | None, out: Path) -> None:
-    from bench.course.report import course_table, report_course
+    from bench.course.pdf import no_typst
+    from bench.course.report import first_numbers, report_course
     from bench.report.terminal import progress
 
     with progress("lab course") as done:
         report = report_course(data, out, done)
-    printed(course_table(report.results))
+    printed(first_numbers(report.results))
     list_files(report.files)
+    warn([missing] if (missing := no_typst()) else [])
     if not report.usable:
         raise Exit(1)

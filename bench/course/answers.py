@@ -18,7 +18,7 @@ from scipy.signal import butter, filtfilt, savgol_filter
 from bench.arrays import Array
 from bench.course.axis import KG_CM2, RPM, motor_value, torque_constant
 from bench.course.catapult import fit_path
-from bench.course.friction import DELAY, WIDTH, filtered_acceleration
+from bench.course.inertia import DELAY, WIDTH, filtered_acceleration
 from bench.course.peak_torque import decline
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.torque_constants import coefficients, datasheet_points

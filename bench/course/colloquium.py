@@ -13,7 +13,8 @@ from bench.arrays import rms
 from bench.assets import asset
 from bench.course.answers import Way, Worked
 from bench.course.axis import KG_CM2, MAINS, RPM, circuit, torque_constant
-from bench.course.friction import WIDTH, in_step
+from bench.course.friction import in_step
+from bench.course.inertia import WIDTH
 from bench.course.recordings import LabRecordings
 from bench.course.run import LabRun
 from bench.errors import BenchError, InputError

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
 
-from bench.course import catapult, corner, examples, friction, inertia, peak_torque, torque_constants
+from bench.course import catapult, corner, friction, inertia, peak_torque, torque_constants
 from bench.course.plausible import WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.recordings import LabRecordings
-from bench.course.result import EXAMPLE, TaskResult
+from bench.course.result import Equation, TaskResult
 from bench.course.tracking import tracking
 from bench.errors import BenchError
 
@@ -23,13 +23,13 @@ class Task:
         key: its number, or a name for what stands around the tasks.
         title: of it.
         do: does it; raises BenchError where something is missing.
-        needs: recordings, nothing but the rig, or the embedded example, which it is about whatever was recorded.
+        needs: recordings, or nothing but the rig.
     """
 
     key: str
     title: str
     do: Callable[[LabRecordings], TaskResult]
-    needs: Literal["recordings", "rig", "example"] = "recordings"
+    needs: Literal["recordings", "rig"] = "recordings"
 
     def result(self, recordings: LabRecordings) -> TaskResult:
         """What it comes to, or why it cannot be done."""
@@ -37,10 +37,7 @@ class Task:
             found = self.do(recordings)
         except BenchError as reason:
             found = TaskResult(reason=reason)
-        example = self.needs == "example"
-        numbers = tuple(replace(number, source=EXAMPLE) if example else number for number in found.numbers)
-        named = {"key": self.key, "title": found.title or self.title, "equation": EQUATIONS.get(self.key, "")}
-        return replace(found, numbers=numbers, example=example, **named)
+        return replace(found, key=self.key, title=found.title or self.title, equation=EQUATIONS.get(self.key))
 
 
 #: Tasks in their order, and what stands around them.
@@ -62,21 +59,25 @@ TASKS = (
     Task("11", "Why the measured corner lies higher", corner.why_the_corner_lies_higher, "rig"),
     Task("range", "Operating range", peak_torque.operating_range),
     Task("tracking", "Tracking with three load inertias in the feed-forward", tracking),
-    Task("equation", "Load torque and gearbox", examples.equation_of_motion, "example"),
-    Task("emulation", "Friction in the drive's software and in the mechanics", examples.emulated_friction, "example"),
 )
-#: Equations that they solve.
+#: Equations that they solve; those that the course's text numbers have its number.
 EQUATIONS = {
-    "1": "z = a·y² + b·y + c",
-    "2": "u'[k] = (u[k] - u[k-1])/T",
-    "3": "kT = M/I",
-    "4": "kT(Iq) = a·Iq² + b·Iq + c",
-    "5": "M = kT(Iq)·Iq",
-    "6": "M = J·α, J = J_motor + J_load",
-    "8": "α_filt[k - 2] = (ω[k] - ω[k - 4])/(4·T)",
-    "9": "M = J·α + K_fric_w·ω + K_fric_0·sgn(ω)",
-    "11": "U = R(T)·Iq + L·dIq/dt + Ke·ω",
-    "equation": "M = (J_motor + J_load/i²)·α + K_fric_w·ω + K_fric_0·sgn(ω) + M_load/i",
+    "1": Equation("z = a·y² + b·y + c", "z = a y^2 + b y + c"),
+    "2": Equation("u'[k] = (u[k] - u[k-1])/T", "dot(u)_k = (u_k - u_(k-1)) / T", "(16)"),
+    "3": Equation("kT = M/I", "k_T = M / I"),
+    "4": Equation("kT(Iq) = a·Iq² + b·Iq + c", "k_T (I_q) = a I_q^2 + b I_q + c"),
+    "5": Equation("M = kT(Iq)·Iq", "M = k_T (I_q) I_q"),
+    "6": Equation("M = J·α, J = J_motor + J_load", 'M = J alpha, quad J = J_"motor" + J_"load"'),
+    "8": Equation(
+        "α_filt[k - 2] = (ω[k] - ω[k - 4])/(4·T)",
+        'alpha_("filt", k-2) = 1/4 sum_(i=0)^3 alpha_(k-i) = (omega_k - omega_(k-4)) / (4 T)',
+    ),
+    "9": Equation(
+        "M = J·α + K_fric_w·ω + K_fric_0·sgn(ω)",
+        'M = J alpha + K_("fric,"omega) omega + K_("fric,"0) op("sgn") omega',
+        "(28)",
+    ),
+    "11": Equation("U = R(T)·Iq + L·dIq/dt + Ke·ω", "U = R(T) I_q + L (dif I_q) / (dif t) + K_e omega"),
 }
 
 

@@ -13,38 +13,27 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB
 from bench.course.axis import KG_CM2
-from bench.course.inertia import half_width, inertia_without_friction, load_inertia, require_positive, torque_chart
+from bench.course.inertia import (
+    DELAY,
+    WIDTH,
+    filtered_acceleration,
+    four_signals,
+    half_width,
+    inertia_without_friction,
+    load_inertia,
+    require_positive,
+    torque_chart,
+)
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.lab import LEAST_SPEED, least_squares
 from bench.fit.rows import ONE_WAY
-from bench.report.document import Chart
-from bench.trace.filter import LEAST_WIDTH, GaussianFilter
+from bench.trace.filter import GaussianFilter
 
-#: Backward differences that the filter takes the mean of; an even number, so that it is late by whole samples.
-WIDTH = 4
-#: The mean is late by (WIDTH - 1)/2 samples, the backward difference by half of one.
-DELAY = WIDTH // 2
-#: Width of the filter by which lateness is measured, and samples drawn to each side of an edge.
-SMOOTHING, EDGE = 5.0, 25
-#: The same where half a sample is to be seen.
-CLOSE = 5
-
-
-def filtered_acceleration(run: LabRun, width: int = WIDTH, delay: int = DELAY) -> tuple[Array, slice]:
-    """alpha_filt, the mean of `width` backward differences, and the samples of the other signals it belongs to.
-
-    It comes WIDTH/2 samples late, being (u[k] - u[k-WIDTH])/(WIDTH*T); set back by them it is in step with the rest.
-
-    Args:
-        run: that was recorded.
-        width, delay: differences in a mean, and samples by which it is set back.
-    """
-    mean = np.convolve(run.acceleration[1:], np.full(width, 1.0 / width), mode="valid")
-    first = width - delay  # the mean comes with its last difference, that of sample `width`
-    return mean, slice(first, first + mean.size)
+#: Width of the filter by which lateness is measured - samples.
+SMOOTHING = 5.0
 
 
 def in_step(run: LabRun) -> LabRun:
@@ -84,80 +73,39 @@ def lateness(run: LabRun, late: int = 0) -> float:
 
 
 def samples_that_remain(recordings: LabRecordings) -> TaskResult:
-    """Task 8: draw the remaining samples over the original ones, and alpha_filt over alpha."""
+    """Task 8: alpha_filt in step with the speed, and the remaining samples over those of task 7."""
     run = recordings.with_friction
     kept = fast_samples(run)
-    acceleration, _ = filtered_acceleration(run)
     # thousandths of a sample are rounding
     on_t_sync, as_it_comes = (round(lateness(run, late), 3) + 0.0 for late in (0, DELAY))
-    scatter, scatter_filtered = (float(np.std(np.diff(signal))) for signal in (run.acceleration, acceleration))
+    removed = run.time.size - kept.time.size
     findings = (
+        f"{kept.time.size} of {run.time.size} samples remain; {removed} are slower than 20 rad/s, where friction is no "
+        "constant, or at the ends of the filter.",
         f"alpha_filt is the mean of {WIDTH} backward differences. It is {DELAY} samples late, half a sample of "
-        "that from the difference itself; t_sync takes that back. Below 20 rad/s the sign of the speed is left "
-        "out, as friction is no constant there.",
-        f"Verified against the speed's own derivative, both smoothed by a filter that is even in time: on t_sync "
-        f"alpha_filt comes {on_t_sync:+.2f} samples after it, as the filter delivers it {as_it_comes:+.2f}. "
-        "α itself is half a sample late, as the graph of one edge shows.",
+        "that from the difference itself; t_sync takes that back.",
+        f"Against the speed's own derivative, both smoothed alike, alpha_filt on t_sync is {on_t_sync:+.2f} samples "
+        f"late, and {as_it_comes:+.2f} as the filter delivers it.",
     )
     numbers = (
         Number("samples remaining", float(kept.time.size), "1"),
-        Number("samples removed", float(run.time.size - kept.time.size), "1"),
+        Number("samples removed", float(removed), "1"),
         Number("alpha_filt late, on t_sync", on_t_sync, "samples"),
         Number("alpha_filt late, as it comes", as_it_comes, "samples"),
-        Number("step to step scatter of alpha", scatter, "rad/s²"),
-        Number("step to step scatter of alpha_filt", scatter_filtered, "rad/s²"),
     )
-    return TaskResult(findings, numbers, (_remaining_chart(run, kept), _edge_chart(run)))
-
-
-def _remaining_chart(run: LabRun, kept: LabRun) -> Chart:
-    mean, synchronous = filtered_acceleration(run)
-    signals = {
-        "speed ω / (rad/s)": (run.time, run.velocity, kept.velocity),
-        "filtered acceleration α / (rad/s²)": (run.time[synchronous], mean, kept.acceleration),
-        "torque M / (N·m)": (run.time, run.torque, kept.torque),
-    }
+    rest = (kept.velocity, backward_at(run, kept), kept.acceleration, kept.torque)
     panels = (
-        panel("t_sync / s", label, curve(time, all_, "original", "wide"), curve(kept.time, rest, "remaining", "dots"))
-        for label, (time, all_, rest) in signals.items()
+        panel(
+            "t_sync / s", label, curve(time, every, "original", "wide"), curve(kept.time, values, "remaining", "dots")
+        )
+        for (label, (time, every)), values in zip(four_signals(run).items(), rest, strict=True)
     )
-    return chart("Task 8: remaining samples over the original ones", *panels)
+    return TaskResult(findings, numbers, (chart("Task 8: remaining samples over those of task 7", *panels),))
 
 
-def steepest(run: LabRun) -> int:
-    """Sample at the steepest change of alpha_filt that has as many on either side as are drawn."""
-    return int(np.argmax(np.abs(np.diff(filtered_acceleration(run)[0]))[EDGE:-EDGE])) + EDGE + DELAY
-
-
-def _edge_chart(run: LabRun) -> Chart:
-    """alpha and alpha_filt: all of them, around the steepest change of the torque, and closer.
-
-    There the mean set back by its own delay alone, by half a sample more, and the speed's derivative in step.
-    """
-    mean, synchronous = filtered_acceleration(run)
-    alpha, edge = in_step(run).acceleration, steepest(run)
-    near, closer = slice(edge - EDGE, edge + EDGE), slice(edge - CLOSE, edge + CLOSE)
-    smooth = GaussianFilter(LEAST_WIDTH * run.sample_period, run.sample_period)
-    slope = smooth(run.velocity, 1)[0][closer.start - smooth.margin : closer.stop - smooth.margin]
-    half_later = run.time[closer] + 0.5 * run.sample_period
-    panels = {
-        "t_sync / s": (
-            curve(run.time, run.acceleration, "α", "wide"),
-            curve(run.time[synchronous], mean, "α_filt on t_sync"),
-        ),
-        "t_sync / s, one edge": (
-            curve(run.time[near], run.acceleration[near], "α, original", "wide"),
-            curve(run.time[near], alpha[near], "α_filt on t_sync", "large dots"),
-            curve(run.time[near] + DELAY * run.sample_period, alpha[near], "α_filt as it comes", "dashes"),
-        ),
-        "t_sync / s, a few samples of it": (
-            curve(run.time[closer], slope, "dω/dt in step", "wide"),
-            curve(run.time[closer], alpha[closer], f"α_filt set back by {DELAY} samples", "large dots"),
-            curve(half_later, alpha[closer], f"by {DELAY - 0.5:g}, half a sample later", "large dots"),
-        ),
-    }
-    drawn = (panel(label, "acceleration α / (rad/s²)", *curves) for label, curves in panels.items())
-    return chart("Task 8: filtered acceleration over the original one", *drawn)
+def backward_at(run: LabRun, kept: LabRun) -> Array:
+    """The backward difference of a run at the samples that remain of it - rad/s**2, (n,)."""
+    return run.acceleration[np.searchsorted(run.time, kept.time)]
 
 
 @dataclass(frozen=True)
@@ -211,6 +159,8 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
     half = found.halves
     loads, _ = load_inertia(found.inertia, half[0], recordings, true)
     findings = (
+        f"J is {found.inertia * KG_CM2:.4g} ± {half[0] * KG_CM2:.1g} kg·cm², K_fric_w {found.viscous:.3g} N·m·s/rad "
+        f"and K_fric_0 {found.coulomb:.3g} N·m.",
         f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted.time.size} samples of task 8; the theta with the least "
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
         f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, "

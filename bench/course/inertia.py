@@ -1,7 +1,7 @@
 """Tasks 2 and 5 to 7: acceleration, both recordings in SI, and inertia where nothing but inertia resists.
 
-Acceleration is the backward difference u'[k] = (u[k] - u[k-1])/T of the speed; task 2 has it of a sine, beside the
-bench's own. Inertia is the mean of M/alpha.
+Acceleration is the backward difference u'[k] = (u[k] - u[k-1])/T of the speed; task 2 has it of a sine. Inertia is the
+mean of M/alpha.
 """
 
 from __future__ import annotations
@@ -18,77 +18,86 @@ from bench.course.result import COMPUTED, RECORDING, Number, TaskResult, chart, 
 from bench.errors import InputError, UndeterminedError
 from bench.fit.lab import backward_difference, mean_inertia
 from bench.report.document import Chart
-from bench.trace.filter import GaussianFilter
 
 #: Of the sine - s.
 SAMPLE_PERIOD = 1e-3
 #: One period, as the course has it, t = 0 : 0.001 : 2*pi - s.
 DURATION = 2.0 * np.pi
-#: Width of the bench's filter, as it chooses it for the lab's recordings - s.
-WIDTH = 2.0 * SAMPLE_PERIOD
+#: Backward differences that the filter takes the mean of; an even number, so that it is late by whole samples.
+WIDTH = 4
+#: The mean is late by (WIDTH - 1)/2 samples, the backward difference by half of one.
+DELAY = WIDTH // 2
 
 
 def backward_difference_of_a_sine(recordings: LabRecordings) -> TaskResult:
-    """Differentiate sin(t) both ways and compare with cos(t).
-
-    The backward difference belongs half a sample earlier, so it errs by T/2*|u''|: 5e-4 here. The bench's filter is
-    even in time and scales a sine by exp(-(omega*width)**2/2): 2e-6 here; it cannot serve the ends, six widths long.
-    """
+    """Differentiate sin(t) and compare with cos(t): half a sample late, the difference errs by T/2*|u''|."""
     time = np.arange(0.0, DURATION, SAMPLE_PERIOD)
     backward = backward_difference(np.sin(time), SAMPLE_PERIOD)
-    smooth = GaussianFilter(WIDTH, SAMPLE_PERIOD)
-    kept = slice(smooth.margin, time.size - smooth.margin)
     error = (backward - np.cos(time))[1:]
-    error_of_bench = smooth(np.sin(time), 1)[0] - np.cos(time[kept])
-    worst, worst_of_bench = float(np.max(np.abs(error))), float(np.max(np.abs(error_of_bench)))
+    worst = float(np.max(np.abs(error)))
     findings = (
-        f"On sin(t), t = 0 : {SAMPLE_PERIOD:g} : 2π ({time.size} samples), the backward difference is at "
-        f"most {worst:.2g} away from cos(t), half a sample of delay; the bench's own derivative "
-        f"{worst_of_bench:.2g}. Its first value is 0 by definition."
+        f"The backward difference of sin(t), t = 0 : {SAMPLE_PERIOD:g} : 2π ({time.size} samples), is at most "
+        f"{worst:.2g} 1/s away from cos(t): it is half a sample late. Its first value is 0 by definition."
     )
-    numbers = (
-        Number("largest error of the backward difference", worst, "1/s", SAMPLE_PERIOD / 2.0, COMPUTED),
-        Number("largest error of the bench's derivative", worst_of_bench, "1/s", WIDTH**2 / 2.0, COMPUTED),
-    )
-    both = curve(time, np.cos(time), "cos(t)", "wide"), curve(time, backward, "backward difference")
+    numbers = (Number("largest error of the backward difference", worst, "1/s", SAMPLE_PERIOD / 2.0, COMPUTED),)
+    both = curve(time, np.cos(time), "cos(t)", "wide"), curve(time, backward, "backward difference", "dashes")
     drawn = chart(
-        "Derivative of sin(t) against cos(t)",
+        "Task 2: derivative of sin(t) against cos(t)",
         panel("time / s", "derivative / (1/s)", *both),
-        panel("time / s", "error, backward / (1/s)", curve(time[1:], error)),
-        panel("time / s", "error, bench / (1/s)", curve(time[kept], error_of_bench)),
+        panel("time / s", "error / (1/s)", curve(time[1:], error)),
     )
     return TaskResult((findings,), numbers, (drawn,))
 
 
 def signals(name: str, title: str, recordings: LabRecordings) -> TaskResult:
-    """Tasks 5 and 7: angle, speed, acceleration and torque of a recording one above the other, and how far they reach.
+    """Tasks 5 and 7: speed, acceleration, filtered acceleration and torque one above the other, and how far they reach.
 
     They are drawn of a recording that cannot be of the axis, too, for what is wrong with it to be seen.
     """
     run = recordings.run(name)
-    shown = {
-        "angle φ / rad": run.angle,
-        "speed ω / (rad/s)": run.velocity,
-        "acceleration α / (rad/s²)": run.acceleration,
-        "torque M / (N·m)": run.torque,
-    }
-    drawn = chart(title, *(panel("time / s", label, curve(run.time, values)) for label, values in shown.items()))
+    panels = (panel("time / s", label, curve(time, values)) for label, (time, values) in four_signals(run).items())
+    drawn = chart(title, *panels)
     try:
         recordings.sound(name)
     except InputError as reason:
         return TaskResult(charts=(drawn,), reason=reason)
+    speed, acceleration, torque = (float(np.abs(one).max()) for one in (run.velocity, run.acceleration, run.torque))
     findings = (
-        f"{run.time.size} samples, one each {run.sample_period * 1e3:.4g} ms, {run.time[-1]:.3g} s.",
-        "The course asks for four graphs and names three: speed, acceleration and torque. The fourth here is the "
-        "angle, which shows how far the disk turns and that the motion comes back.",
+        f"The axis reaches {speed:.4g} rad/s, {acceleration:.4g} rad/s² and {torque:.3g} N·m in {run.time[-1]:.3g} s "
+        f"({run.time.size} samples, one each {run.sample_period * 1e3:.4g} ms).",
         *run.notes,
     )
     numbers = (
-        Number("largest speed", float(np.abs(run.velocity).max()), "rad/s"),
-        Number("largest acceleration", float(np.abs(run.acceleration).max()), "rad/s²"),
-        Number("largest torque", float(np.abs(run.torque).max()), "N·m"),
+        Number("largest speed", speed, "rad/s"),
+        Number("largest acceleration", acceleration, "rad/s²"),
+        Number("largest torque", torque, "N·m"),
     )
     return TaskResult(findings, numbers, (drawn,))
+
+
+def four_signals(run: LabRun) -> dict[str, tuple[Array, Array]]:
+    """Speed, acceleration, alpha_filt on t_sync, and torque, with the times of each, by the label of its graph."""
+    mean, synchronous = filtered_acceleration(run)
+    return {
+        "speed ω / (rad/s)": (run.time, run.velocity),
+        "acceleration α / (rad/s²)": (run.time, run.acceleration),
+        "filtered α_filt / (rad/s²)": (run.time[synchronous], mean),
+        "torque M / (N·m)": (run.time, run.torque),
+    }
+
+
+def filtered_acceleration(run: LabRun, width: int = WIDTH, delay: int = DELAY) -> tuple[Array, slice]:
+    """alpha_filt, the mean of `width` backward differences, and the samples of the other signals it belongs to.
+
+    It comes WIDTH/2 samples late, being (u[k] - u[k-WIDTH])/(WIDTH*T); set back by them it is in step with the rest.
+
+    Args:
+        run: that was recorded.
+        width, delay: differences in a mean, and samples by which it is set back.
+    """
+    mean = np.convolve(run.acceleration[1:], np.full(width, 1.0 / width), mode="valid")
+    first = width - delay  # the mean comes with its last difference, that of sample `width`
+    return mean, slice(first, first + mean.size)
 
 
 def half_width(value: float, std_error: float, name: str, run: LabRun) -> float:
@@ -156,7 +165,8 @@ def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
     modelled = inertia * run.acceleration
     left = rms((run.torque - modelled)[taken])
     findings = (
-        f"{taken.sum()} of {taken.size} samples accelerate at alpha_max/4 or more; J is the mean of M/α over them.",
+        f"{taken.sum()} of {taken.size} samples accelerate at alpha_max/4 or more; J is the mean of M/α over them, "
+        f"{inertia * KG_CM2:.4g} ± {half * KG_CM2:.1g} kg·cm².",
         "In which unit? N·m over rad/s² is N·m·s² = kg·m², as the radian counts as 1; 1 kg·m² = 10⁴ kg·cm².",
         f"J·α compared with M: they leave {left:.3g} N·m RMS, {left / rms(run.torque[taken]):.1%} of the torque of "
         f"these samples. M/α itself scatters by {float(np.std(ratio) / abs(np.mean(ratio))):.1%} from sample to "

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import json
-import re
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import typst
 from matplotlib import get_data_path, rc_context
 from matplotlib.figure import Figure
 
 from bench.assets import asset
+from bench.course.course import EQUATIONS
 from bench.names import plain
 from bench.report import figures
 from bench.report.document import AnyPart, Chart, Document, Paragraph, Section, Table
@@ -22,11 +22,18 @@ TEMPLATE = asset("data", "lab", "report.typ")
 FONTS = Path(get_data_path()) / "fonts" / "ttf"
 #: Width of a diagram - inch, height of what it has on a screen, its most - inch, and size of a legend's letters, of
 #: which four entries stand beside each other - points.
-WIDTH, SHARE, MOST, LEGEND = 6.7, 0.78, 4.5, 6.2
+WIDTH, SHARE, MOST, LEGEND = 6.7, 0.64, 3.5, 6.2
 #: Sections of the first page; room above and below a row of a table that is signed, and of others - points.
 FRONT, SIGNED, ROW = 2, 9.0, 3.4
-#: An equation is a paragraph that ends in its number after an em space.
-EQUATION = re.compile(r"(.+)\u2003(\(\d+\))")
+#: An equation is a paragraph that ends in this space, and its number in the course's text, where it has one.
+EQUATION = "\u2003"
+MATHEMATICS = {equation.text: equation.mathematics for equation in EQUATIONS.values()}
+
+
+def no_typst() -> str:
+    """Why no PDF can be written, and what to do; empty where one can."""
+    missing = find_spec("typst") is None
+    return "no lab.pdf, which needs typst: pip install 'servobench[lab]', or print lab.html" if missing else ""
 
 
 def write_pdf(path: Path, document: Document) -> None:
@@ -36,6 +43,8 @@ def write_pdf(path: Path, document: Document) -> None:
 
 def compiled(document: Document, **options: Any) -> Any:  # noqa: ANN401, as many bytes as the format has files
     """The same as bytes, with options of typst.compile."""
+    import typst  # of the extra `lab`
+
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         content = typeset(document, folder)
@@ -55,7 +64,7 @@ def typeset(document: Document, folder: Path) -> dict[str, Any]:
 
 def _section(section: Section, folder: Path, place: int) -> dict[str, Any]:
     row = ROW if place else SIGNED
-    parts = [_part(block, folder / f"{section.key}-{k}.pdf", row) for k, block in enumerate(section.blocks)]
+    parts = [_part(block, folder / f"{section.key}-{k}.svg", row) for k, block in enumerate(section.blocks)]
     return {"heading": plain(section.heading), "blocks": [part for part in parts if part]}
 
 
@@ -63,7 +72,7 @@ def _part(block: AnyPart, file: Path, row: float) -> dict[str, Any]:
     """A part of a section; none of what paper does not show."""
     match block:
         case Chart():
-            with figures.quiet_about_glyphs(), rc_context({"pdf.fonttype": 42}):  # TrueType; its own Type 3 is not
+            with figures.quiet_about_glyphs(), rc_context({"svg.fonttype": "none"}):  # the text, not its outlines
                 _diagram(block).savefig(file)
             alternative = {"title": plain(block.title), "alternative": plain(block.alternative)}
             return {"kind": "chart", "file": file.name, **alternative}
@@ -74,8 +83,9 @@ def _part(block: AnyPart, file: Path, row: float) -> dict[str, Any]:
             ]
             rows = [[plain(cell) for cell in cells] for cells in block.rows]
             return {"kind": "table", "caption": plain(block.caption), "columns": columns, "rows": rows, "row": row}
-        case Paragraph() if found := EQUATION.fullmatch(block.text):
-            return {"kind": "equation", "text": plain(found[1]), "number": found[2]}
+        case Paragraph() if EQUATION in block.text:
+            text, number = block.text.split(EQUATION)
+            return {"kind": "equation", "mathematics": MATHEMATICS[text], "text": text, "number": number}
         case Paragraph():
             return {"kind": "paragraph", "text": plain(block.text)}
     return {}

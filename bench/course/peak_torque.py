@@ -67,16 +67,6 @@ class Decline:
     half: float
 
 
-def extrapolated_corner(velocity: Array, current: Array) -> float:
-    """Speed at which the line through the falling current meets the current's top - rad/s; as `decline` of a run-up.
-
-    In the circuit U = R*Iq + Ke*omega at full voltage, current falls linearly with speed, so the line is the physics
-    and the corner that of the datasheet's curve. (Torque does not: kT rises as the current falls.)
-    """
-    top, _, slope, offset = _fall(velocity, current)
-    return (top - offset) / slope
-
-
 def decline(velocity: Array, current: Array, sample_period: float) -> Decline:
     """Corner, end and lag of the fall, by least squares on the current from its top to half of it.
 
@@ -205,6 +195,7 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
         "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
         "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
         *run.notes,
+        *_speeds_findings(kept),
         *_end_findings(kept, found, measured),
     )
     curves = [
@@ -229,6 +220,17 @@ def _at_speeds(sheet: Mapping[float, float], measured: Mapping[float, float]) ->
         ("M_max measured / (N·m)", *(f"{value:.3g}" if math.isfinite(value) else "-" for value in measured.values())),
     ]
     return table("Peak torque at the speeds of the drawing", ("n / rpm", *(f"{n:.0f}>" for n in SPEEDS)), rows)
+
+
+def _speeds_findings(kept: LabRun) -> Iterator[str]:
+    """Where the samples of the slowest entry lie: the run-up passes full torque only when it already turns."""
+    near = np.abs(kept.velocity[: int(np.argmax(kept.velocity)) + 1]) <= HALF_BIN
+    if near.any():
+        speeds = kept.velocity[: near.size][near] * RPM
+        yield (
+            f"M_max at 0 rpm is the median of {near.sum()} samples from {speeds.min():.0f} to {speeds.max():.0f} rpm: "
+            "the axis turns already when the torque reaches its peak."
+        )
 
 
 def _end_findings(kept: LabRun, found: Decline, measured: Mapping[float, float]) -> Iterator[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +14,9 @@ from bench.arrays import Array
 from bench.assets import asset
 from bench.course.axis import KG_CM2
 from bench.course.course import TASKS, course
-from bench.course.pdf import write_pdf
+from bench.course.pdf import EQUATION, no_typst, write_pdf
 from bench.course.recordings import LabRecordings
-from bench.course.result import Number, TaskResult
+from bench.course.result import Number, TaskResult, thinned
 from bench.errors import InputError
 from bench.files import held, whole, write_text
 from bench.report.document import AnyPart, Chart, Document, Paragraph, Section, Table, section, table
@@ -37,12 +37,10 @@ OF_TASK_9 = {"J": 1.0 / KG_CM2, "K_fric_w": 1.0, "K_fric_0": 1.0}
 OF_THE_WINDING = ("rotor_inertia", "cold_resistance_share", "electrical_time_constant", "thermal_time_constant")
 #: So many of a task's numbers stand on the first table.
 FIRST = 3
-#: An equation is a paragraph that ends in this space and its number.
-EQUATION = "\u2003"
 #: File of who hands a report in, and rows of a sheet that is filled in by hand.
 FILE, BLANK_ROWS = "group.toml", 3
 EXAMPLE = 'group = "7", and for each member [[student]] with name = "..." and number = "..."'
-DECLARATION = "We recorded and evaluated this ourselves; the sources lie beside this report."
+DECLARATION = "We recorded and evaluated this ourselves; the sources are in the folder of this report."
 
 
 @dataclass(frozen=True)
@@ -74,9 +72,11 @@ class Cover:
             raise InputError(path, found, f"allowed: {EXAMPLE}")
         return cls(str(content.get("group", "")), tuple((str(s["name"]), str(s["number"])) for s in students))
 
-    @property
-    def sheet(self) -> Section:
-        """To be signed, with blank rows to be filled in where no students are given."""
+    def sheet(self, synthetic: bool) -> Section:
+        """To be signed, with blank rows where no students are given; a note alone for `synthetic` recordings."""
+        if synthetic:
+            note = "Synthetic recordings, simulated in MuJoCo: an example of a report, not one to hand in."
+            return section("cover", "Cover sheet", Paragraph(text=note))
         students = self.students or (("", ""),) * BLANK_ROWS
         rows = [(name or "_" * 26, number or "_" * 12, "_" * 24) for name, number in students]
         signed = table(f"Group: {self.group or '_' * 12}", ("name", "student number", "signature"), rows)
@@ -118,60 +118,67 @@ def report_course(data: Path | None, out: Path, progress: Callable[[float], None
 
 
 def write_lab_report(out: Path, document: Document, json: str, progress: Callable[[float], None]) -> list[Path]:
-    """Write results as `lab.json`, `lab.html` and `lab.pdf` into a folder, which is made; the paths."""
+    """Write results as `lab.json`, `lab.html` and, with Typst, `lab.pdf` into a folder, which is made; the paths."""
     paths = [out / f"lab.{ending}" for ending in ("json", "html", "pdf")]
     with held(out):
         write_text(paths[0], json)
         write_text(paths[1], html(document))
         progress(0.5)
-        with whole(paths[2]) as temporary:
-            write_pdf(temporary, document)
+        if no_typst():
+            paths.pop()
+        else:
+            with whole(paths[2]) as temporary:
+                write_pdf(temporary, document)
     progress(1.0)
     return paths
 
 
 def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover: Cover) -> Document:
     """The report of results on recordings, with who hands it in."""
-    done = [result for result in results if result.reason is None]
-    own, missing = sum(not result.example for result in done), len(results) - len(done)
+    missing = [result.key for result in results if result.reason is not None and result.key.isdigit()]
+    count = sum(result.key.isdigit() for result in results)
+    not_done = f"; not done: {', '.join(missing)}" if missing else ""
     origin = (
         "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
     )
     answers = {
-        "Recordings": f"{origin}; axis: {recordings.rig.name}.",
-        "Sources": "Beside every number stands where it comes from: the recording, the rig file, the motor's "
-        "datasheet, the course, an assumption, a simulation, or the embedded example.",
+        "Recordings": f"{origin}; axis: {recordings.rig.name}. Tasks 2 to 4 need none: they follow from the datasheet.",
+        "Sources": "Each number has its source: the recording, the rig file, the motor's datasheet, the course, an "
+        "assumption or a simulation.",
     }
     if recordings.synthetic:
-        answers["Truth"] = "Where a truth stands beside a number, it is the value that the axis was simulated with."
+        answers["Truth"] = "A truth next to a number is the value that the axis was simulated with."
     return Document(
         title=TITLE,
         subject=TITLE,
-        verdict=f"{own} of {len(results)} sections done on the recordings, {len(done) - own} on the embedded example, "
-        f"{missing} not done.",
+        verdict=f"{count - len(missing)} of {count} tasks done{not_done}.",
         tone="open" if missing else "sure",
         answers=answers,
-        sections=(cover.sheet, *numbered((summary(results), *map(task_section, results)))),
+        sections=(cover.sheet(recordings.synthetic), *numbered((summary(results), *map(task_section, results)))),
         origin=(f"servobench {__version__}",),
     )
 
 
 def summary(results: Sequence[TaskResult]) -> Section:
-    """What each task comes to, on one table: its first numbers, how well they are known, or that it was not done."""
+    """What each task comes to, on one table: its answer in words, and its first numbers, or that it was not done."""
     rows: list[tuple[str, ...]] = []
-    columns = ("quantity", "value>", "± (95 %)>", "unit")
     for result in (result for result in results if result.key.isdigit()):
         if result.reason is not None:
-            rows.append((result.key, result.title, "not done, see there", "", "", ""))
-        for place, number in enumerate(result.numbers[:FIRST]):
-            head = ("", "") if place else (result.key, result.title)
-            rows.append((*head, *_cells(number, columns)))
-    return section("answers", "Answers", table("The answers", ("task", "about", *columns), rows))
+            rows.append((result.key, f"{result.title}: not done, see there", ""))
+            continue
+        numbers = "; ".join(_short(number) for number in result.numbers[:FIRST])
+        rows.append((result.key, result.findings[0], numbers))
+    return section("answers", "Answers", table("The answers", ("task", "answer~", "numbers~"), rows))
+
+
+def _short(number: Number) -> str:
+    half = "" if number.half is None else f" ± {number.half:.2g}"
+    return f"{number.name} = {number.value:.5g}{half}{'' if number.unit == '1' else f' {number.unit}'}"
 
 
 def numbered(sections: Iterable[Section]) -> Iterator[Section]:
-    """Sections with their diagrams, tables and equations numbered through."""
-    figures, tables, equations = (itertools.count(1) for _ in range(3))
+    """Sections with their diagrams and tables numbered through."""
+    figures, tables = (itertools.count(1) for _ in range(2))
 
     def with_number(block: AnyPart) -> AnyPart:
         match block:
@@ -179,8 +186,6 @@ def numbered(sections: Iterable[Section]) -> Iterator[Section]:
                 return block.model_copy(update={"title": f"Figure {next(figures)}: {block.title}"})
             case Table():
                 return block.model_copy(update={"caption": f"Table {next(tables)}: {block.caption}"})
-            case Paragraph() if block.text.endswith(EQUATION):
-                return block.model_copy(update={"text": f"{block.text}({next(equations)})"})
         return block
 
     for each in sections:
@@ -193,19 +198,18 @@ def task_section(result: TaskResult) -> Section:
     heading = f"Task {result.key}: {result.title}" if result.key.isdigit() else result.title
     if result.reason is not None:
         return section(key, heading, Paragraph(text=f"Not done: {result.reason}"), *result.charts)
-    if result.example:
-        heading = f"{heading} (embedded example)"
-    solved = [f"{result.equation}{EQUATION}"] if result.equation else []
+    solved = [f"{result.equation.text}{EQUATION}{result.equation.number}"] if result.equation else []
     said = (Paragraph(text=text) for text in (*solved, *result.findings))
-    return section(key, heading, *said, *result.tables, _numbers_table(result.numbers), *result.charts)
+    numbers = _numbers_table(f"{heading}: numbers", result.numbers)
+    return section(key, heading, *said, *result.tables, numbers, *map(thinned, result.charts))
 
 
-def _numbers_table(numbers: Sequence[Number]) -> Table:
+def _numbers_table(caption: str, numbers: Sequence[Number]) -> Table:
     """Every number with its unit and source; beside it how well it is known and its truth, where any is."""
     halves = ("± (95 %)>",) if any(number.half is not None for number in numbers) else ()
     truths = ("truth>", "error>") if any(number.truth is not None for number in numbers) else ()
     columns = ("quantity", "value>", *halves, "unit", *truths, "from")
-    return table("Results", columns, [_cells(number, columns) for number in numbers])
+    return table(caption, columns, [_cells(number, columns) for number in numbers])
 
 
 def _cells(number: Number, columns: Iterable[str]) -> list[str]:
@@ -232,6 +236,11 @@ def course_table(results: Sequence[TaskResult]) -> Table:
     return table("Lab course", ("task", *columns), rows, marked)
 
 
+def first_numbers(results: Sequence[TaskResult]) -> Table:
+    """The same of the first numbers of each task, which fit on a screen."""
+    return course_table([replace(one, numbers=one.numbers[:FIRST]) for one in results if one.key.isdigit()])
+
+
 def lab_json(results: Sequence[TaskResult], axis: str) -> str:
     """Every number of a named axis with unit, truth where it is known, and source; else what is missing."""
     content = {"schema": SCHEMA, "version": __version__, "axis": axis, "tasks": [_task(result) for result in results]}
@@ -245,7 +254,6 @@ def _task(result: TaskResult) -> dict[str, object]:
     return {
         **named,
         "status": "done",
-        "embedded_example": result.example,
         "says": list(result.findings),
         "numbers": [{**vars(number), "value": known(number.value)} for number in (*result.numbers, *result.tabled)],
     }

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from bench.arrays import Array
 from bench.errors import BenchError
 from bench.report.document import COLOURS, Chart, Panel, Series, Style, Table, series
 
+#: Points that can be told apart across a diagram.
+COLUMNS = 400
 #: Where a number comes from.
-RECORDING, COMPUTED, SIMULATED, EXAMPLE = "recording", "computed", "simulated", "embedded example"
+RECORDING, COMPUTED, SIMULATED = "recording", "computed", "simulated"
 
 
 @dataclass(frozen=True)
@@ -34,15 +38,23 @@ class Number:
 
 
 @dataclass(frozen=True)
+class Equation:
+    """An equation as plain text, as mathematics of Typst, and its number in the course's text, where it has one."""
+
+    text: str
+    mathematics: str
+    number: str = ""
+
+
+@dataclass(frozen=True)
 class TaskResult:
     """What a task comes to; what it leaves out of what follows `charts`, the course fills in.
 
     Attributes:
-        findings: a paragraph each.
+        findings: a paragraph each; the first answers the task.
         numbers, charts: results and diagrams.
         key: number of the task in the course, or a name for what stands around the tasks.
         title: of the task.
-        example: whether it is about the embedded example, whatever was recorded.
         reason: why it could not be done; None where it was.
         tables: beside that of the numbers, and the numbers that stand in them.
         equation: that the task solves.
@@ -53,11 +65,10 @@ class TaskResult:
     charts: tuple[Chart, ...] = ()
     key: str = ""
     title: str = ""
-    example: bool = False
     reason: BenchError | None = None
     tables: tuple[Table, ...] = ()
     tabled: tuple[Number, ...] = ()
-    equation: str = ""
+    equation: Equation | None = None
 
     def __getitem__(self, name: str) -> Number:
         return next(number for number in (*self.numbers, *self.tabled) if number.name == name)
@@ -87,3 +98,37 @@ def chart(title: str, *panels: Panel) -> Chart:
     """Panels one above the other; those with the same x label share their x axis."""
     shown = "; ".join(f"{panel.y_label} over {panel.x_label}" for panel in panels)
     return Chart(title=title, alternative=f"{shown}.", panels=panels)
+
+
+def thinned(whole: Chart) -> Chart:
+    """A chart with as many points as can be told apart on a page: of a line the extremes of each of COLUMNS stretches.
+
+    Of dots those stay that have a place of their own, a COLUMNS-th of the width and a third of that number high.
+    """
+    panels = []
+    for one in whole.panels:
+        x = np.concatenate([np.asarray(each.x) for each in one.series] or [np.zeros(0)])
+        y = np.concatenate([np.asarray(each.y) for each in one.series] or [np.zeros(0)])
+        if one.log or x.size <= COLUMNS:
+            panels.append(one)
+            continue
+        spans = (float(np.ptp(x)) or 1.0) / COLUMNS, (float(np.ptp(y)) or 1.0) / COLUMNS * 3.0
+        thin = [_thinned(each, *spans) for each in one.series]
+        panels.append(one.model_copy(update={"series": tuple(thin)}))
+    return whole.model_copy(update={"panels": tuple(panels)})
+
+
+def _thinned(one: Series, across: float, up: float) -> Series:
+    x, y = np.asarray(one.x), np.asarray(one.y)
+    if x.size <= 2 * COLUMNS and one.style != "dots":
+        return one
+    if one.style in ("dots", "large dots", "rings"):
+        _, kept = np.unique(np.stack([np.round(x / across), np.round(y / up)]), axis=1, return_index=True)
+    elif np.all(np.diff(x) >= 0.0):
+        starts = np.flatnonzero(np.diff(np.floor((x - x[0]) / across), prepend=-1.0))
+        parts = list(zip(starts, [*starts[1:], x.size], strict=True))
+        kept = [start + place(y[start:stop]) for start, stop in parts for place in (np.argmin, np.argmax)]
+    else:
+        return one
+    kept = np.unique(kept)
+    return one.model_copy(update={"x": tuple(x[kept].tolist()), "y": tuple(y[kept].tolist())})

@@ -35,8 +35,8 @@ def at_both_points(recordings: LabRecordings) -> TaskResult:
     """kT at stall and at peak."""
     stall, peak = datasheet_points(recordings.rig)[1].tolist()
     findings = (
-        f"From stall to peak the torque per ampere falls from {stall:.4g} to {peak:.4g} N·m/A, by "
-        f"{1 - peak / stall:.0%}. The stator's iron saturates: more current no longer raises the flux in "
+        f"kT is {stall:.4g} N·m/A at stall and {peak:.4g} N·m/A at peak. It falls by "
+        f"{1 - peak / stall:.0%}, as the stator's iron saturates: more current no longer raises the flux in "
         "proportion, so torque grows more slowly than current."
     )
     constants = {"kT from stall": stall, "kT from peak": peak}
@@ -53,7 +53,7 @@ def over_current(recordings: LabRecordings) -> TaskResult:
     off = np.abs(a * points**2 + b * points + c - given)
     falls = "falls monotonically" if np.all(np.diff(fitted[1:]) < 0.0) else "does not fall everywhere"
     findings = (
-        f"Checked: slope at zero {b:g} N·m/A²; {falls} "
+        f"kT(Iq) = {a:.4g}·Iq² + {c:.4g} N·m/A with Iq in A. Slope at zero {b:g} N·m/A²; {falls} "
         f"up to {points[1]:g} A; both points of the datasheet met within {off.max():.1g} N·m/A."
     )
     source = recordings.sources("motor", *DATASHEET)
@@ -65,4 +65,4 @@ def over_current(recordings: LabRecordings) -> TaskResult:
         curve(points, given, "datasheet: stall and peak", "large dots"),
     )
     numbers = tuple(Number(name, value, unit, source=source) for name, (value, unit) in named.items())
-    return TaskResult((findings,), numbers, (chart("kT(Iq)", axes),))
+    return TaskResult((findings,), numbers, (chart("Task 4: kT(Iq)", axes),))

@@ -21,7 +21,6 @@ import numpy as np
 from bench.arrays import Array
 from bench.course.axis import circuit, motor_value, torque_constant
 from bench.course.friction import identify_friction
-from bench.course.peak_torque import extrapolated_corner
 from bench.course.recordings import LabRecordings
 from bench.effects.mjcf import DRIVE
 from bench.errors import BenchError, SimulationError
@@ -104,16 +103,6 @@ class WindingRun:
         at = started + int(np.argmax(np.abs(self.voltage[started:]) >= self.limit * (1.0 - 1e-9)))
         (before, last), (slower, speed) = self.voltage[at - 2 : at].tolist(), self.velocity[at - 2 : at].tolist()
         return speed + (self.limit - last) * (speed - slower) / (last - before)
-
-    @property
-    def line(self) -> float:
-        """Corner of the line through the fall - rad/s."""
-        return extrapolated_corner(self.velocity, self.current)
-
-    def speed_at(self, share: float) -> float:
-        """Speed at which the falling torque passes a share of its top - rad/s."""
-        last = int(np.flatnonzero(self.torque > 0.999 * self.torque.max())[-1])
-        return float(self.velocity[last + int(np.argmax(self.torque[last:] < share * self.torque.max()))])
 
 
 def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array) -> WindingRun:

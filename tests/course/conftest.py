@@ -44,8 +44,8 @@ def done(lab):
     return {task.key: task for task in lab.results}
 
 
-#: Tasks of which nothing depends on the folder but time: simulations of the embedded example, and of the winding.
-SLOW = {"equation", "emulation", "11"}
+#: Tasks of which nothing depends on the folder but time: the simulation of the winding.
+SLOW = {"11"}
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What stands around the tasks: operating range, tracking, full equation, emulated friction."""
+"""What stands around the tasks: operating range and tracking."""
 
 from pathlib import Path
 
@@ -11,7 +11,6 @@ from bench.course.tracking import track
 from bench.plant.axis_model import AxisParameters
 from bench.report.drive import in_range
 from tests.course.drawn import curves
-from tests.course.test_tasks import near
 
 #: Inertia of the lab's rotor - kg*m**2.
 ROTOR = 0.25e-4
@@ -24,34 +23,6 @@ def test_identified_inertia_tracks_best(done):
     assert rms[2] < 0.5 * rms[1]
     assert 0.1 * rms[0] < rms[1] < 0.25 * rms[0]
     assert "deg" in done["tracking"].charts[0].panels[0].y_label
-
-
-def test_load_torque_and_gearbox_are_identified(done):
-    near(done["equation"]["J"], 0.005)
-    near(done["equation"]["J_load behind the gear"], 0.005)
-    near(done["equation"]["M_load behind the gear"], 0.01)
-    near(done["equation"]["K_fric_w"], 0.03)
-    near(done["equation"]["K_fric_0"], 0.03)
-
-
-def test_emulated_friction_gives_the_same_coefficients_as_friction_in_the_mechanics(done):
-    task = done["emulation"]
-    for name, bound in (("J", 0.005), ("K_fric_w", 0.03), ("K_fric_0", 0.03)):
-        emulated, mechanics = task[f"{name}, emulated"], task[f"{name}, in the mechanics"]
-        near(emulated, bound)
-        near(mechanics, bound)
-        assert emulated.value == pytest.approx(mechanics.value, rel=2e-3)
-
-
-def test_the_current_of_the_phases_shows_no_emulated_friction(done):
-    task = done["emulation"]
-    near(task["J, emulated, phases"], 0.005)
-    for name in ("K_fric_w", "K_fric_0"):
-        for way in ("", ", bench"):
-            found = task[f"{name}, emulated, phases{way}"]
-            assert found.truth == 0.0
-            assert abs(found.value) < 0.02 * task[f"{name}, in the mechanics"].truth
-    assert "least squares finds none" in task.findings[2]
 
 
 def tracked(axis):

@@ -27,6 +27,16 @@ def backward_difference(u, period):
     return np.diff(u, prepend=u[:1]) / period
 
 
+WIDTH = 4  # differences in a mean
+DELAY = WIDTH // 2  # the mean is (WIDTH - 1)/2 samples late, the backward difference half a sample
+
+
+def filtered(alpha):
+    """alpha_filt, the mean of WIDTH backward differences, and the samples of the other signals it belongs to."""
+    mean = np.convolve(alpha[1:], np.ones(WIDTH) / WIDTH, mode="valid")
+    return mean, slice(DELAY, DELAY + mean.size)
+
+
 def torque_constant(current):
     """kT(Iq) = a*Iq**2 + b*Iq + c: flat at zero, through stall and peak."""
     i0, imax = value("continuous_stall_current"), value("peak_current")
