@@ -18,7 +18,7 @@ PAGE_MAKERS = sorted((ROOT / "docs" / "_ext").glob("*.py"))
 LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets", "allocation", "presented", "offered", "validated"},
     {"jobs"},
-    {"units", "axis_kind", "arrays", "distributions", "parameter"},
+    {"units", "axis_kind", "arrays", "parameter"},
     {"comparison"},
     {"trace"},
     {"rig"},

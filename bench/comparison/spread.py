@@ -23,9 +23,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 
 from bench.arrays import NORMAL95, Array
-from bench.distributions import chi_squared_tail, student_quantile, student_tail
 from bench.parameter import Parameter
 
 #: Probability of a false warning that recordings differ, over all quantities together.
@@ -49,7 +49,7 @@ class Excess:
     @property
     def reach(self) -> float:
         """Half width of an interval of 95 % in standard deviations, by Student's t; 0 without a degree of freedom."""
-        return student_quantile(self.degrees, 0.975) if self.degrees else 0.0
+        return float(scipy.special.stdtrit(self.degrees, 0.975)) if self.degrees else 0.0
 
     def of_joint(self, own: Sequence[Parameter]) -> float:
         """Standard error that the spread adds to a joint value, as far as averaging leaves it - the quantity's unit.
@@ -84,7 +84,7 @@ def excess(groups: Sequence[Sequence[Parameter]]) -> Excess:
         degrees += values.size - 1
     if not degrees:
         return Excess(0.0, 0, 1.0)
-    return Excess(max(0.0, (apart - degrees) / expected), degrees, chi_squared_tail(degrees, apart))
+    return Excess(max(0.0, (apart - degrees) / expected), degrees, float(scipy.special.chdtrc(degrees, apart)))
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def between(found: Sequence[Parameter]) -> Between:
     values = np.array([each.value for each in found])
     spread, mean = float(np.std(values, ddof=1)), float(np.mean(values))
     own = float(np.sqrt(np.mean([each.half_width**2 for each in found])))
-    reach = max(student_quantile(values.size - 1, 0.975) * spread, own)
+    reach = max(float(scipy.special.stdtrit(values.size - 1, 0.975)) * spread, own)
     return Between(spread, next_interval(mean, reach, values.size))
 
 
@@ -176,9 +176,9 @@ def change_point(values: Array, errors: Array) -> ChangePoint | None:
         place=best + 1,
         before=float(centre + means[0, best]),
         after=float(centre + means[1, best]),
-        reach=student_quantile(n - 2, 0.975) * float(error[best]),
+        reach=float(scipy.special.stdtrit(n - 2, 0.975) * error[best]),
         size=float(sizes[best]),
-        chance=min(1.0, (n - 1) * 2.0 * student_tail(n - 2, float(sizes[best]))),
+        chance=min(1.0, (n - 1) * 2.0 * float(scipy.special.stdtr(n - 2, -sizes[best]))),
     )
 
 
@@ -190,7 +190,7 @@ def expected(values: Array, errors: Array, *steps: int) -> list[tuple[float, flo
     sides = np.split(values, steps)
     degrees = values.size - len(sides)
     pooled = sum(float(((side - side.mean()) ** 2).sum()) for side in sides) / degrees
-    student = student_quantile(degrees, 0.975)
+    student = float(scipy.special.stdtrit(degrees, 0.975))
 
     def interval(side: Array, own: Array) -> tuple[float, float]:
         reach = student * max(pooled, float(np.mean(own**2))) ** 0.5

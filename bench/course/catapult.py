@@ -9,12 +9,12 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+from scipy.special import stdtrit
 
 from bench.arrays import Array
 from bench.assets import asset
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, chart, curve, panel
-from bench.distributions import student_quantile
 from bench.errors import SimulationError, UndeterminedError
 from bench.files import write_text
 from bench.plant.plant import DIVERGED
@@ -153,7 +153,7 @@ def _halves(flights: Sequence[Array], theta: Array) -> list[float | None]:
     if len(flights) < 2 or min(map(len, flights)) < theta.size:
         return [None] * theta.size
     own = np.array([fit_path(*flight.T)[0] for flight in flights])
-    spread = student_quantile(len(own) - 1, 0.975) * own.std(axis=0, ddof=1) / math.sqrt(len(own))
+    spread = stdtrit(len(own) - 1, 0.975) * own.std(axis=0, ddof=1) / math.sqrt(len(own))
     return (spread + np.abs(own.mean(axis=0) - theta)).tolist()
 
 

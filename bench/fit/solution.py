@@ -30,11 +30,11 @@ from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
-from bench.distributions import student_quantile
 from bench.effects.effect import Columns, Coupling
 from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, frequencies, lay_out
 from bench.fit.rows import ONE_WAY, Rows
@@ -424,7 +424,7 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
     covariance = inverse @ middle @ inverse * independent / degrees
     variance, floor = np.diag(covariance), least * np.diag(inverse)
     widened = np.sqrt(np.where(variance > 0.0, np.maximum(variance, floor) / np.maximum(variance, 1e-300), 1.0))
-    return covariance * np.outer(widened, widened), student_quantile(degrees, 0.975)
+    return covariance * np.outer(widened, widened), float(scipy.special.stdtrit(degrees, 0.975))
 
 
 def misfit(columns: Array, residual: Array, floor: float) -> Array:
@@ -477,7 +477,7 @@ def _without_each(table: Array, edges: NDArray[np.intp]) -> Array:
     free = np.einsum("gii->gi", grams) <= MOST * np.einsum("gii->i", grams)
     others = (grams.sum(axis=0) - grams) * (free[:, :, None] & free[:, None, :])
     moved = np.einsum("gij,gj->gi", symmetric_inverse(others + np.eye(free.shape[1]) * ~free[:, None], 1e-10), scores)
-    return student_quantile(count - 1, 0.975) * np.sqrt((count - 1) / count * ((free * moved) ** 2).sum(axis=0))
+    return scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * ((free * moved) ** 2).sum(axis=0))
 
 
 def long_run_covariance(scores: Array) -> tuple[Array, float]:

@@ -20,10 +20,9 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import linalg
+from scipy import linalg, special
 
 from bench.arrays import Array, rms, symmetric_inverse
-from bench.distributions import student_quantile
 from bench.effects.signals import Signals
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.hypothesis import BASE, lay_out, plain
@@ -159,7 +158,7 @@ def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
     covariance = inverse @ (summed.T @ summed) @ inverse * stretches / degrees
     power = np.einsum("jkk->k", reduced[:, :-1, :-1])
     silent = power <= SILENT * power.max()
-    reach, left = student_quantile(degrees, 0.975), float(np.log(lefts).sum())
+    reach, left = float(special.stdtrit(degrees, 0.975)), float(np.log(lefts).sum())
     return Common(strengths, np.sqrt(np.diag(covariance)), reach, left, silent)
 
 
