@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -31,7 +32,7 @@ SCRIPTS = asset("data", "lab", "scripts")
 #: Scripts that others import.
 SHARED = ("course", "fast_samples")
 #: The same for MATLAB and Octave: the task that has to be done for each; all others are functions that they call.
-MATLAB = {"catapult": "1", "JLoad_no_Friction": "6", "JLoad_and_Friction": "9", "SpeedTorqueLimit": "10"}
+MATLAB = {"catapult": "1", "JLoad_no_Friction": "6", "JLoad_with_Friction": "9", "SpeedTorqueLimit": "10"}
 #: Factors to SI of what task 11 takes from task 9, by the names there.
 OF_TASK_9 = {"J": 1.0 / KG_CM2, "K_fric_w": 1.0, "K_fric_0": 1.0}
 OF_THE_WINDING = ("rotor_inertia", "cold_resistance_share", "electrical_time_constant", "thermal_time_constant")
@@ -262,7 +263,7 @@ def _task(result: TaskResult) -> dict[str, object]:
 def write_sources(folder: Path, recordings: LabRecordings, results: Sequence[TaskResult]) -> list[Path]:
     """Write the scripts of the tasks that were done, their recordings and values; `python taskNN.py` runs each.
 
-    Returns the folder, if anything was written.
+    Returns the folder and the zip of its MATLAB sources, if anything was written.
     """
     done = {result.key: result for result in results if result.reason is None}
     scripts = [path for path in sorted(SCRIPTS.glob("task*.py")) if path.stem[4:].lstrip("0") in done]
@@ -281,7 +282,17 @@ def write_sources(folder: Path, recordings: LabRecordings, results: Sequence[Tas
     for path in sorted(SCRIPTS.glob("matlab/*.m")):
         if MATLAB.get(path.stem, "3") in done:
             write_text(folder / "matlab" / path.name, path.read_text(encoding="utf-8"))
-    return [folder]
+    return [folder, _write_matlab(folder)]
+
+
+def _write_matlab(folder: Path) -> Path:
+    """Write the MATLAB sources with recordings and values as one zip, which needs no other file."""
+    path = folder / "matlab.zip"
+    parts = [*(folder / "matlab").glob("*.m"), *(folder / "recordings").glob("*.csv"), folder / "values.json"]
+    with whole(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+        for part in sorted(parts):
+            archive.write(part, part.name if part.parent.name == "matlab" else part.relative_to(folder))
+    return path
 
 
 def _write_table(path: Path, header: str, rows: Array) -> None:

@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from dataclasses import replace
 from io import BytesIO
 
@@ -165,22 +166,59 @@ MATLAB = {
     "derivative_of_sine": "2",
     "torque_constants": "34",
     "JLoad_no_Friction": "56",
-    "JLoad_and_Friction": "789",
+    "JLoad_with_Friction": "789",
     "SpeedTorqueLimit": ("10",),
 }
 
 
+#: Figures that each draws.
+FIGURES = {
+    "catapult": ["task01"],
+    "derivative_of_sine": ["task02"],
+    "torque_constants": ["task04"],
+    "JLoad_no_Friction": ["task05", "task06"],
+    "JLoad_with_Friction": ["task07", "task08", "task09"],
+    "SpeedTorqueLimit": ["task10"],
+}
+
+
+@pytest.fixture
+def unzipped(lab, tmp_path):
+    """The MATLAB sources alone, as a student gets them."""
+    with zipfile.ZipFile(lab.folder / "here" / "sources" / "matlab.zip") as archive:
+        archive.extractall(tmp_path)
+    return tmp_path
+
+
 @pytest.mark.skipif(shutil.which("octave-cli") is None, reason="needs Octave, as of Debian's package octave")
 @pytest.mark.parametrize("name", MATLAB)
-def test_a_matlab_source_gives_the_reports_numbers(lab, done, name):
-    folder = lab.folder / "here" / "sources" / "matlab"
-    ran = subprocess.run(["octave-cli", "-q", f"{name}.m"], cwd=folder, capture_output=True, text=True, check=False)
+def test_a_matlab_source_gives_the_reports_numbers_and_figures(unzipped, done, name):
+    ran = subprocess.run(["octave-cli", "-q", f"{name}.m"], cwd=unzipped, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
     found = {line.rsplit(" = ", 1)[0]: float(line.rsplit(" = ", 1)[1].split()[0]) for line in ran.stdout.splitlines()}
     known = {n.name: n.value for key in MATLAB[name] for n in (*done[key].numbers, *done[key].tabled)}
     assert found
     for quantity, value in found.items():
         assert value == pytest.approx(known[quantity], rel=1e-7, abs=1e-9), quantity
+    assert sorted(path.stem for path in unzipped.glob("*.png")) == FIGURES[name]
+
+
+def test_the_zip_of_the_matlab_sources_needs_no_other_file(unzipped):
+    """Every function that is called and every file that is read is in it, and figures need no desktop."""
+    sources = {path.stem: path.read_text(encoding="utf-8") for path in unzipped.glob("*.m")}
+    assert {*MATLAB, "load_traces", "num_derivative", "torqueconstant"} <= set(sources)
+    own = re.compile(r"\b(load_traces|data_file|course_values|keep_figure|four_graphs|filtered|show|num_derivative)\(")
+    for name, text in sources.items():
+        assert set(own.findall(text)) <= set(sources)
+        assert "usejava" not in text
+        for trace in re.findall(r"load_traces\('(\w+)'\)", text):
+            assert (unzipped / "recordings" / f"{trace}.csv").exists()
+        assert re.findall(r"keep_figure\('(\w+)'\)", text) == FIGURES.get(name, [])
+    assert (unzipped / "values.json").exists()
+    assert (unzipped / "recordings" / "flights.csv").exists()
+    assert "subplot(4, 1, k)" in sources["four_graphs"]
+    assert sources["JLoad_with_Friction"].count("four_graphs(") == 2
+    assert "hold on" in sources["four_graphs"]
 
 
 def test_a_cover_sheet_names_the_group(tmp_path):

@@ -1,6 +1,6 @@
 % Task 10: torque over speed of the fastest run-up, against the datasheet's peak curve at 230 V.
 v = course_values();
-[t, omega, Iq, T] = recording('MaxAcc');
+[t, omega, Iq, T] = load_traces('MaxAcc');
 M = torqueconstant(Iq) .* Iq;
 top = v.peak_torque.value;
 start = find(M > top * 3.0 / 3.5, 1);
@@ -21,7 +21,7 @@ for n = rpm
     share = min(1, (v.no_load_speed.value - at) / (v.no_load_speed.value - v.corner_speed.value));
     show(sprintf('M_max at %d rpm, datasheet', n), top * max(0, share), 'N*m');
 end
-if usejava('desktop')
-    plot(omega(kept) * 30 / pi, M(kept), '.', [0 v.corner_speed.value v.no_load_speed.value] * 30 / pi, [top top 0], '--');
-    xlabel('speed n / rpm'); ylabel('torque M / (N*m)'); legend('measured', 'datasheet, 230 V'); grid on
-end
+figure;
+plot(omega(kept) * 30 / pi, M(kept), '.', [0 v.corner_speed.value v.no_load_speed.value] * 30 / pi, [top top 0], '--');
+xlabel('speed n / rpm'); ylabel('torque M / (N*m)'); legend('measured', 'datasheet, 230 V'); grid on
+keep_figure('task10');

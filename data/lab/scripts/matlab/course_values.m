@@ -1,4 +1,4 @@
 function v = course_values()
-% Values of motor and disk in SI, each with its source, from ../values.json.
-v = jsondecode(fileread(fullfile(fileparts(mfilename('fullpath')), '..', 'values.json')));
+% Values of motor and disk in SI, each with its source, from values.json.
+v = jsondecode(fileread(data_file('values.json')));
 end

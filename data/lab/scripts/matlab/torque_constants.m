@@ -6,7 +6,7 @@ show('kT from peak', v.peak_torque.value / v.peak_current.value, 'N*m/A');
 show('a', coefficients(1), 'N*m/A^3');
 show('b', coefficients(2), 'N*m/A^2');
 show('c', coefficients(3), 'N*m/A');
-if usejava('desktop')
-    Iq = linspace(0, v.peak_current.value, 400);
-    plot(Iq, torqueconstant(Iq)); xlabel('Iq / A'); ylabel('kT / (N*m/A)'); grid on
-end
+figure;
+Iq = linspace(0, v.peak_current.value, 400);
+plot(Iq, torqueconstant(Iq)); xlabel('Iq / A'); ylabel('kT / (N*m/A)'); grid on
+keep_figure('task04');
