@@ -25,7 +25,7 @@ from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
-from bench.plant.robot import AddedBody, Robot, joint_rig, poses_along, read_log
+from bench.plant.robot import AddedBody, Poses, Robot, joint_rig, read_along
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -154,26 +154,27 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
         robot = Robot.of(asked.mjcf, asked.joint, asked.added)
         rig = joint_rig(asked.rig, robot)
         used, left_out = _moving(asked, asked.logs, rig, robot)
-        traces = [*used.values()]
+        traces, poses = [trace for trace, _ in used.values()], next(iter(used.values()))[1]
     except UndeterminedError as error:
         return IdentifiedJoint(asked.joint, refused={EFFECTS: error.reason}, record=error.record)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, failed=str(error))
-    unseen: dict[Path, Trace] = {}
+    unseen: dict[Path, tuple[Trace, Poses]] = {}
     if asked.holdout is not None:
         try:
             unseen, _ = _moving(asked, [asked.holdout], rig, robot)
         except BenchError as error:
             left_out[asked.holdout.name] = str(error)
     try:
-        found = diagnose(traces, rig, next(iter(unseen.values()), None), asked.excluded)
+        other = next((trace for trace, _ in unseen.values()), None)
+        found = diagnose(traces, rig, other, asked.excluded)
     except UndeterminedError as refusal:
         return _without_effects(asked.joint, traces, rig, refusal, left_out)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
     found = replace(found, warnings=[*found.warnings, *_frictionless(asked.joint, found, rig)])
     refused = {**found.refused, **_any_friction(found, rig.axis_kind), **_behind(rig)}
-    motion = joint_motion(found, traces[0], rig, poses_along(next(iter(used)), rig, robot, asked.stated))
+    motion = joint_motion(found, traces[0], rig, poses)
     return IdentifiedJoint(asked.joint, rig, found, refused=refused, left_out=left_out, motion=motion)
 
 
@@ -221,14 +222,20 @@ def _any_friction(found: Diagnosis, kind: AxisKind) -> dict[str, str]:
     return refused
 
 
-def _moving(asked: JointLogs, logs: Sequence[Path], rig: Rig, robot: Robot) -> tuple[dict[Path, Trace], dict[str, str]]:
-    """Recordings of the joint in which it moves, and why the others are none; raises as the first if none is one."""
-    traces, refused = dict[Path, Trace](), list[tuple[Path, BenchError]]()
+def _moving(
+    asked: JointLogs, logs: Sequence[Path], rig: Rig, robot: Robot
+) -> tuple[dict[Path, tuple[Trace, Poses]], dict[str, str]]:
+    """Recordings of the joint in which it moves, with the robot's poses along each, and why the others are none.
+
+    Raises as the first if none is one.
+    """
+    traces, refused = dict[Path, tuple[Trace, Poses]](), list[tuple[Path, BenchError]]()
     for log in logs:
         try:
-            trace = passed(read_log(log, rig, robot, asked.stated), rig).trace
+            read, poses = read_along(log, rig, robot, asked.stated)
+            trace = passed(read, rig).trace
             Rows.of(trace, rig)
-            traces[log] = trace
+            traces[log] = trace, poses
         except (InputError, UndeterminedError) as error:
             refused.append((log, error))
     if not traces:

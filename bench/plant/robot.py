@@ -38,6 +38,8 @@ from bench.trace.signals import STANDING, STANDING_ASK, signal_of
 from bench.trace.time_base import interpolate
 from bench.trace.trace import Trace, assemble, with_known
 
+#: Times of a log - s (n,) -, and where a robot's joints were, by name - rad (m) (n,).
+Poses = tuple[Array, dict[str, Array]]
 #: Poses evaluated at once, which bounds memory.
 TOGETHER = 4096
 #: Time over which the change of the mass matrix along the motion is taken, to both sides - s.
@@ -396,15 +398,29 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
         InputError: the log cannot be read, a joint is neither in it nor stated, stands beyond what the MJCF allows by
             the unit assumed, or its effort is in A or V, which the MJCF's links are not.
     """
-    return logs_of(path, rig, robot, stated)[0]
+    return read_along(path, rig, robot, stated)[0]
+
+
+def read_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Trace, Poses]:
+    """The same, and where the robot's joints were meanwhile."""
+    moved = _moved(path, rig, robot, stated)
+    trace, position, _, _ = moved
+    return _known(moved, rig, robot, ())[0], (trace.time, dict(zip(robot.names, position.T, strict=True)))
 
 
 def logs_of(
     path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], changes: Sequence[AddedBody] = ()
 ) -> list[Trace]:
     """The same, and then of the robot with each of some changes."""
+    return _known(_moved(path, rig, robot, stated), rig, robot, changes)
+
+
+def _known(
+    moved: tuple[Trace, Array, Array, list[str]], rig: Rig, robot: Robot, changes: Sequence[AddedBody]
+) -> list[Trace]:
+    """What `_moved` returns with the torque that the rest of the robot asks, as it is and with each change."""
     own = rig.of_joint(robot.joint)
-    trace, position, velocity, stand = _moved(path, rig, robot, stated)
+    trace, position, velocity, stand = moved
     torque, momentum = robot.rest(position, velocity)
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
@@ -468,7 +484,7 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
     return trace, position, velocity, stand
 
 
-def poses_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Array, dict[str, Array]]:
+def poses_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Poses:
     """Times of a log - s (n,) -, and where a robot's joints were, by name - rad (m) (n,); raises as `read_log`."""
     trace, position, _, _ = _moved(path, rig, robot, stated)
     return trace.time, dict(zip(robot.names, position.T, strict=True))

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context, rc_params_from_file
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
@@ -270,16 +271,27 @@ def save(figure: Figure, path: Path) -> None:
     """
     if path.suffix.lower() not in FORMATS:
         raise InputError(path, f"found the ending '{path.suffix}'", f"allowed: {', '.join(FORMATS)}")
-    with whole(path) as temporary, quiet_about_glyphs(), rc_context(STYLE):
-        figure.savefig(temporary)
+    with whole(path) as temporary:
+        if path.suffix.lower() == ".png":
+            _save_png(figure, temporary)
+        else:
+            with quiet_about_glyphs(), rc_context(STYLE):
+                figure.savefig(temporary)
 
 
 def save_into(figure: Figure) -> bytes:
     """A figure as PNG."""
     image = BytesIO()
-    with quiet_about_glyphs(), rc_context(STYLE):
-        figure.savefig(image, format="png")
+    _save_png(figure, image)
     return image.getvalue()
+
+
+def _save_png(figure: Figure, to: Path | BytesIO) -> None:
+    """Draw once, where `savefig` goes through all artists a time before to lay them out: a quarter more."""
+    dots, figure.dpi = figure.dpi, STYLE["savefig.dpi"]
+    with quiet_about_glyphs(), rc_context(STYLE):
+        FigureCanvasAgg(figure).print_png(to)
+    figure.dpi = dots
 
 
 @contextmanager

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -210,6 +211,7 @@ def _candidate(channel: Channel, name: ColumnName, reasons: Reasons) -> LikelySi
     return LikelySignal(signal, own, usual, known, tuple(why), weight)
 
 
+@cache
 def _fits(signal: str, unit: str | None) -> bool | None:
     """Whether a signal may be in a unit; None where there is none, or only the user knows."""
     if unit is None:

@@ -251,6 +251,7 @@ def _measures_time(unit: NamedUnit) -> bool:
     return any(unit.powers) and not any(unit.powers[:2]) and not any(unit.powers[3:])
 
 
+@cache
 def scale_or_none(text: str, wanted: tuple[str, ...]) -> UnitScale | None:
     """As `scale_of`; None where that raises."""
     try:
