@@ -384,7 +384,7 @@ class Distortion(Effect):
     """What is recorded is not what acts or moves, in a way that is no column: a fit sees the recording without it."""
 
     @abstractmethod
-    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+    def without_fault(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The recording without this fault."""
 
 
@@ -401,7 +401,7 @@ class EncoderFault(Distortion):
     def actual(self, values: Mapping[str, float], position: Array, velocity: Array) -> tuple[Array, Array]:
         """True position and velocity from those that the encoder measured, (n,) each."""
 
-    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+    def without_fault(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The recording of the true motion."""
         values = self.report((), shape, UNIT)
         position, velocity = self.actual(values, signals.position, signals.velocity)
@@ -445,7 +445,7 @@ class Lag(Distortion):
             return (lag if source == "velocity" else 0.0), 0.0, 0.0
         return (lag, lag, 0.0) if self.signal == "torque" else (0.0, 0.0, lag)
 
-    def see(self, signals: Signals, shape: Sequence[float]) -> Signals:
+    def without_fault(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """Where the axis is, as position summed from the reported speed v lags by T*v; or the torque that acts."""
         values, step = self.report((), shape, UNIT), signals.sample_period
         if self.signal == "velocity":

@@ -403,7 +403,7 @@ def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
 
     def change(signals: Signals) -> Signals:
         for effect, shape in faults:
-            signals = effect.see(signals, shape)
+            signals = effect.without_fault(signals, shape)
         return signals
 
     return rows.with_signals(change, tuple((effect.name, shape) for effect, shape in faults))

@@ -45,7 +45,7 @@ AXIS = model().axis
 
 def without_fault(effect, seen):
     """The recording as a fit with the effect sees it."""
-    return effect.see(seen, shape_of(effect)) if isinstance(effect, Distortion) else seen
+    return effect.without_fault(seen, shape_of(effect)) if isinstance(effect, Distortion) else seen
 
 
 @every

@@ -35,7 +35,7 @@ def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
     if isinstance(effect, EncoderFault):
         values = effect.report([], shape, BASE)
         position, velocity = effect.measured(values, RECORDED.position, RECORDED.velocity)
-        found = effect.see(replace(RECORDED, position=position, velocity=velocity), shape)
+        found = effect.without_fault(replace(RECORDED, position=position, velocity=velocity), shape)
         np.testing.assert_allclose(found.position, RECORDED.position, atol=1e-9)
         np.testing.assert_allclose(found.velocity, RECORDED.velocity, atol=1e-7)
         again = effect.actual(values, position, velocity)
@@ -46,10 +46,12 @@ def test_what_it_sees_is_what_a_simulated_sensor_or_drive_does_undone(effect):
     if isinstance(effect, Lag) and effect.signal == "velocity":
         late = effect.lagging(effect.report([], shape, BASE), RECORDED.velocity, STEP)
         summed = np.concatenate([[0.0], np.cumsum(0.5 * STEP * (late[1:] + late[:-1]))])
-        off = effect.see(replace(RECORDED, velocity=late, position=summed), shape).position - RECORDED.position
+        off = (
+            effect.without_fault(replace(RECORDED, velocity=late, position=summed), shape).position - RECORDED.position
+        )
         assert np.ptp(off) < 1e-3 * np.ptp(summed - RECORDED.position)
         return
-    values, found = effect.report([], shape, BASE), effect.see(RECORDED, shape)
+    values, found = effect.report([], shape, BASE), effect.without_fault(RECORDED, shape)
     assert isinstance(effect, Lag)
     undo = effect.lagging if effect.signal == "torque" else effect.leading
     acts = undo(values, RECORDED.torque, STEP)
@@ -106,4 +108,7 @@ def test_what_changes_the_torque_to_be_explained_is_a_fault_of_a_sensor(effect):
 
 def shows_effort(effect):
     """Whether a fit with it explains another torque than the reported one."""
-    return isinstance(effect, Distortion) and effect.see(RECORDED, shape_of(effect)).effort is not RECORDED.effort
+    return (
+        isinstance(effect, Distortion)
+        and effect.without_fault(RECORDED, shape_of(effect)).effort is not RECORDED.effort
+    )
