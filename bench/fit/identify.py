@@ -51,7 +51,7 @@ from bench.fit.solution import (
     solved,
 )
 from bench.gate.check import Check
-from bench.gate.gate import PARTS, gate, joined, passed, require
+from bench.gate.gate import PARTS, Gated, gate, joined, passed, require
 from bench.parameter import Parameter
 from bench.rig.given import Given, GivenRig, Units, given
 from bench.rig.rig import Rig
@@ -141,9 +141,8 @@ class Gathered:
 def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
     """A recording, or its consecutive parts, summed up at a cut-off - Hz -, or at the one the data choose."""
     parts = iter([trace] if isinstance(trace, Trace) else trace)
-    gated = passed(next(parts), rig)
+    gated, found, chosen, still = _first_moving(parts, rig, cutoff)
     first = gated.trace
-    found, chosen = choose(first, rig, cutoff)
 
     def summed(part: Trace) -> Summed:
         sound = gate(part, rig, PARTS)
@@ -154,7 +153,7 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
         return equations_of(rows, lay_out(rows, found.hypothesis)), len(sound.trace), sound.checks
 
     others = list(_in_parallel(summed, parts))
-    checks = joined([gated.checks, *(checked for _, _, checked in others)])
+    checks = joined([*(part.checks for part in still), gated.checks, *(checked for _, _, checked in others)])
     require(checks, first)
     whole, (told, hinted) = found, by_hint(found.rows, found.hypothesis)
     if others:
@@ -167,7 +166,7 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
     return Gathered(
         solution=whole,
         effort_unit=rig.net_effort(first)[1],
-        samples_read=len(first) + sum(read for _, read, _ in others),
+        samples_read=sum(len(part.trace) for part in (*still, gated)) + sum(read for _, read, _ in others),
         measured=_measured(whole.whole, None if others else found.rows),
         doubt=dict(zip(TERMS, chosen.doubt.tolist(), strict=True)),
         depends=depends,
@@ -177,6 +176,25 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
         warnings=chosen.warnings,
         checks=checks,
     )
+
+
+def _first_moving(
+    parts: Iterator[Trace], rig: Rig, cutoff: float | None
+) -> tuple[Gated, Solution, Chosen, list[Gated]]:
+    """The first of a recording's parts that moves clearly, with its solution, and the parts before it.
+
+    Raises:
+        UndeterminedError: none does.
+    """
+    still, refusals = [], []
+    for part in parts:
+        try:
+            gated = passed(part, rig)
+            return gated, *choose(gated.trace, rig, cutoff), still
+        except UndeterminedError as refusal:
+            still.append(gate(part, rig, PARTS))
+            refusals.append(refusal)
+    raise refusals[0]
 
 
 def _in_parallel(work: Callable[[Trace], Summed], parts: Iterable[Trace]) -> Iterator[Summed]:

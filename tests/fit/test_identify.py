@@ -100,6 +100,19 @@ def test_a_part_without_clear_motion_contributes_no_rows(still):
         assert abs(parts[name].value - whole[name].value) < 0.3 * whole[name].std_error
 
 
+def test_a_recording_may_begin_with_a_part_that_stands_still():
+    """Its filter is that of the first part that moves; the noise of an axis at rest is none of the balance."""
+    trace, rng = recording(np.random.default_rng(6), duration=10.0), np.random.default_rng(7)
+    rest = {"velocity": rng.normal(scale=0.03, size=5000), "current": rng.normal(scale=0.0125, size=5000)}
+    still = Trace(trace.time[:5000] - 5.0, rest, UNITS, "still")
+    moving, late = identify(trace, RIG), identify(iter([still, trace]), RIG)
+    assert late.samples_read == moving.samples_read + 5000
+    for name in NAMES:
+        assert late[name] == moving[name]
+    with pytest.raises(UndeterminedError):
+        identify(iter([still, still]), RIG)
+
+
 def test_a_first_part_in_one_direction_leaves_the_offset_to_the_others():
     """What tolerances and cut-off say of the first part holds for the friction that it knows, offset included."""
     truth, rig = Truth(offset=0.02), RIG.model_copy(update={"offset": True})
