@@ -49,21 +49,20 @@ def true_motion(model: AxisModel, position: Array, velocity: Array) -> tuple[Arr
     return position, velocity
 
 
-def true_effort(model: AxisModel, effort: Array, since: float, step: float) -> Array:
-    """Effort of one axis that flowed, from the recorded one, (n,) at a constant step - s - from an instant on - s."""
-    time = since + step * np.arange(effort.size, dtype=np.float64)
+def true_effort(model: AxisModel, at: AxisState) -> Array:
+    """Effort of one axis that flowed in states (n,) at a constant step, whose effort is the recorded one."""
+    effort = at.effort
     for lag, values in reversed(lags(model, "current")):
-        effort = lag.leading(values, effort, step)
-    return remaining(model, Stage.CURRENT_SENSOR, effort, time)
+        effort = lag.leading(values, effort, at.step)
+    return remaining(model, Stage.CURRENT_SENSOR, at._replace(effort=effort))
 
 
-def remaining(model: AxisModel, stage: Stage, effort: Array, time: Array) -> Array:
-    """Effort (n,) of one axis after what effects take of it at a stage that does not depend on the motion."""
-    still = np.zeros_like(effort)
+def remaining(model: AxisModel, stage: Stage, at: AxisState) -> Array:
+    """Effort (n,) of one axis after what effects take of that of a state at a stage."""
     for effect, values in model.acting(Torque):
         if effect.stage == stage:
-            effort = effort - effect.torque(values, model.axis, AxisState(time, still, still, effort))
-    return effort
+            at = at._replace(effort=at.effort - effect.torque(values, model.axis, at))
+    return at.effort
 
 
 def reported_states(model: AxisModel, states: States) -> States:

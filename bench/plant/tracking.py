@@ -24,6 +24,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.effect import Stage
+from bench.effects.signals import AxisState
 from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References, add_pid
@@ -182,26 +183,29 @@ def _holding_inputs(
     position = trace["position"][part] if "position" in trace else integrated(velocity, trace.sample_period)
     position, velocity = true_motion(model, position, velocity)
 
-    def recorded(ticks: Array) -> Array:
-        return np.interp(ticks + timestep / 2.0 + held.misalignment, time, held.effort[part])
+    def recorded(ticks: Array) -> AxisState:
+        """Motion and recorded effort, read between samples."""
+        effort = np.interp(ticks + timestep / 2.0 + held.misalignment, time, held.effort[part])
+        motion = np.interp(ticks, time, position), np.interp(ticks, time, velocity)
+        return AxisState(ticks - trace.start_of(part), *motion, effort, step=timestep)
 
     elapsed = timestep * np.arange(count, dtype=np.float64)
     acting = None  # at all ticks, where faults of its sensor and lags are undone
     if model.at_stage((Stage.CURRENT_SENSOR,)) or lags(model, "torque") or lags(model, "current"):
-        acting = true_effort(model, recorded(time[0] + elapsed), float(time[0]) - trace.start_of(part), timestep)
+        acting = true_effort(model, recorded(time[0] + elapsed))
         for lag, values in lags(model, "torque"):
             acting = lag.lagging(values, acting, timestep)
 
     def between(start: int, stop: int) -> Array:
-        """Read between samples."""
+        """Of the ticks from one to another."""
         ticks = time[0] + elapsed[start:stop]
-        wanted = np.interp(ticks, time, velocity)
+        at = recorded(ticks)
         # MuJoCo's position belongs half a step later than its velocity, and an input is held over the step it starts
-        lead = np.interp(ticks, time, position) + timestep / 2.0 * wanted
-        effort = recorded(ticks) if acting is None else acting[start:stop]
-        effort = remaining(model, Stage.TORQUE_CONSTANT, effort, ticks - trace.start_of(part))
+        lead = at.position + timestep / 2.0 * at.velocity
+        at = at if acting is None else at._replace(effort=acting[start:stop])
+        effort = remaining(model, Stage.TORQUE_CONSTANT, at)
         beside = np.zeros_like(effort) if known is None else np.interp(ticks, time, known[part])
-        return np.stack([lead, wanted, effort, beside], axis=-1)
+        return np.stack([lead, at.velocity, effort, beside], axis=-1)
 
     return between, elapsed, float(position[0]), float(velocity[0])
 

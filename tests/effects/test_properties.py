@@ -199,6 +199,14 @@ def test_a_torque_without_memory_is_the_sum_of_its_columns(effect):
 
 
 @every
+def test_a_torque_acts_at_a_stage_that_is_simulated(effect):
+    if isinstance(effect, Torque):
+        of_mechanics = isinstance(effect, Friction | Inertia)
+        chain = () if of_mechanics else (Stage.CURRENT_SENSOR, Stage.TORQUE_CONSTANT, Stage.COMMUTATION)
+        assert effect.stage in (*chain, Stage.MECHANICS)
+
+
+@every
 def test_friction_follows_a_load_if_its_columns_do(effect):
     assert effect.follows_load == changed(effect, load=np.sin(RECORDED.time))
 
