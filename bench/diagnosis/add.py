@@ -37,6 +37,7 @@ from bench.diagnosis.name import NamedEffect, Suspects, named
 from bench.diagnosis.policy import ERRS_TWICE, Policy
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
+from bench.diagnosis.tabulated import UnknownEffect, unknown_effect
 from bench.effects.effect import DriveLimit, Occasional
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
@@ -107,6 +108,7 @@ class Added:
         closed_loop: velocity gap under the drive of the rig, without and with the effect that is visible only there -
             rad/s (m/s); None without such an effect.
         refused: why a parameter is not determined beside the effects, by its name; the model is then the last that is.
+        unknown: the effect that remains, tabulated; None where none does, or held-out motion does not confirm it.
     """
 
     recordings: Recordings
@@ -121,6 +123,7 @@ class Added:
     compared: SameAxis
     closed_loop: tuple[float, float] | None
     refused: Mapping[str, str]
+    unknown: UnknownEffect | None
 
 
 def add(recordings: Recordings, suspects: Suspects) -> Added:
@@ -171,6 +174,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         compared=compared,
         closed_loop=closed_loop,
         refused={name: refusal.reason for name, refusal in refused.items()},
+        unknown=unknown_effect(stages[-1], held_out) if suspects.policy.remains(extension.fitted) else None,
     )
 
 

@@ -27,6 +27,7 @@ from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.same_axis import SameAxis, apart
 from bench.diagnosis.search import Searched, Step
+from bench.diagnosis.tabulated import UnknownEffect, with_tables
 from bench.diagnosis.where import Where, where
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
@@ -173,7 +174,8 @@ class Diagnosis(Presented):
         rejected: names that held-out motion spoke against.
         refused: why a parameter is not determined beside the effects, by its name; the model is the last that has all.
         stopped: what ended the search before it was done; None if nothing did.
-        model, balance: with all effects; no model where MuJoCo cannot have them.
+        unknown_effect: what remains, as tables of the model; None where held-out motion confirms none.
+        model, balance: with all effects; no model where MuJoCo cannot have them. The tables are in the model alone.
         courses: the recordings over time beside the model as it grew.
         considered: every effect of the catalogue, and why it was taken or not.
         recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
@@ -200,6 +202,7 @@ class Diagnosis(Presented):
     holdout: SameAxis
     next_experiment: NextExperiment | None
     stopped: str | None
+    unknown_effect: UnknownEffect | None
     model: StoredModel | None
     balance: Balance
     courses: tuple[Course, ...]
@@ -331,7 +334,8 @@ def show(bare: Fit, added: Added) -> Diagnosis:
         holdout=added.compared,
         next_experiment=propose(added),
         stopped=added.suspects.searched.stopped,
-        model=kept.model,
+        unknown_effect=added.unknown,
+        model=kept.model and with_tables(kept.model, added.unknown.tables if added.unknown else ()),
         balance=Balance.of(whole).repeating(added.repeats),
         courses=shown,
         considered=considered(added, likely),

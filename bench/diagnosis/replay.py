@@ -17,6 +17,7 @@ import numpy as np
 from bench.arrays import Array, known_rms, rms
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.model import holding_bandwidth, tracking
+from bench.diagnosis.tabulated import remaining
 from bench.errors import InputError, SimulationError, UndeterminedError
 from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
@@ -125,7 +126,8 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: GivenRig, units: Un
         raise InputError(where, found, f"allowed: {owners.size}, as its effects want")
     samples = rows.samples()
     torque, simulated = np.full(len(trace), np.nan), np.full(len(trace), np.nan)
-    torque[samples], simulated[samples] = rows.effort, rows.effort - balance.left(rows)
+    effects = () if stored is None else stored.model.effects
+    torque[samples], simulated[samples] = rows.effort, rows.effort - remaining(balance, rows, effects)
     position, velocity = np.full((2, len(trace)), np.nan)
     measured = measured_position(trace), measured_velocity(trace)
     if stored is not None:

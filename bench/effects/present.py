@@ -11,6 +11,7 @@ from bench.axis_kind import ROTARY, AxisKind
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.signals import Axis
+from bench.effects.tabulated import TABLES
 from bench.errors import InputError
 from bench.names import nearest
 from bench.units import Quantity, parse
@@ -50,8 +51,8 @@ class Present:
 
     @property
     def effect(self) -> Effect:
-        """What the catalogue has under the name."""
-        return catalogue()[self.name]
+        """What the catalogue has under the name, or the table of an unknown effect."""
+        return TABLES.get(self.name) or catalogue()[self.name]
 
     def resolved(self, axis: Axis) -> dict[str, float]:
         """All quantities, those that are not given by their defaults - SI; InputError where one has none."""
@@ -69,7 +70,9 @@ class Present:
 
 
 def named(name: str, where: str = "effect") -> Effect:
-    """The effect of a name; InputError where there is none."""
+    """The effect of a name, or the table of an unknown one; InputError where there is none."""
+    if name in TABLES:
+        return TABLES[name]
     if name not in catalogue():
         names = sorted(catalogue())
         raise InputError(where, f"found '{name}'{nearest(name, names)}", f"allowed: {', '.join(names)}")

@@ -15,6 +15,7 @@ from bench.diagnosis.diagnosis import PACKED, Course, Diagnosis, Gap, Shrunk
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
+from bench.diagnosis.tabulated import UnknownEffect
 from bench.diagnosis.where import Where
 from bench.gate.gate import warnings_of
 from bench.names import words
@@ -76,7 +77,11 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
             "calibrated_on": CALIBRATED_ON,
         },
         "where": found.where,
-        "unexplained": {"share": found.unexplained_share, "where": found.unexplained_where},
+        "unexplained": {
+            "share": found.unexplained_share,
+            "where": found.unexplained_where,
+            "tabulated": found.unknown_effect,
+        },
         "parameters": found.parameters,
         **recordings_json(found.recordings, found.between, provenance),
         "gap": {"torque": found.torque, "velocity": velocity},
@@ -95,6 +100,12 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
 @as_json.register
 def _(account: Where) -> dict[str, Any]:
     return picked(account, "coordinate", "region", "unit", "share")
+
+
+@as_json.register
+def _(unknown: UnknownEffect) -> dict[str, Any]:
+    gap = _before_after(unknown, "torque", "velocity")
+    return picked(unknown, "over", "share", "motion") | {"gap": gap, "effects": [one.name for one in unknown.tables]}
 
 
 def _before_after(result: object, *names: str) -> dict[str, Any]:
@@ -251,7 +262,7 @@ def _answers(found: Diagnosis) -> dict[str, str]:
     inertia = ARMATURE if ARMATURE in found.parameters else of_axis
     value = found.parameters.get(inertia)
     return {
-        "What was missing?": sentence("; ".join(missing)) or "No effect of the catalogue.",
+        "What was missing?": f"{sentence('; '.join(missing)) or 'No effect of the catalogue.'}{_tabulated(found)}",
         "How sure?": _sure(found),
         "Does it move like the axis now?": _moves(found),
         f"{sentence(words(inertia))}?": f"{brief(value)} (95 %)"
@@ -259,6 +270,19 @@ def _answers(found: Diagnosis) -> dict[str, str]:
         else f"Not determined together with the missing effects: {found.refused[of_axis]}",
         "What next?": following(found) or "No further recording is needed.",
     }
+
+
+def _tabulated(found: Diagnosis) -> str:
+    """That the model contains an unknown effect as a table, and what share of the residual it explains."""
+    unknown = found.unknown_effect
+    if unknown is None:
+        return ""
+    before, after = (number(gap, digits=3) for gap in unknown.torque)
+    return (
+        f"{'.' if found.effects else ''} The model contains an unknown effect, tabulated over {listed(unknown.over)}: "
+        f"it explains {share(unknown.share)} of the squared {effort_word(found.torque.unit)} residual of held-out "
+        f"motion ({before} to {after} {unit_text(found.torque.unit)})."
+    )
 
 
 def _sure(found: Diagnosis) -> str:

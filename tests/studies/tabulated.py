@@ -1,0 +1,134 @@
+"""What tables of an unknown effect gain on real axes, and how often a recording without one gets a table.
+
+`python -m tests.studies.tabulated --nulls 100 --out docs` writes `docs/tabulated.md`. Nulls are simulated by the
+independent integrator.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import track
+
+from bench.diagnosis.diagnosis import Diagnosis, diagnose
+from bench.diagnosis.tabulated import UnknownEffect
+from bench.errors import BenchError
+from bench.files import write_text
+from bench.jobs.each import each
+from bench.jobs.process import Failure
+from bench.rig.rig import Rig, load_rig
+from bench.trace.trace import Trace
+from tests.public import LINES, Line
+from tests.studies.false_alarms.draw import as_it_was, drawn, recorded, rigs
+
+#: Whose recordings are diagnosed: with a holdout where there is another recording of the axis.
+AXES = (
+    *(line for line in LINES if line.command == "diagnose"),
+    Line("LAAS", "diagnose", ("laas_anticogging/acc_current.txt",), "laas.toml", ""),
+    *(
+        Line("Damiao 1", "diagnose", (f"real/damiao_m1/{one}.csv.gz",), "real/damiao_m1/rig.toml", "", holdout)
+        for one, holdout in (("r1", "real/damiao_m1/r2.csv.gz"), ("r2", "real/damiao_m1/r3.csv.gz"), ("r3", ""))
+    ),
+)
+HEADINGS = ("axis", "recording", "held-out motion", "residual / noise", "tabulated over", "torque gap", "speed gap")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a diagnosis leaves, over its noise, and the effect that it tabulates."""
+
+    remains: bool
+    over_noise: float
+    unknown: UnknownEffect | None
+
+
+def outcome(found: Diagnosis) -> Outcome:
+    """Of a diagnosis."""
+    gap = found.torque
+    left = 0.0 if gap.identify is None else gap.identify[1]
+    return Outcome(found.verdict == "unexplained_remainder", left / gap.noise_floor, found.unknown_effect)
+
+
+def of_line(line: Line) -> Outcome | str:
+    """Of a real recording, or why it is refused."""
+    _, *files = line.arguments()
+    recordings, rig, holdout = files[: files.index("--rig")], files[files.index("--rig") + 1], None
+    if line.holdout:
+        holdout = files[-1]
+    try:
+        return outcome(diagnose([*recordings], load_rig(rig), holdout))
+    except BenchError as error:
+        return str(error)
+
+
+def of_null(null: tuple[Trace, Rig]) -> Outcome | str:
+    """Of a recording that lacks nothing."""
+    trace, rig = null
+    return outcome(diagnose(trace, rig))
+
+
+def row(line: Line, found: Outcome) -> str:
+    """Of the table."""
+    name, unknown = Path(line.arguments()[1]).name, found.unknown
+    cells = [line.axis, name, "", f"{found.over_noise:.1f}", "none", "1.00", "1.00"]
+    if unknown is not None:
+        cells[2], cells[4] = unknown.motion, ", ".join(one.name for one in unknown.tables)
+        cells[5:] = (f"{after / before:.2f}" for before, after in (unknown.torque, unknown.velocity))
+    return f"| {' | '.join(cells)} |"
+
+
+def main(
+    nulls: Annotated[int, typer.Option(help="Recordings that lack nothing.")] = 100,
+    seed: Annotated[int, typer.Option(help="Of the nulls.")] = 53,
+    jobs: Annotated[int, typer.Option(help="Processes.")] = 1,
+    out: Annotated[Path | None, typer.Option(help="Folder for tabulated.md.")] = None,
+) -> None:
+    """Diagnose all of them and print the table."""
+    console, rows, torque, speed = Console(stderr=True), [], [], []
+    for place, found in track(each(of_line, AXES, workers=jobs), "axes", len(AXES), console=console):
+        if isinstance(found, Failure | str):
+            console.print(f"{AXES[place].axis}: {found}", markup=False)
+        elif found.remains:
+            rows.append((place, row(AXES[place], found)))
+            gaps = ((1.0, 1.0), (1.0, 1.0)) if found.unknown is None else (found.unknown.torque, found.unknown.velocity)
+            for ratios, (before, after) in zip((torque, speed), gaps, strict=True):
+                ratios.append(after / before)
+    axes = drawn(nulls, seed)
+    traces = [one.trace for one in recorded([as_it_was(axis) for axis in axes], seed, 0)] if nulls else []
+    answers = [
+        found
+        for _, found in track(
+            each(of_null, list(zip(traces, rigs(axes), strict=True)), workers=jobs), "nulls", nulls, console=console
+        )
+    ]
+    told = [found for found in answers if isinstance(found, Outcome)]
+    having = [one for one in torque if one < 1.0]
+    text = [
+        "# An unknown effect, tabulated",
+        "",
+        "`python -m tests.studies.tabulated --out docs` made this page. A gap is the one with the tables over the one",
+        "without, on motion that no fit used: a holdout, or a third of the recording. The speed gap is that of",
+        "free-running simulations of 0.5 s.",
+        "",
+        f"| {' | '.join(HEADINGS)} |",
+        f"|{'---|' * len(HEADINGS)}",
+        *(line for _, line in sorted(rows)),
+        "",
+        f"Of {len(torque)} recordings with an unknown effect {len(having)} get tables. The median torque gap is",
+        f"{np.median(torque or [1.0]):.2f}, and {np.median(having or [1.0]):.2f} where there are tables. The largest",
+        f"speed gap is {max(speed, default=1.0):.2f}.",
+        "",
+        f"Of {len(told)} recordings that lack nothing {sum(one.unknown is not None for one in told)} get tables.",
+    ]
+    typer.echo("\n".join(text))
+    if out is not None:
+        write_text(out / "tabulated.md", "\n".join(text) + "\n")
+
+
+if __name__ == "__main__":
+    typer.run(main)
