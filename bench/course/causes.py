@@ -15,6 +15,7 @@ import numpy as np
 
 from bench.course.axis import RPM
 from bench.course.plausible import (
+    DISK,
     FASTEST,
     FULL_CURRENT,
     LARGEST_CURRENT,
@@ -42,6 +43,11 @@ TRIED = ((1, False, False), (1, True, False), (2, False, False), (2, True, False
 #: Rounds in which a delay is searched, as a long one is not linear.
 ROUNDS = 6
 TURN = 'turn one of them by a rig.toml beside it with [trace.columns] current = "-name of its column [unit]"'
+UNEXPLAINED = "no known mistake explains it: look at its signals"
+OTHER_DISK = (
+    "no known mistake explains it: if another disk turns, give it in a rig.toml beside the recordings, "
+    '[load] and below it moment_of_inertia = "30 kg*cm**2", or outer_diameter, inner_diameter, thickness and density'
+)
 TOGETHER = "record both in one task of the drive"
 
 
@@ -158,7 +164,7 @@ def refusals(runs: Mapping[str, LabRun], rig: Rig) -> dict[str, str]:
         why = [f"{' and '.join(twins)} are one and the same recording"] if name in twins else []
         why += [" - or ".join(words)] if 0 < len(words) <= NAMED else []
         found = contradicted.get(name) or f"its J contradicts that of {', '.join(contradicted)}"
-        known = "record it again" if name in cut else "no known mistake explains it: look at its signals"
+        known = "record it again" if name in cut else OTHER_DISK if DISK in found else UNEXPLAINED
         faults[name] = f"{found}; {', and '.join(why) or known}"
     return faults
 

@@ -99,6 +99,9 @@ def find_flights(folder: Path) -> Path:
         if found:
             names = ", ".join(path.name for path in found)
             raise InputError(folder / "catapult", f"found several ({names})", "put all flights into one folder")
+    if named:
+        found = f"is no table that can be read, as files ending in {named[0].suffix} are not"
+        raise InputError(named[0], found, f"save it as CSV: {_ADVICE}")
     names = ", ".join(sorted(path.name for path in folder.iterdir())) or "nothing"
     raise InputError(folder / "catapult", "no such folder, zip or table", f"found: {names}")
 

@@ -25,6 +25,8 @@ from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 
 WITHOUT_FRICTION, WITH_FRICTION, FASTEST = "JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc"
+#: What J_load is held against.
+DISK = "what the disk has in theory"
 #: Width of the filter - samples; slower samples than this share of the fastest are left out: friction is no constant.
 WIDTH, SLOW = 2.0, 0.13
 #: Shares of no-load speed and of peak current that are passed by a wrong unit only, and that MaxAcc reaches.
@@ -159,8 +161,8 @@ def _of_balance(name: str, run: LabRun, rig: Rig) -> Iterator[str]:
         ratio = (found.inertia - rig.motor.rotor_inertia) / theory
         if not OVER_THEORY[0] < ratio < OVER_THEORY[1]:
             yield (
-                f"its J comes out as {inertia:.4g} kg*cm**2 and J_load as {ratio:.3g} times what the disk's geometry "
-                f"gives, allowed: {OVER_THEORY[0]:g} to {OVER_THEORY[1]:g} times, as hub and bolts turn, too"
+                f"its J comes out as {inertia:.4g} kg*cm**2 and J_load as {ratio:.3g} times {DISK}, "
+                f"allowed: {OVER_THEORY[0]:g} to {OVER_THEORY[1]:g} times, as hub and bolts turn, too"
             )
     if abs(found.late) > LATE:
         yield f"its torque comes {found.late:+.1f} samples after the acceleration that it makes"

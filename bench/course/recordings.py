@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,6 +21,7 @@ from bench.names import nearest
 from bench.plant.simulate import truth_path
 from bench.rig.rig import Rig, load_rig
 from bench.structured import parse_json
+from bench.trace.channel import Recording
 from bench.trace.choose import choose, reading_options
 from bench.trace.read import read_recording, readers
 from bench.trace.trace import assemble
@@ -132,6 +133,8 @@ class LabRecordings:
             raise InputError(self.folder / f"{name}.trace", f"found several ({names})", "allowed: one of them")
         others = [path.name for path in files]
         missing = f"no such file{nearest(f'{name}.trace', others)}"
+        if unread := _of_another_format(self.folder, name.lower()):
+            raise InputError(self.folder / unread, NO_RECORDING.format(Path(unread).suffix), SAVE)
         raise InputError(self.folder / f"{name}.trace", missing, f"found: {', '.join(others) or 'no recording'}")
 
     def run(self, name: str) -> LabRun:
@@ -148,11 +151,31 @@ class LabRecordings:
             raise InputError(
                 path,
                 f"holds no {' and no '.join(missing)} by a name the bench knows; its columns are {labels}",
-                "write a file rig.toml beside it with the line [trace.columns] and under it a line for each, "
-                f'e.g. {missing[0]} = "column [unit]"; what else a rig file has may be left out',
+                f"write a file rig.toml beside it with {_lines(chosen, recording)}, each with its own column and unit; "
+                "what else a rig file has may be left out",
             )
         notes = tuple(f"{other.name} passed over, as {path.name} has the name of the course." for other in others)
         return run_of(assemble(recording, self.rig.trace), self.rig, read_truth(truth_path(path)), notes)
+
+
+#: What a file is that has a recording's name and an ending that no reader has, and what to do.
+NO_RECORDING, SAVE = "is no recording, as files ending in {} are not read", "save it as CSV, or hand in the .trace"
+
+
+def _of_another_format(folder: Path, name: str) -> str:
+    """A file of a recording's name whose ending no reader has; empty without one."""
+    files = (path for path in sorted(folder.iterdir()) if path.is_file() and path.suffix.lower() not in ENDINGS)
+    stems = ((path.name, re.sub("[^a-z]", "", path.stem.lower())) for path in files if not path.name.endswith(".json"))
+    return next((file for file, stem in stems if stem.startswith(name)), "")
+
+
+def _lines(chosen: Collection[str], recording: Recording) -> str:
+    """Lines of a rig file for the signals that a recording lacks, with its own columns in their order."""
+    free = [channel.name for channel in recording.channels if "time" not in channel.name.lower()]
+    units = {"velocity": "rad/s", "current": "A"}
+    missing = [name for name in NEEDED if name not in chosen]
+    named = zip(missing, [*free, *["column"] * len(missing)], strict=False)
+    return " and ".join(["[trace.columns]", *(f'{name} = "{column} [{units[name]}]"' for name, column in named)])
 
 
 def read_truth(path: Path) -> Mapping[str, float]:

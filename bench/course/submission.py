@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from dataclasses import dataclass
@@ -23,6 +24,8 @@ FORM, ENDINGS = "answers.csv", (".csv", ".json")
 #: How a form begins; the table of grades that an earlier run wrote begins with student,task.
 _FORM = re.compile(r'\W*"?(quantity|student(?!\W*task)|schema)', re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+#: A student is called by the number alone, or as the own folder is.
+_NAMED = re.compile(r"^student[ _-]*(?=\w)", re.IGNORECASE)
 #: Where a row stands, and its quantity, value and unit as they were written.
 Entry = tuple[str, str, str, str]
 
@@ -148,7 +151,7 @@ def read_submission(path: Path) -> Submission:
     student, answers = "", {}
     for where, written, value, unit in entries:
         if written.lower() == "student":
-            student = value.strip()
+            student = _NAMED.sub("", value.strip())
             continue
         if written.lower() not in names:
             allowed = [*names.values()]
@@ -162,6 +165,8 @@ def read_submission(path: Path) -> Submission:
             if not _NUMBER.fullmatch(plain):
                 allowed = "allowed: a number, and its unit in a column of its own"
                 raise InputError(where, f"found the value '{value}'", allowed)
+            if not math.isfinite(float(plain)):
+                raise InputError(where, f"found the value '{value}', which no quantity reaches", "allowed: a number")
             answers[name] = GivenAnswer(float(plain), "1" if unit == "-" else unit.strip("[] "))
     if not student:
         raise InputError(f"{path}: student", "missing", "allowed: the row student,NUMBER as the form has it")
@@ -185,9 +190,23 @@ def _of_csv(text: str, path: Path) -> list[Entry]:
     return entries
 
 
+def _given_once(text: str, path: Path) -> None:
+    """InputError where an object of a JSON text has a key twice, of which JSON's reader keeps the last one."""
+
+    def once(pairs: list[tuple[str, object]]) -> dict[str, object]:
+        names = [name for name, _ in pairs]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise InputError(path, f"'{twice}' stands there twice", "give it once")
+        return dict(pairs)
+
+    json.loads(text, object_pairs_hook=once)
+
+
 def _of_json(text: str, path: Path) -> list[Entry]:
     try:
         content = parse_json(text, path)
+        _given_once(text, path)
         entries = [(f"{path}: student", "student", str(content["student"]), "")]
         for name, entry in content["answers"].items():
             value = "" if entry["value"] is None else str(entry["value"])

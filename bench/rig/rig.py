@@ -32,6 +32,7 @@ class Load(RigTable):
     Attributes:
         outer_diameter, inner_diameter, thickness: geometry of the disk - m.
         density: of its material - kg/m**3; or `mass`: of the whole disk - kg. One of the two.
+        moment_of_inertia: of what turns, as known from elsewhere, in the place of a geometry - kg*m**2.
         gear_ratio: motor turns per turn of the load; 1 without a gear.
         gear_inertia: moment of inertia of the gear, on the motor's side - kg*m**2.
         stroke: of a linear axis, from one end to the other; planned motions stay within it - m.
@@ -47,6 +48,7 @@ class Load(RigTable):
     thickness: values.Length | None = None
     density: values.Density | None = None
     mass: values.Mass | None = None
+    moment_of_inertia: values.Inertia | None = None
     gear_ratio: Annotated[float, Field(gt=0.0)] = 1.0
     gear_inertia: values.Inertia | None = None
     stroke: values.Length | None = None
@@ -59,6 +61,8 @@ class Load(RigTable):
 
     @model_validator(mode="after")
     def _one_disk(self) -> Load:
+        if self.moment_of_inertia is not None and self.outer_diameter is not None:
+            raise ValueError("a load takes either moment_of_inertia or the geometry of a disk")
         if self.outer_diameter is not None:
             if (self.mass is None) == (self.density is None):
                 raise ValueError("a disk takes either mass or density, and density takes thickness")
@@ -81,7 +85,9 @@ class Load(RigTable):
 
     @property
     def disk_inertia(self) -> float | None:
-        """J = m/8*(D**2 + d**2) about the shaft - kg*m**2; None without geometry."""
+        """J = m/8*(D**2 + d**2) about the shaft, or as it is given - kg*m**2; None without either."""
+        if self.moment_of_inertia is not None:
+            return self.moment_of_inertia
         mass = self.disk_mass
         if mass is None or self.outer_diameter is None:
             return None

@@ -560,6 +560,8 @@ def test_units_are_checked(tmp_path, known, rows, verdict, word):
         ("a.csv", "quantity,value,unit\nstudent,99,\nJ,3,\n", ["99", "07"]),
         ("a.csv", "quantity,value,unit\nstudent,7,\nJ,3,\nJ,4,\n", ["twice"]),
         ("a.csv", "quantity,value,unit\nstudent,7,\nJ,22,4,kg*cm**2\n", ["line 3", "cells"]),
+        ("a.csv", "quantity,value,unit\nstudent,7,\nJ,1e999,\n", ["line 3", "1e999"]),
+        ("a.json", '{"student": "7", "answers": {"J": {"value": 1}, "J": {"value": 2}}}', ["'J'", "twice"]),
     ],
 )
 def test_a_bad_form_is_reported_and_the_others_are_graded(tmp_path, known, name, text, words):
@@ -571,6 +573,16 @@ def test_a_bad_form_is_reported_and_the_others_are_graded(tmp_path, known, name,
     assert (status, err.count("\n")) == (1, 1)
     for word in words:
         assert word in err
+    assert "07" in out
+
+
+@pytest.mark.parametrize("name", ["7", "07", "student-07", "Student 7"])
+def test_a_student_is_called_by_the_number_or_as_the_own_folder(tmp_path, known, name):
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "a.csv").write_text(f"quantity,value,unit\nstudent,{name},\nJ,1,\n")
+    truth = sealed(tmp_path / "truth.json", known)
+    status, out, _ = bench("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
+    assert status == 0
     assert "07" in out
 
 

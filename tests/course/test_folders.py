@@ -303,3 +303,52 @@ def test_lengths_beyond_a_throw_need_a_unit_in_both_columns(tmp_path, head, refu
             read_flights(tmp_path)
     else:
         np.testing.assert_allclose(read_flights(tmp_path).points[0][:, 1], [0.1, 0.9, 1.0, 0.4])
+
+
+@pytest.fixture
+def own(tmp_path):
+    """A folder with the course's recordings."""
+    for name in NAMES:
+        shutil.copy(TRACES / f"{name}.trace", tmp_path)
+    shutil.copytree(TRACES / "catapult", tmp_path / "catapult")
+    return tmp_path
+
+
+def reason(folder, name):
+    with pytest.raises(InputError) as raised:
+        LabRecordings.in_folder(folder).sound(name)
+    return str(raised.value)
+
+
+def test_a_workbook_is_called_what_it_is(own):
+    (own / "MaxAcc.trace").rename(own / "MaxAcc.xlsx")
+    assert "MaxAcc.xlsx: is no recording, as files ending in .xlsx are not read; save it as CSV" in reason(
+        own, "MaxAcc"
+    )
+    shutil.rmtree(own / "catapult")
+    (own / "Katapult.xlsx").write_bytes(b"PK")
+    with pytest.raises(InputError, match=r"Katapult\.xlsx: is no table that can be read, as files ending in \.xlsx"):
+        _ = LabRecordings.in_folder(own).flights
+
+
+def test_unknown_names_get_the_lines_that_work(own):
+    unknown_names(own)
+    text = reason(own, "MaxAcc")
+    assert '[trace.columns] and velocity = "ch2 [rad/s]" and current = "ch3 [A]"' in text
+    (own / "rig.toml").write_text('[trace.columns]\nvelocity = "ch2 [rad/s]"\ncurrent = "ch3 [A]"\n')
+    assert LabRecordings.in_folder(own).sound("MaxAcc").time.size > 100
+
+
+def test_another_disk_is_given_by_its_moment_of_inertia(own):
+    """Of a disk of 19 kg*cm**2 the rig says 40: the reason names the disk, and the remedy works."""
+    (own / "rig.toml").write_text('[load]\nmoment_of_inertia = "40 kg*cm**2"\n')
+    text = reason(own, "JLoadAndFriction")
+    assert "what the disk has in theory" in text
+    assert 'moment_of_inertia = "30 kg*cm**2"' in text
+    (own / "rig.toml").write_text('[load]\nmoment_of_inertia = "19.2 kg*cm**2"\n')
+    assert LabRecordings.in_folder(own).sound("JLoadAndFriction").time.size > 100
+    (own / "rig.toml").write_text(
+        '[load]\nmoment_of_inertia = "19.2 kg*cm**2"\nouter_diameter = "1 m"\nmass = "1 kg"\n'
+    )
+    with pytest.raises(InputError, match="either moment_of_inertia or the geometry"):
+        LabRecordings.in_folder(own)
