@@ -1,6 +1,7 @@
 """The default estimator: least squares of the torque balance without effects, of a recording or of several together.
 
-A recording's first part decides on filter (`bench.fit.cutoffs`) and hum, all of its parts are summed up.
+A recording's first part that moves clearly decides on filter (`bench.fit.cutoffs`) and hum; all parts are summed up,
+and one without clear motion contributes no rows.
 
 Of several, what one does not determine another may:
 
