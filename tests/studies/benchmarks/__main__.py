@@ -51,6 +51,12 @@ def before() -> list[Table]:
     return measured()
 
 
+def starting() -> list[Table]:
+    from tests.studies.benchmarks.starting import measured
+
+    return measured()
+
+
 def stepping() -> list[Table]:
     from tests.studies.benchmarks.beside_stepping import measured
 
@@ -80,6 +86,7 @@ BENCHMARKS: dict[str, tuple[str, Callable[[], list[Table]]]] = {
     "sysid": ("Identification beside mujoco.sysid", sysid),
     "lstsq": ("Least squares beside NumPy's", lstsq),
     "before": ("CPU time of an identification beside an earlier one", before),
+    "starting": ("CPU time of whole commands beside an earlier one", starting),
     "stepping": ("Simulation beside bare stepping", stepping),
     "reading": ("Reading beside pyarrow", reading),
     "diagnosing": ("CPU time of a diagnosis", diagnosing),

@@ -9,7 +9,7 @@ from bench.assets import asset
 from bench.trace.write import write
 from tests.hostile import ROOT
 from tests.studies.benchmarks import __main__ as command
-from tests.studies.benchmarks import beside_lstsq, beside_pyarrow, beside_stepping, diagnosing, growth
+from tests.studies.benchmarks import beside_lstsq, beside_pyarrow, beside_stepping, diagnosing, growth, starting
 from tests.studies.benchmarks.table import Table
 from tests.studies.benchmarks.table import growth as exponents
 from tests.studies.benchmarks.timing import Timed, in_turn
@@ -49,6 +49,12 @@ def test_beside_an_earlier_commit_both_identify():
 
     (table,) = beside_before.measured(2.0, 1)
     assert [row[0] for row in table.rows] == [beside_before.BEFORE, "today", "ratio"]
+
+
+@pytest.mark.slow
+def test_whole_commands_are_timed():
+    (table,) = starting.measured(3.0, 1, before=ROOT)
+    assert len(table.rows) == 4
 
 
 @pytest.mark.slow
