@@ -17,6 +17,7 @@ from typing import Any, Literal
 from bench.course.answers import AS_THE_TEXT_SAYS
 from bench.course.explain import NOT_KNOWN, SURE, GradedAnswer, explanation
 from bench.course.submission import (
+    BY_HAND,
     QUESTIONS,
     GivenAnswer,
     Question,
@@ -243,7 +244,7 @@ def _accelerated(
 def write_grades(graded: GradedClass, out: Path) -> list[Path]:
     """Write `grades.csv`, `grades.html` and a page for each student into a folder; returns the paths."""
     contents = {"grades.csv": grades_csv(graded), "grades.html": html(class_document(graded))}
-    contents["suspicion.csv"] = suspicion_csv(graded.suspicions)
+    contents |= {"suspicion.csv": suspicion_csv(graded.suspicions), "by_hand.csv": sheet_csv(graded)}
     contents |= {one.page: html(student_document(one)) for one in graded.students}
     for name, content in contents.items():
         write_text(out / name, content)
@@ -302,6 +303,16 @@ def grades_csv(graded: GradedClass) -> str:
             row = one.student, asked.task, asked.name, value, unit, f"{answer.expected:.6g}", asked.unit
             row = *row, answer.verdict, answer.mistake, likelier
             writer.writerow([cell(str(content)) for content in row])
+    return buffer.getvalue()
+
+
+def sheet_csv(graded: GradedClass) -> str:
+    """A row for each student and task that is marked by hand, with what to look for and room for the marks."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(("student", "task", "look for", "marks"))
+    for one in graded.students:
+        writer.writerows((cell(one.student), task, what, "") for task, what in BY_HAND.items())
     return buffer.getvalue()
 
 

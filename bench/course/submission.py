@@ -74,6 +74,16 @@ QUESTIONS = (
 )
 
 
+#: What is handed in on paper and marked by hand, by task, and what to look for.
+BY_HAND = {
+    "2": "derivative of sin(t) over cos(t), and why they differ by half a sample",
+    "5": "four graphs of the recording without friction on one time axis, with units",
+    "7": "four graphs of the recording with friction on one time axis, with units",
+    "8": "remaining samples over the original ones, alpha_filt in step with alpha",
+    "11": "why the corner is higher than the datasheet's: the temperature of the winding, not its inductance",
+}
+
+
 @dataclass(frozen=True)
 class GivenAnswer:
     """A value and its unit, empty where the form's own was left."""
@@ -118,7 +128,8 @@ class Submission:
 def form(student: str) -> str:
     """The form that a student fills in."""
     rows = "".join(f"{question.name},,{question.unit}\n" for question in QUESTIONS)
-    return f"quantity,value,unit\nstudent,{student},\n{rows}"
+    sheets = "".join(f"# on paper, task {task}: {what}\n" for task, what in BY_HAND.items())
+    return f"quantity,value,unit\nstudent,{student},\n{rows}{sheets}"
 
 
 def find_submissions(folder: Path) -> list[Path]:

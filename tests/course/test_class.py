@@ -576,6 +576,21 @@ def test_a_bad_form_is_reported_and_the_others_are_graded(tmp_path, known, name,
     assert "07" in out
 
 
+def test_what_is_marked_by_hand_has_a_sheet_and_is_asked_for_in_the_form(four, tmp_path):
+    """The form as it is written is read, with its lines about what goes on paper."""
+    (tmp_path / "in").mkdir()
+    form = (four.folder / "class" / "student-01" / "answers.csv").read_text(encoding="utf-8")
+    (tmp_path / "in" / "answers.csv").write_text(form.replace("J,,", "J,20,"), encoding="utf-8")
+    assert [line.split(":")[0] for line in form.splitlines() if line.startswith("#")] == [
+        f"# on paper, task {task}" for task in ("2", "5", "7", "8", "11")
+    ]
+    grades_of(four, tmp_path)
+    rows = [*csv.DictReader((tmp_path / "out" / "by_hand.csv").read_text(encoding="utf-8").splitlines())]
+    assert [(row["student"], row["task"], row["marks"]) for row in rows] == [
+        ("01", task, "") for task in ("2", "5", "7", "8", "11")
+    ]
+
+
 @pytest.mark.parametrize("name", ["7", "07", "student-07", "Student 7"])
 def test_a_student_is_called_by_the_number_or_as_the_own_folder(tmp_path, known, name):
     (tmp_path / "in").mkdir()
