@@ -6,6 +6,7 @@ independent integrator.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -19,10 +20,7 @@ from bench.diagnosis.diagnosis import Diagnosis, diagnose
 from bench.diagnosis.tabulated import UnknownEffect
 from bench.errors import BenchError
 from bench.files import write_text
-from bench.jobs.each import each
-from bench.jobs.process import Failure
-from bench.rig.rig import Rig, load_rig
-from bench.trace.trace import Trace
+from bench.rig.rig import load_rig
 from tests.public import LINES, Line
 from tests.studies.false_alarms.draw import as_it_was, drawn, recorded, rigs
 
@@ -66,12 +64,6 @@ def of_line(line: Line) -> Outcome | str:
         return str(error)
 
 
-def of_null(null: tuple[Trace, Rig]) -> Outcome | str:
-    """Of a recording that lacks nothing."""
-    trace, rig = null
-    return outcome(diagnose(trace, rig))
-
-
 def row(line: Line, found: Outcome) -> str:
     """Of the table."""
     name, unknown = Path(line.arguments()[1]).name, found.unknown
@@ -82,52 +74,67 @@ def row(line: Line, found: Outcome) -> str:
     return f"| {' | '.join(cells)} |"
 
 
+def page(axes: Sequence[tuple[Line, Outcome]], nulls: Sequence[Outcome]) -> str:
+    """The table of those axes with an unknown effect, and how many nulls get tables."""
+    remaining = [(line, found) for line, found in axes if found.remains]
+    unknown = [found.unknown for _, found in remaining if found.unknown is not None]
+    torque = [one.torque[1] / one.torque[0] for one in unknown]
+    speed = [one.velocity[1] / one.velocity[0] for one in unknown]
+    every = [*torque, *[1.0] * (len(remaining) - len(torque))]
+    return "\n".join(
+        [
+            "# An unknown effect, tabulated",
+            "",
+            "`python -m tests.studies.tabulated --out docs` made this page. A gap is the one with the tables over the",
+            "one without, on motion that no fit used: a holdout, or a third of the recording. The speed gap is that",
+            "of free-running simulations of 0.5 s.",
+            "",
+            f"| {' | '.join(HEADINGS)} |",
+            f"|{'---|' * len(HEADINGS)}",
+            *(row(*one) for one in remaining),
+            "",
+            f"Of {len(remaining)} recordings with an unknown effect {len(torque)} get tables. The median torque gap is",
+            f"{np.median(every or [1.0]):.2f}, and {np.median(torque or [1.0]):.2f} where there are tables. The",
+            f"largest speed gap is {max([1.0, *speed]):.2f}.",
+            "",
+            f"Of {len(nulls)} recordings that lack nothing {sum(one.unknown is not None for one in nulls)} get tables.",
+            "",
+        ]
+    )
+
+
+def of_axes() -> Iterator[tuple[Line, Outcome]]:
+    """Of every real recording that is not refused."""
+    for line in AXES:
+        found = of_line(line)
+        if isinstance(found, Outcome):
+            yield line, found
+        else:
+            typer.echo(f"{line.axis}: {found}", err=True)
+
+
+def of_nulls(count: int, seed: int) -> Iterator[Outcome]:
+    """Of simulated recordings that lack nothing."""
+    axes = drawn(count, seed)
+    for one, rig in zip(recorded([as_it_was(axis) for axis in axes], seed, 0), rigs(axes), strict=True):
+        try:
+            yield outcome(diagnose(one.trace, rig))
+        except BenchError as error:
+            typer.echo(f"a null is refused: {error}", err=True)
+
+
 def main(
     nulls: Annotated[int, typer.Option(help="Recordings that lack nothing.")] = 100,
     seed: Annotated[int, typer.Option(help="Of the nulls.")] = 53,
-    jobs: Annotated[int, typer.Option(help="Processes.")] = 1,
     out: Annotated[Path | None, typer.Option(help="Folder for tabulated.md.")] = None,
 ) -> None:
     """Diagnose all of them and print the table."""
-    console, rows, torque, speed = Console(stderr=True), [], [], []
-    for place, found in track(each(of_line, AXES, workers=jobs), "axes", len(AXES), console=console):
-        if isinstance(found, Failure | str):
-            console.print(f"{AXES[place].axis}: {found}", markup=False)
-        elif found.remains:
-            rows.append((place, row(AXES[place], found)))
-            gaps = ((1.0, 1.0), (1.0, 1.0)) if found.unknown is None else (found.unknown.torque, found.unknown.velocity)
-            for ratios, (before, after) in zip((torque, speed), gaps, strict=True):
-                ratios.append(after / before)
-    axes = drawn(nulls, seed)
-    traces = [one.trace for one in recorded([as_it_was(axis) for axis in axes], seed, 0)] if nulls else []
-    answers = [
-        found
-        for _, found in track(
-            each(of_null, list(zip(traces, rigs(axes), strict=True)), workers=jobs), "nulls", nulls, console=console
-        )
-    ]
-    told = [found for found in answers if isinstance(found, Outcome)]
-    having = [one for one in torque if one < 1.0]
-    text = [
-        "# An unknown effect, tabulated",
-        "",
-        "`python -m tests.studies.tabulated --out docs` made this page. A gap is the one with the tables over the one",
-        "without, on motion that no fit used: a holdout, or a third of the recording. The speed gap is that of",
-        "free-running simulations of 0.5 s.",
-        "",
-        f"| {' | '.join(HEADINGS)} |",
-        f"|{'---|' * len(HEADINGS)}",
-        *(line for _, line in sorted(rows)),
-        "",
-        f"Of {len(torque)} recordings with an unknown effect {len(having)} get tables. The median torque gap is",
-        f"{np.median(torque or [1.0]):.2f}, and {np.median(having or [1.0]):.2f} where there are tables. The largest",
-        f"speed gap is {max(speed, default=1.0):.2f}.",
-        "",
-        f"Of {len(told)} recordings that lack nothing {sum(one.unknown is not None for one in told)} get tables.",
-    ]
-    typer.echo("\n".join(text))
+    console = Console(stderr=True)
+    axes = list(track(of_axes(), "axes", len(AXES), console=console))
+    text = page(axes, list(track(of_nulls(nulls, seed), "nulls", nulls, console=console)))
+    typer.echo(text)
     if out is not None:
-        write_text(out / "tabulated.md", "\n".join(text) + "\n")
+        write_text(out / "tabulated.md", text)
 
 
 if __name__ == "__main__":
