@@ -26,7 +26,7 @@ DURATION = 10.0
 EFFECT = {"cogging_torque": {"amplitude": 0.03, "harmonic": 12.0, "phase": 0.0}}
 
 
-def measured(duration: float = DURATION, rounds: int = 9, before: Path | None = None) -> list[Table]:
+def measured(duration: float = DURATION, rounds: int = 3, before: Path | None = None) -> list[Table]:
     """Each process as often; `before`: root of the earlier commit's files, which are taken from git otherwise."""
     with tempfile.TemporaryDirectory() as folder:
         roots = {BEFORE: before or _archived(Path(folder, "before")), "today": ROOT}
