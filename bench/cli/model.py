@@ -19,8 +19,9 @@ from bench.plant.profile_names import DEFAULT
 
 if TYPE_CHECKING:
     from bench.cli.common import Subject
-    from bench.diagnosis.replay import FreeRun, Replay
+    from bench.diagnosis.replay import Replay
     from bench.plant.model_file import StoredModel
+    from bench.view.free_running import FreeRun
     from bench.view.side_by_side import SideBySide
 
 ModelArgument = Annotated[Path, Argument(help="model.toml that diagnose wrote.")]
@@ -117,18 +118,18 @@ def view(
 
 def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:
     """Model and ghost, how far off the model runs by itself, and what the user should know before believing them."""
-    from bench.diagnosis.replay import BARE, bare, let_free, otherwise
+    from bench.view.free_running import BARE, free_run, restarted, without_effects
     from bench.view.side_by_side import along_profile, along_recording
 
     if trace is None:
         return along_profile(model, of.rig, profile), None, []
     recording = of.read(trace)
     replayed = bench.replay(model, recording, of.rig)
-    others, without = otherwise(model, recording, of.rig), bare(model, recording, of.rig)
+    others, without = restarted(model, recording, of.rig), without_effects(model, recording, of.rig)
     others = others if without is None else {BARE: without, **others}
     shown, free, warnings = replace(along_recording(model, replayed), others=others), None, list(replayed.warnings)
     try:
-        free = let_free(model, recording, of.rig)
+        free = free_run(model, recording, of.rig)
     except SimulationError as error:
         warnings.append(f"let free, the model is not shown: {error}")
     if "position" not in recording:

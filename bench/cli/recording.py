@@ -232,8 +232,8 @@ def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) 
     """The robot whose joint was diagnosed, along the first log; none of an axis, nor of a model that does not move."""
     if of.along is None:
         return []
-    from bench.joints.motion import joint_motion
     from bench.report.simulation import moving_section
+    from bench.view.joint_motion import joint_motion
 
     robot = of.along(log)
     motion = joint_motion(found, trace, of.rig, (robot.times, robot.poses))

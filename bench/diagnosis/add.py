@@ -63,35 +63,6 @@ BASE = ("inertia", "viscous_friction_coefficient", "coulomb_friction")
 
 
 @dataclass(frozen=True)
-class Rejected:
-    """A name that was not kept.
-
-    Attributes:
-        name: of the effect.
-        reason: why.
-    """
-
-    name: str
-    reason: str
-
-
-@dataclass(frozen=True)
-class Refined:
-    """A model with its effects and parameters.
-
-    Attributes:
-        model: None if MuJoCo cannot simulate it.
-        effects, parameters: with the values of the model.
-        gap: velocity gap of held-out motion before and after refinement - rad/s (m/s); None if not refined.
-    """
-
-    model: StoredModel | None
-    effects: list[NamedEffect]
-    parameters: dict[str, Parameter]
-    gap: tuple[float, float] | None
-
-
-@dataclass(frozen=True)
 class Added:
     """The accepted effects.
 
@@ -101,8 +72,10 @@ class Added:
         stages: the model after none, one, ... all of them.
         gaps: velocity gaps, simulated for every addition.
         recorded: the recording, and the holdout where there is one.
-        rejected: the others, also those whose size is not determined, with the reason.
-        refined: the final model, its quantities refined by simulation where that helps.
+        rejected: names of the others, also of those whose size is not determined, each with the reason.
+        model: with these effects, refined by simulation where that helps; None if MuJoCo cannot simulate it.
+        effects, parameters: with the values of the model.
+        refined: velocity gap of held-out motion before and after refinement - rad/s (m/s); None if not refined.
         repeats: whether the recording's events occur in the holdout too.
         compared: whether the holdout is of this axis.
         closed_loop: velocity gap under the drive of the rig, without and with the effect that is visible only there -
@@ -117,8 +90,11 @@ class Added:
     stages: tuple[Extension, ...]
     gaps: VelocityGaps
     recorded: tuple[Recorded, ...]
-    rejected: tuple[Rejected, ...]
-    refined: Refined
+    rejected: tuple[tuple[str, str], ...]
+    model: StoredModel | None
+    effects: list[NamedEffect]
+    parameters: dict[str, Parameter]
+    refined: tuple[float, float] | None
     repeats: bool
     compared: SameAxis
     closed_loop: tuple[float, float] | None
@@ -136,12 +112,9 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
     held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
-    recorded = [Recorded(RECORDING, recordings.trace, recordings.rig)]
-    if recordings.holdout is not None:
-        recorded.append(Recorded(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
     extension = Extension(recordings.rows, found.hypothesis, suspects.detected, recordings.rig)
-    closed_loop = closed_loop_gap(recordings, extension)
-    rejected = [Rejected(*one) for one in suspects.unsized.items()]
+    recorded, closed_loop = recordings_to_track(recordings, repeats), closed_loop_gap(recordings, extension)
+    rejected = [*suspects.unsized.items()]
     while True:
         refused = refusals(recordings, extension.fitted)
         modelled = last_determined(recordings, extension, suspects.policy) if refused else extension
@@ -150,32 +123,43 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         count = next((index for index, stage in enumerate(stages) if stage is modelled), -1) + 1
         stages = (*stages[:count], *(replace(stage, refused=reason) for stage in stages[count:]))
         shown = [(stage, each) for stage in stages for each in recorded]
-        against = rejection(recordings, held_out, extension, gaps, shown, suspects.policy)
-        against = against or unlimited(extension, closed_loop)
+        by_motion = rejection(recordings, held_out, extension, gaps, shown, suspects.policy)
+        against = by_motion or unlimited(extension, closed_loop)
         if against is None:
             break
-        rejected.append(Rejected(extension.names[against[0]], against[1]))
+        rejected.append((extension.names[against[0]], against[1]))
         extension = extension.less(against[0])
     gaps.simulate(shown)
-    kept = refined(recordings, stages[-1], suspects, held_out, gaps)
+    model, effects, parameters, gap = refined(recordings, stages[-1], suspects, held_out, gaps)
     if refused:
-        determined = {name: found for name, found in kept.parameters.items() if name not in refused}
-        kept = replace(kept, model=kept.model or (modelled and modelled.model), parameters=determined)
+        parameters = {name: found for name, found in parameters.items() if name not in refused}
+        model = model or (modelled and modelled.model)
     return Added(
         recordings=recordings,
         suspects=suspects,
         extension=extension,
         stages=stages,
         gaps=gaps,
-        recorded=tuple(recorded),
+        recorded=recorded,
         rejected=tuple(rejected),
-        refined=kept,
+        model=model,
+        effects=effects,
+        parameters=parameters,
+        refined=gap,
         repeats=repeats,
         compared=compared,
         closed_loop=closed_loop,
         refused={name: refusal.reason for name, refusal in refused.items()},
         unknown=unknown_effect(stages[-1], held_out) if suspects.policy.remains(extension.fitted) else None,
     )
+
+
+def recordings_to_track(recordings: Recordings, repeats: bool) -> tuple[Recorded, ...]:
+    """The recording, and the holdout where there is one, in which the recording's events occur too or not."""
+    recorded = Recorded(RECORDING, recordings.trace, recordings.rig)
+    if recordings.holdout is None:
+        return (recorded,)
+    return recorded, Recorded(HOLDOUT, recordings.holdout, recordings.rig, events=repeats)
 
 
 def everywhere(balance: Balance, other: Rows | None) -> bool:
@@ -330,14 +314,14 @@ def _grows(what: str, before: float, after: float, unit: str = "") -> str:
 
 def refined(
     recordings: Recordings, stage: Extension, suspects: Suspects, held_out: HeldOut, gaps: VelocityGaps
-) -> Refined:
-    """The quantities of a model with their intervals, refined if that is possible and helps.
+) -> tuple[StoredModel | None, list[NamedEffect], dict[str, Parameter], tuple[float, float] | None]:
+    """A model, its effects and parameters with their intervals, and the velocity gap before and after refinement.
 
-    It is possible if effects were added, no unexplained remainder would bias the values, and the gap exceeds that of a
-    complete model.
+    It is refined, if that helps, where effects were added, no unexplained remainder would bias the values, and the gap
+    exceeds that of a complete model.
     """
     effects, parameters = named(recordings, stage.fitted, stage.outside, suspects.policy)
-    plain = Refined(stage.model, effects, parameters, None)
+    plain = stage.model, effects, parameters, None
     if stage.model is None or not effects or suspects.policy.remains(stage.fitted):
         return plain
     before = gaps.of(stage, held_out.recorded)
@@ -348,7 +332,7 @@ def refined(
     if found is None or not found[2] < (1.0 - WON) * before:
         return plain
     model, values, after = found
-    return Refined(model, *numbers.named(values), gap=(before, after))
+    return model, *numbers.named(values), (before, after)
 
 
 def refined_model(

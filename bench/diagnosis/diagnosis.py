@@ -1,8 +1,4 @@
-"""Diagnosis in five steps: fit, where, name, add, show; with the verdict, and every objection to it.
-
-A model claims to explain everything. Each objection is a function that gives its reason in one line, empty if there is
-none.
-"""
+"""Diagnosis in five steps: fit, where, name, add, show."""
 
 from __future__ import annotations
 
@@ -17,17 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, known_rms, rms
-from bench.axis_kind import COULOMB, OFFSET, VISCOUS, AxisKind
+from bench.axis_kind import COULOMB, OFFSET, AxisKind
 from bench.comparison.spread import Between
-from bench.diagnosis.add import Added, Rejected, add
-from bench.diagnosis.name import NamedEffect, Suspects, name, with_interval
+from bench.diagnosis.add import Added, add
+from bench.diagnosis.name import NamedEffect, Suspects, name
 from bench.diagnosis.next_experiment import NextExperiment, propose
-from bench.diagnosis.policy import ERRS_TWICE, POLICY, Policy
+from bench.diagnosis.policy import POLICY, Policy
 from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.same_axis import SameAxis, apart
 from bench.diagnosis.search import Searched, Step
 from bench.diagnosis.tabulated import UnknownEffect, with_tables
+from bench.diagnosis.verdict import Gap, Objection, verdict
 from bench.diagnosis.where import Where, where
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
@@ -56,41 +53,6 @@ PACKED = "diagnosis.npz"
 #: Speed gap of a model that matches: in noise floors, and as share of the RMS speed, which filters and the steps of the
 #: integration resolve.
 MATCH, RESOLVED = 3.5, 1e-3
-
-
-@dataclass(frozen=True)
-class Gap:
-    """RMS gap before and after the effects were added, on both recordings, against the noise floor.
-
-    Attributes:
-        unit: of all numbers.
-        noise_floor: expected RMS from sensor noise alone.
-        identify, holdout: (before, after) over all rows; None if not available.
-        judged: share of the rows that the verdict is based on, and the gap on them; None if it is all rows.
-        limit: RMS up to which a model matches the recording.
-    """
-
-    unit: str
-    noise_floor: float
-    identify: tuple[float, float] | None
-    holdout: tuple[float, float] | None = None
-    judged: tuple[float, float] | None = None
-    limit: float = math.inf
-
-    @property
-    def final(self) -> tuple[float, float] | None:
-        """Before and after on the holdout where there is one, else on the recording."""
-        return self.holdout or self.identify
-
-    @property
-    def times_noise(self) -> float:
-        """The final gap over the noise floor; nan if not available."""
-        return math.nan if self.final is None else self.final[1] / max(self.noise_floor, 1e-300)
-
-    @property
-    def within(self) -> bool:
-        """Whether the model matches, as far as a gap is available."""
-        return self.final is None or self.final[1] <= self.limit
 
 
 @dataclass(frozen=True)
@@ -161,17 +123,14 @@ class Diagnosis(Presented):
 
     Attributes:
         verdict, effects, parameters: as the contract has them.
-        because: what speaks against its being all; empty unless something remains.
+        objections: what speaks against its being all; () unless something remains.
         probabilities: of sets of names, and that none of the catalogue's is right.
         where: shares of the gap before any effect; unexplained_share, unexplained_where: of the residual.
         torque, velocity: gaps before and after.
-        bandwidth: of the cascade that held the models to the recordings - rad/s.
-        closed_loop: velocity gap under the rig's drive without and with what shows only there - rad/s (m/s).
-        refined: velocity gap of held-out motion before and after values were refined by simulation; None if not kept.
         steps: the bare axis, then the model after each addition.
         holdout: whether it is of the same axis, and in what it differs.
         next_experiment: that tells apart what this recording does not.
-        rejected: names that held-out motion spoke against.
+        rejected: names that held-out motion contradicts, or whose size is not determined, each with the reason.
         refused: why a parameter is not determined beside the effects, by its name; the model is the last that has all.
         stopped: what ended the search before it was done; None if nothing did.
         unknown_effect: what remains, as tables of the model; None where held-out motion confirms none.
@@ -184,7 +143,7 @@ class Diagnosis(Presented):
     """
 
     verdict: str
-    because: list[str]
+    objections: tuple[Objection, ...]
     effects: list[NamedEffect]
     probabilities: Probabilities
     where: list[Where]
@@ -193,11 +152,8 @@ class Diagnosis(Presented):
     parameters: dict[str, Parameter]
     torque: Gap
     velocity: Gap
-    bandwidth: float
-    closed_loop: tuple[float, float] | None
-    refined: tuple[float, float] | None
     steps: list[Shrunk]
-    rejected: tuple[Rejected, ...]
+    rejected: tuple[tuple[str, str], ...]
     refused: Mapping[str, str]
     holdout: SameAxis
     next_experiment: NextExperiment | None
@@ -304,30 +260,27 @@ def decided(recordings: Recordings, excluded: frozenset[str], policy: Policy) ->
 
 def show(bare: Fit, added: Added) -> Diagnosis:
     """The diagnosis of what was named and kept."""
-    recordings, whole, kept = added.recordings, added.extension.fitted, added.refined
+    recordings, whole = added.recordings, added.extension.fitted
     unit, kind, current = recordings.unit, recordings.rig.axis_kind, recordings.current
-    parameters, alone, spread, differing = apart(recordings, whole, kept.parameters)
+    parameters, alone, spread, differing = apart(recordings, whole, added.parameters)
     shown = courses(added)
     steps = shrinking(added, shown)
     torque, velocity = gaps(added, steps)
-    likely = added.suspects.probabilities.without(frozenset(one.name for one in added.rejected))
-    comes_to, because = verdict(Shown(added, likely, torque, velocity))
+    likely = added.suspects.probabilities.without(frozenset(name for name, _ in added.rejected))
+    comes_to, objections = verdict(added, likely, torque, velocity)
     return Diagnosis(
         verdict=comes_to,
-        because=because,
-        effects=kept.effects,
+        objections=objections,
+        effects=added.effects,
         probabilities=likely,
         where=where(bare, kind, unit, current, whole),
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
-        unexplained_where=where(whole, kind, unit, current)[:3] if because else [],
+        unexplained_where=where(whole, kind, unit, current)[:3] if objections else [],
         parameters=parameters,
         recordings=alone,
         between=spread,
         torque=torque,
         velocity=velocity,
-        bandwidth=added.gaps.bandwidth,
-        closed_loop=added.closed_loop,
-        refined=kept.gap,
         steps=steps,
         rejected=added.rejected,
         refused=added.refused,
@@ -335,12 +288,12 @@ def show(bare: Fit, added: Added) -> Diagnosis:
         next_experiment=propose(added),
         stopped=added.suspects.searched.stopped,
         unknown_effect=added.unknown,
-        model=kept.model and with_tables(kept.model, added.unknown.tables if added.unknown else ()),
+        model=added.model and with_tables(added.model, added.unknown.tables if added.unknown else ()),
         balance=Balance.of(whole).repeating(added.repeats),
         courses=shown,
         considered=considered(added, likely),
         warnings=[
-            *suspicions(recordings.trace, recordings.rig, kept.parameters),
+            *suspicions(recordings.trace, recordings.rig, added.parameters),
             *delayed(whole),
             *left_open(recordings.rows, kind),
             *impacts(whole, unit),
@@ -360,8 +313,8 @@ def courses(added: Added) -> tuple[Course, ...]:
     for rows, recorded in zip(laid_out, added.recorded, strict=True):
         trace = recorded.trace
         models = [stage.model for stage in added.stages]
-        if added.refined.gap is not None and added.refined.model is not None:
-            models[-1] = added.refined.model
+        if added.refined is not None:
+            models[-1] = added.model
         left = [added.gaps.residual(model, recorded) for model in models]
         along = recorded.name, trace.origin, trace.time, measured_velocity(trace), tuple(left), rows.samples()
         found.append(Course(*along, rows.effort, tuple(balance.left(rows) for balance in balances)))
@@ -397,7 +350,15 @@ def gaps(added: Added, steps: Sequence[Shrunk]) -> tuple[Gap, Gap]:
     remainder = added.suspects.policy.remainder * whole.floor
     return (
         Gap(recordings.unit, whole.floor, *torque, judged=judged, limit=remainder),
-        Gap(recordings.rig.axis_kind.speed_unit, floor, *simulated, limit=limit),
+        Gap(
+            recordings.rig.axis_kind.speed_unit,
+            floor,
+            *simulated,
+            limit=limit,
+            bandwidth=added.gaps.bandwidth,
+            closed_loop=added.closed_loop,
+            refined=added.refined,
+        ),
     )
 
 
@@ -418,7 +379,7 @@ def shaken(fitted: Fit, bandwidth: float) -> float:
 def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, ...]:
     """All effects: those accepted in the order of addition, then the others by the share they explain."""
     rounds = rounds_of(added.suspects.searched)
-    kept = {one.effect: one for one in added.refined.effects}
+    kept = {one.effect: one for one in added.effects}
     alike = {name: one for one in kept.values() for name in one.ambiguous_with}
     found: dict[Effect, Considered] = {}
     for effect in catalogue().values():
@@ -455,7 +416,7 @@ def _share(tried: Step, effect: Effect) -> float | None:
 def _against(effect: Effect, added: Added, rounds: Sequence[Step]) -> str:
     """Why an effect is not in the model: the first of these reasons that holds."""
     suspects = added.suspects
-    rejected = {one.name: one.reason for one in added.rejected}
+    rejected = dict(added.rejected)
     share = _share(rounds[-1], effect) if rounds else None
     reasons = {
         "excluded": effect.name in suspects.excluded,
@@ -472,163 +433,6 @@ def _against(effect: Effect, added: Added, rounds: Sequence[Step]) -> str:
         ),
     }
     return next((reason for reason, holds in reasons.items() if holds), "nothing in the recording points to it")
-
-
-@dataclass(frozen=True)
-class Shown:
-    """What a diagnosis shows, as far as the verdict depends on it.
-
-    Attributes:
-        added: the effects accepted.
-        likely: probabilities of sets of names.
-        torque, velocity: gaps of the bare axis and of the model.
-    """
-
-    added: Added
-    likely: Probabilities
-    torque: Gap
-    velocity: Gap
-
-    @property
-    def whole(self) -> Fit:
-        """The torque balance with all effects."""
-        return self.added.extension.fitted
-
-    @property
-    def effects(self) -> list[NamedEffect]:
-        """The named effects."""
-        return self.added.refined.effects
-
-    @property
-    def friction(self) -> dict[str, tuple[Parameter, float]]:
-        """Viscous and Coulomb friction, each with its RMS torque at unit strength."""
-        kind, whole, parameters = self.added.recordings.rig.axis_kind, self.whole, self.added.refined.parameters
-        return {
-            kind.parameter(term): (parameters[kind.parameter(term)], rms(whole.columns[:, whole.owners == term]))
-            for term in (VISCOUS, COULOMB)
-        }
-
-
-def remains(shown: Shown) -> str:
-    """The torque residual is clearly above noise: by what multiple of the floor."""
-    if not shown.added.suspects.policy.remains(shown.whole):
-        return ""
-    return f"the torque residual is {shown.whole.chi:.3g} times the noise"
-
-
-def depends(shown: Shown) -> str:
-    """The torque residual is as small as noise, and not noise."""
-    return str(shown.whole.depends or "")
-
-
-def moves_otherwise(shown: Shown) -> str:
-    """The bare axis does not move as recorded: by what multiple of the noise floor."""
-    gap = shown.velocity
-    if shown.effects or gap.within or gap.final is None:
-        return ""
-    return f"the simulated speed differs by {gap.final[1]:.3g} {gap.unit} RMS, {gap.times_noise:.2g} times the noise"
-
-
-def likelier(shown: Shown) -> str:
-    """Something is more likely than no missing effect, and is not certain enough to be named."""
-    likely = shown.likely
-    others = {" and ".join(map(words, sorted(each.names))): each.probability for each in likely.sets if each.names}
-    name, probability = max({**others, "an unknown effect": likely.none}.items(), key=lambda one: one[1])
-    if shown.effects or remains(shown) or depends(shown) or probability < likely.nothing:
-        return ""
-    chances = (f"({100.0 * each:.0f} %)" for each in (probability, likely.nothing))
-    return "{} is more likely {} than no missing effect {}".format(name, *chances)
-
-
-def refused(shown: Shown) -> str:
-    """A parameter is not determined beside the effects: the first, of which others follow, and why."""
-    reasons = (f"{words(name)} is not determined: {reason}" for name, reason in shown.added.refused.items())
-    return next(reasons, "")
-
-
-def unfinished(shown: Shown) -> str:
-    """The search ended at a limit, or found an effect that was excluded."""
-    stopped = shown.added.suspects.searched.stopped
-    return stopped or ("an excluded effect was found" if shown.added.suspects.withheld else "")
-
-
-def moves_worse(shown: Shown) -> str:
-    """The model moves worse than the bare axis, by more than noise: in the recording that shows it first."""
-    if not shown.effects:
-        return ""
-    gap, added = shown.velocity, shown.added
-    for recorded, pair in zip(added.recorded, (gap.identify, gap.holdout), strict=False):
-        if pair is None:
-            continue
-        allowed = math.hypot(pair[0], gap.noise_floor)
-        if pair[1] > allowed * (1.0 if added.gaps.in_phase(added.extension, recorded) else math.sqrt(ERRS_TWICE)):
-            name, before, after = recorded.name, *pair
-            return f"simulated motion of the {name} is worse with it: {before:.3g} -> {after:.3g} {gap.unit}"
-    return ""
-
-
-def undetermined(shown: Shown) -> str:
-    """A quantity is undetermined: its interval is wider than its value.
-
-    One that is minor, as a share between dry and viscous friction, does not count. A phase is wide if it may be
-    anywhere in its turn, an instant if it may be anywhere in the recording. Friction as wide counts where the torque
-    that it leaves open is more than noise.
-    """
-    if not shown.effects:
-        return ""
-    time = shown.added.recordings.trace.time
-    for one in shown.effects:
-        for quantity in (each for each in one.effect.quantities if not each.minor):
-            found = one.parameters.get(quantity.name)
-            itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
-            if found is not None and found.half_width > (abs(found.value) if itself is None else itself):
-                return f"{one.name}: {with_interval(quantity.name, found)} is not determined"
-    for friction, (found, torque) in shown.friction.items():
-        if found.half_width > abs(found.value) and found.half_width * torque > shown.torque.noise_floor:
-            return f"{with_interval(friction, found)} is not determined"
-    return ""
-
-
-def negative_friction(shown: Shown) -> str:
-    """Friction is negative by more than noise, so it includes something else."""
-    for friction, (found, torque) in shown.friction.items():
-        if found.value < 0.0 and (found.ci95[1] < 0.0 or -found.value * torque > shown.torque.noise_floor):
-            return f"{with_interval(friction, found)} is negative"
-    return ""
-
-
-def holdout_apart(shown: Shown) -> str:
-    """The model does not hold on the holdout: how far that is off."""
-    gap = shown.torque
-    if gap.holdout is None or gap.identify is None:
-        return ""
-    least = max(gap.identify[1], gap.noise_floor)
-    if gap.holdout[1] <= shown.added.suspects.policy.holdout_gap * least:
-        return ""
-    return f"the residual of the holdout is {gap.holdout[1]:.3g} {gap.unit}, that of the recording {least:.3g}"
-
-
-#: In the order in which they are listed.
-OBJECTIONS: tuple[Callable[[Shown], str], ...] = (
-    remains,
-    depends,
-    refused,
-    unfinished,
-    moves_otherwise,
-    moves_worse,
-    undetermined,
-    negative_friction,
-    holdout_apart,
-    likelier,
-)
-
-
-def verdict(shown: Shown) -> tuple[str, list[str]]:
-    """The verdict, and the objections that it rests on."""
-    against = [objected for objection in OBJECTIONS if (objected := objection(shown))]
-    if against:
-        return "unexplained_remainder", against
-    return ("explained" if shown.effects else "nothing_missing"), []
 
 
 def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:

@@ -79,7 +79,7 @@ class NextExperiment:
 
 def propose(added: Added) -> NextExperiment | None:
     """The experiment for the first two explanations that can be distinguished; None if only one remains."""
-    recordings, stored = added.recordings, added.refined.model
+    recordings, stored = added.recordings, added.model
     if stored is None or recordings.rig.drive is None:
         return None
     width, floor = recordings.rows.conditioning.filter.width, added.extension.fitted.floor
@@ -103,7 +103,7 @@ def propose(added: Added) -> NextExperiment | None:
 
 def alternatives(added: Added, model: AxisModel) -> Iterator[Alternatives]:
     """Other explanations that remain, as models."""
-    for effect in added.refined.effects:
+    for effect in added.effects:
         if not _of_motion(effect.effect):
             continue
         for other in effect.ambiguous_with:

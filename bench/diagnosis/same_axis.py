@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -37,32 +37,19 @@ VAGUE = 0.1
 
 
 @dataclass(frozen=True)
-class Disagreement:
-    """A quantity that differs between recording and holdout by more than errors and daily variation.
-
-    Attributes:
-        quantity: its name.
-        recording, holdout: its estimate from each, with the effects that were found.
-    """
-
-    quantity: str
-    recording: Parameter
-    holdout: Parameter
-
-
-@dataclass(frozen=True)
 class SameAxis:
     """Whether the holdout is of the same axis.
 
     Attributes:
         same: None if unknown: without a holdout, with an inconclusive one, or if only friction differs, which other
             conditions may explain.
-        differs: quantities that differ.
+        differs: names of quantities that differ by more than errors and daily variation, each with its estimate from
+            the recording and from the holdout, with the effects that were found.
         warnings: about another axis.
     """
 
     same: bool | None
-    differs: tuple[Disagreement, ...] = ()
+    differs: Mapping[str, tuple[Parameter, Parameter]] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
 
 
@@ -76,14 +63,14 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
     lasting = fitted.hypothesis.with_terms(term for term in fitted.terms if not isinstance(term.effect, Occasional))
     here, there = fit(fitted.rows, lasting), fit(other, lasting)
     own, others = uncertain(here).base(units), uncertain(there).base(units)
-    differs, apart, vague = [], [], True
+    differs, apart, vague = dict[str, tuple[Parameter, Parameter]](), list[str](), True
     for k, (name, label) in enumerate(zip(units, ("inertia", "viscous friction", "Coulomb friction"), strict=True)):
         if not own[name].value > 0.0:
             continue
         found = Difference.relative(own[name], others[name])
         vague = vague and not (k == 0 and found.std_error < VAGUE)
         if _beyond(REPORTED[k], found):
-            differs.append(Disagreement(name, own[name], others[name]))
+            differs[name] = own[name], others[name]
         if _beyond(FOREIGN[k], found):
             apart.append(f"{1.0 + found.value:.3g} times the {label} (± {NORMAL95 * found.std_error:.2g})")
     left, least = (found.rms / rms(found.effort) for found in (there, here))
@@ -91,8 +78,8 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
         apart.append(f"{left:.0%} of its torque unexplained by the effects found, {least:.1%} of the recording's")
     if apart:
         message = f"the holdout recording has {' and '.join(apart)}: another axis? It was not used as proof"
-        return SameAxis(False, tuple(differs), (message,))
-    return SameAxis(None if vague or differs else True, tuple(differs))
+        return SameAxis(False, differs, (message,))
+    return SameAxis(None if vague or differs else True, differs)
 
 
 def _beyond(factor: float, found: Difference) -> bool:

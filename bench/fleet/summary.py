@@ -1,6 +1,6 @@
 """What a fleet's table says: which axes changed and since when, what was named, and who needs a person and why.
 
-An axis changed where what its recordings tell of inertia or friction steps (`bench.comparison.spread`).
+An axis changed where what its recordings tell of inertia or friction steps (`bench.fleet.change_point`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, OFFSET, VISCOUS
 from bench.comparison.difference import holm
-from bench.comparison.spread import ChangePoint, change_point
+from bench.fleet.change_point import ChangePoint, change_point
 from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.manifest import Manifest
 from bench.fleet.store import Plain

@@ -20,7 +20,6 @@ from bench.gate.check import Check
 from bench.gate.gate import passed, warnings_of
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
-from bench.joints.motion import JointMotion, joint_motion
 from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
@@ -28,6 +27,7 @@ from bench.plant.model_file import Mounting, StoredModel
 from bench.plant.robot import AddedBody, Poses, Robot, joint_rig, read_along
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
+from bench.view.joint_motion import JointMotion, joint_motion
 
 Told = TypeVar("Told")
 #: Of one joint: ten times what the longest log tried took (600 s at 500 Hz).

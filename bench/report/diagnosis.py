@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from bench.axis_kind import ARMATURE, KINDS, AxisKind
-from bench.diagnosis.diagnosis import PACKED, Course, Diagnosis, Gap, Shrunk
+from bench.diagnosis.diagnosis import PACKED, Course, Diagnosis, Shrunk
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
 from bench.diagnosis.tabulated import UnknownEffect
+from bench.diagnosis.verdict import Gap
 from bench.diagnosis.where import Where
 from bench.gate.gate import warnings_of
 from bench.names import words
@@ -29,6 +30,7 @@ from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
 from bench.report.serial import as_json, known, picked, serialised
+from bench.report.verdict import reasons
 
 SCHEMA = "bench.diagnose/1"
 #: Between rows of the motion to record next - s.
@@ -63,12 +65,13 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
     ]
     velocity = {  # models held to the recording by a cascade, fed with the recorded effort
         **as_json(found.velocity),
-        "loop": {"kind": "held", "bandwidth": {"value": found.bandwidth, "unit": "rad/s"}},
-        **_before_after(found, "closed_loop", "refined"),
+        "loop": {"kind": "held", "bandwidth": {"value": found.velocity.bandwidth, "unit": "rad/s"}},
+        **_before_after(found.velocity, "closed_loop", "refined"),
     }
     return {
         "schema": SCHEMA,
-        **picked(found, "verdict", "because"),
+        "verdict": found.verdict,
+        "because": reasons(found),
         "effects": effects,
         "probability": {
             "none_of_the_catalogue": likely.none,
@@ -86,7 +89,7 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
         **recordings_json(found.recordings, found.between, provenance),
         "gap": {"torque": found.torque, "velocity": velocity},
         "steps": found.steps[1:],
-        "rejected": found.rejected,
+        "rejected": [{"name": name, "reason": reason} for name, reason in found.rejected],
         "refused": found.refused,
         "holdout": found.holdout,
         "next_experiment": _experiment_json(found),
@@ -135,14 +138,14 @@ def _(compared: SameAxis) -> dict[str, Any]:
     """Whether the holdout is of the same axis; what each of the two recordings tells of what differs."""
     differs = [
         {
-            "quantity": each.quantity,
-            "unit": each.recording.unit,
-            "recording": each.recording.value,
-            "holdout": each.holdout.value,
-            "recording_ci95": each.recording.ci95,
-            "holdout_ci95": each.holdout.ci95,
+            "quantity": name,
+            "unit": recording.unit,
+            "recording": recording.value,
+            "holdout": holdout.value,
+            "recording_ci95": recording.ci95,
+            "holdout_ci95": holdout.ci95,
         }
-        for each in compared.differs
+        for name, (recording, holdout) in compared.differs.items()
     ]
     return {"same_axis": compared.same, "differs": differs}
 
@@ -233,7 +236,7 @@ def verdict_sentence(found: Diagnosis) -> str:
         noise = f"the noise floor {number(gap.noise_floor, digits=3)} {unit}"
         if found.verdict == "nothing_missing":
             return f"No missing effect found: {residual}, {noise}."
-        return f"An unknown effect is likely: {found.because[0]} ({residual}, {noise})."
+        return f"An unknown effect is likely: {reasons(found)[0]} ({residual}, {noise})."
     were, them = ("were", "them") if len(found.effects) > 1 else ("was", "it")
     names = sentence(listed(dict.fromkeys(map(called, found.effects))))
     where = "wrong in the measurement" if len(_sensors(found)) == len(found.effects) else "missing"
@@ -241,7 +244,7 @@ def verdict_sentence(found: Diagnosis) -> str:
     if found.verdict == "explained":
         times = f", but the simulated speed differs by {number(found.velocity.times_noise, digits=2)} × the noise"
         return f"{gone}, and the {effort} residual is noise{'' if found.velocity.within else times}."
-    return f"{gone}, but {words(found.because[0])}."
+    return f"{gone}, but {words(reasons(found)[0])}."
 
 
 def called(effect: NamedEffect) -> str:
@@ -288,8 +291,8 @@ def _tabulated(found: Diagnosis) -> str:
 def _sure(found: Diagnosis) -> str:
     """What confirms the verdict, and what speaks against it."""
     gap, lines, effort = found.torque, [likely_names(found)], effort_word(found.torque.unit)
-    if found.because[1:]:
-        lines.append(f"Also against it: {'; '.join(map(words, found.because[1:]))}.")
+    if found.objections[1:]:
+        lines.append(f"Also against it: {'; '.join(map(words, reasons(found)[1:]))}.")
     if gap.holdout is not None:
         before, after = gap.holdout
         changes = f"falls from {number(before, digits=3)} to" if after < before else "is"
@@ -342,7 +345,7 @@ def _moves(found: Diagnosis) -> str:
     gap = found.velocity
     if gap.final is None:
         return "Not known: MuJoCo cannot simulate the model, or the simulation diverged."
-    like = "Nearly" if found.because else "Yes"
+    like = "Nearly" if found.objections else "Yes"
     before = f" ({number(gap.final[0], digits=3)} before)" if found.effects else ""
     where = " on the holdout" if gap.holdout else ""
     return (
@@ -376,7 +379,7 @@ def _motion(found: Diagnosis) -> doc.Section:
     steps = doc.table("RMS gaps before and after each addition", ("model", *headings), rows)
     graphs = (_over_time(found, course) for course in found.courses)
     loop = "The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
-    held = doc.Paragraph(text=f"{loop}{number(found.bandwidth, 'rad/s', 3)}.")
+    held = doc.Paragraph(text=f"{loop}{number(found.velocity.bandwidth, 'rad/s', 3)}.")
     return doc.section("motion", "Measured and simulated", steps, *rms_gaps(found), *graphs, held)
 
 
@@ -418,15 +421,17 @@ def _beside(found: Diagnosis) -> list[str]:
     unit, sensors = found.velocity.unit, _sensors(found)
     lines = [f"at fault is the sensor, not the axis: {', '.join(sensors)}"] if sensors else []
     lines += [
-        f"the holdout differs: {words(each.quantity)} {number(each.recording.value)} to "
-        f"{number(each.holdout.value, each.recording.unit)}"
-        for each in found.holdout.differs
+        f"the holdout differs: {words(name)} {number(recording.value)} to {number(holdout.value, recording.unit)}"
+        for name, (recording, holdout) in found.holdout.differs.items()
     ]
-    pairs = {"under the rig's drive": found.closed_loop, "of held-out motion, refined by simulation": found.refined}
+    pairs = {
+        "under the rig's drive": found.velocity.closed_loop,
+        "of held-out motion, refined by simulation": found.velocity.refined,
+    }
     lines += [
         f"velocity gap {name}: {number(pair[0])} to {number(pair[1], unit)}" for name, pair in pairs.items() if pair
     ]
-    lines += [f"rejected: {words(one.name)}, {one.reason}" for one in found.rejected]
+    lines += [f"rejected: {words(name)}, {reason}" for name, reason in found.rejected]
     lines += [f"refused: {words(name)}, {reason}" for name, reason in found.refused.items()]
     lines += [f"stopped: {found.stopped}"] if found.stopped else []
     lines += [f"unexplained: {share(found.unexplained_share)} of the gap"] if found.unexplained_where else []
@@ -454,6 +459,6 @@ def _next(found: Diagnosis) -> doc.Section:
     """What to record next, and what is unexplained."""
     text = following(found) or "No further recording is needed."
     blocks: list[doc.Paragraph | doc.Points] = [doc.Paragraph(text=text)]
-    if found.because:
-        blocks += [doc.Paragraph(text="Evidence of a further effect:"), doc.points(map(words, found.because))]
+    if found.objections:
+        blocks += [doc.Paragraph(text="Evidence of a further effect:"), doc.points(map(words, reasons(found)))]
     return doc.section("next", "What to record next", *blocks, detail=True)

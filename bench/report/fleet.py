@@ -18,8 +18,8 @@ import numpy as np
 
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, KINDS, VISCOUS
-from bench.comparison.spread import FEWEST, expected
 from bench.files import write_text
+from bench.fleet.change_point import FEWEST, expected
 from bench.fleet.fleet import RESULTS, TABLE, Fleet
 from bench.fleet.store import Plain, Store
 from bench.fleet.summary import ALARM, STATUSES, AxisSummary, Changed, History, Summary

@@ -22,6 +22,7 @@ from bench.report.numbers import interval, sentence, unit_text
 from bench.report.parts import origin, parameters_table
 from bench.report.serial import as_json, picked, serialised
 from bench.report.simulation import moving_section
+from bench.report.verdict import reasons
 
 SCHEMA = "bench.robot/1"
 MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
@@ -149,7 +150,7 @@ def _missing(joint: IdentifiedJoint) -> str:
     """What was missing, and how sure that is."""
     if joint.diagnosis is None:
         return "not determined"
-    left = f" {'; '.join(map(words, joint.diagnosis.because))}" if joint.diagnosis.because else ""
+    left = f" {'; '.join(map(words, reasons(joint.diagnosis)))}" if joint.diagnosis.objections else ""
     return f"{'' if joint.diagnosis.effects else 'None named. '}{likely_names(joint.diagnosis)}{sentence(left)}"
 
 

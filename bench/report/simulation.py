@@ -13,8 +13,7 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA, AxisKind
 from bench.diagnosis.add import NULL
-from bench.diagnosis.replay import BARE, HELD, HORIZONS, LEFT, FreeRun, Replay
-from bench.joints.motion import JointMotion
+from bench.diagnosis.replay import LEFT, Replay
 from bench.names import readable, words
 from bench.plant.axis_model import parameter_quantities
 from bench.plant.simulate import Simulated
@@ -24,6 +23,8 @@ from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import model_sections, one_panel, origin, values_table
 from bench.report.robot_drawing import robot_drawing
 from bench.trace.noise import white_noise
+from bench.view.free_running import BARE, HELD, HORIZONS, FreeRun
+from bench.view.joint_motion import JointMotion
 from bench.view.side_by_side import RobotAlong, SideBySide
 
 #: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.

@@ -70,7 +70,7 @@ def test_an_axis_that_stands_in_the_middle_keeps_its_constant_torque(recorded):
     rig, stands, _ = recorded
     result = added((rig, stands, None), [term("direction_dependent_friction")], with_holdout=False)
     assert result.rejected == ()
-    (named,) = result.refined.effects  # forward less backward is twice an offset
+    (named,) = result.effects  # forward less backward is twice an offset
     assert named.parameters["coulomb_difference"].value == pytest.approx(2.0 * OFFSET, rel=0.02)
 
 

@@ -84,17 +84,17 @@ def test_a_step_is_bounded_by_the_intervals(whole):
 @pytest.mark.parametrize(("after", "kept"), [(0.981, False), (0.979, True), (1.5, False)])
 def test_a_step_is_kept_that_takes_two_hundredths_of_the_held_out_gap(whole, monkeypatch, after, kept):
     recordings, held_out, stage, suspects = whole
-    found = refined(recordings, stage, suspects, held_out, Linear(1.0, after))
-    assert found.gap == (pytest.approx((1.0, after)) if kept else None)
-    assert (found.model is stage.model) is not kept
+    model, *_, gap = refined(recordings, stage, suspects, held_out, Linear(1.0, after))
+    assert gap == (pytest.approx((1.0, after)) if kept else None)
+    assert (model is stage.model) is not kept
 
 
 @pytest.mark.parametrize(("floors", "kept"), [(3.4, False), (3.6, True)])
 def test_a_gap_of_three_and_a_half_noises_is_not_refined(whole, floors, kept):
     """The speed's white noise is 0.03 rad/s."""
     before = floors * 0.03
-    found = refined(*[whole[k] for k in (0, 2, 3, 1)], Linear(before, 0.5 * before))
-    assert (found.gap is not None) is kept
+    *_, gap = refined(*[whole[k] for k in (0, 2, 3, 1)], Linear(before, 0.5 * before))
+    assert (gap is not None) is kept
 
 
 def test_intervals_move_with_their_values():

@@ -16,6 +16,7 @@ from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
 from bench.plant.model_file import load_model
 from bench.report.diagnosis import diagnosis, diagnosis_json, write_diagnosis
+from bench.report.verdict import reasons
 from bench.rig.rig import load_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import Motion, slow_reversals
@@ -59,7 +60,7 @@ def test_names_that_take_the_inertia_are_a_remainder_and_leave_the_other_paramet
     assert [effect.name for effect in lacking.effects] == ["torsion_spring"]
     assert lacking.verdict == "unexplained_remainder"
     assert set(lacking.refused) == {"moment_of_inertia", "load_moment_of_inertia"}
-    assert lacking.because[0].startswith("moment of inertia is not determined: its interval")
+    assert reasons(lacking)[0].startswith("moment of inertia is not determined: its interval")
     assert set(lacking.parameters) == {"viscous_friction_coefficient", "coulomb_friction_torque"}
 
 

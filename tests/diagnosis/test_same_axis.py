@@ -11,6 +11,7 @@ from bench.arrays import rms
 from bench.diagnosis.same_axis import same_axis
 from bench.fit.rows import Rows
 from bench.report.diagnosis import diagnosis_json
+from bench.report.verdict import reasons
 from bench.trace.write import write
 from tests.diagnosis.command import started
 from tests.diagnosis.constructed import COULOMB, INERTIA, SINES, VISCOUS, bare, base, moved, recorded, vibration
@@ -47,7 +48,7 @@ def test_what_may_differ_is_distinguished_from_other_conditions_and_another_axis
     for factors, same, differs in ((alike, True, 0), (other_conditions, None, 1), (another_axis, False, 1)):
         for factor in factors:
             found = compared(lambda motion, by=factor: (by - 1.0) * value * getattr(motion, signal))
-            assert (found.same, [each.quantity for each in found.differs]) == (same, [NAMES[place]][:differs]), factor
+            assert (found.same, [*found.differs]) == (same, [NAMES[place]][:differs]), factor
             assert bool(found.warnings) == (same is False)
 
 
@@ -94,7 +95,7 @@ def test_a_holdout_that_differs_says_in_what(truth, same, quantities):
             assert each[which] == pytest.approx(getattr(true, name), rel=0.05)
     if quantities:
         assert found.verdict == "unexplained_remainder"
-        assert any("holdout" in said for said in found.because)
+        assert any("holdout" in said for said in reasons(found))
     assert bool(found.warnings) == (same is False)
 
 

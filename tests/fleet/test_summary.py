@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 
 from bench.bounds import bounds
-from bench.comparison.spread import change_point
+from bench.fleet.change_point import change_point
 from bench.fleet.evaluate import Job, PlannedRecording
 from bench.fleet.manifest import Manifest
 from bench.fleet.summary import summarise

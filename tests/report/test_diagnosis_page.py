@@ -8,6 +8,7 @@ import pytest
 
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.name import NamedEffect
+from bench.diagnosis.verdict import Objection
 from bench.effects.catalogue import catalogue
 from bench.report.diagnosis import diagnosis, verdict_sentence
 from bench.report.document import Chart, Table, TimeGraph
@@ -98,7 +99,9 @@ def test_profiles_and_courses_agree_with_the_steps(diagnosed):
 def test_the_verdict_fits_what_was_found(diagnosed):
     assert "was missing" in verdict_sentence(diagnosed)
     assert "the torque residual is noise" in verdict_sentence(diagnosed)
-    unsure = replace(diagnosed, verdict="unexplained_remainder", because=["something remains"])
+    unsure = replace(
+        diagnosed, verdict="unexplained_remainder", objections=(Objection("stopped", {"reason": "something remains"}),)
+    )
     assert verdict_sentence(unsure).endswith("but something remains.")
     page = diagnosis(unsure, "t")
     assert page.tone == "open"

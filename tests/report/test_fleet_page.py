@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from bench.comparison.spread import expected
+from bench.fleet.change_point import expected
 from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.fleet import Fleet
 from bench.fleet.manifest import Manifest

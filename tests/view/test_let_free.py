@@ -5,12 +5,12 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bench.diagnosis.model import holding_bandwidth
-from bench.diagnosis.replay import bare, let_free, otherwise
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import StoredModel, model_toml
 from bench.plant.tracking import SoftTracking, track
 from bench.trace.motion import measured_position
+from bench.view.free_running import free_run, restarted, without_effects
 from tests.diagnosis.test_commands import moving, only
 from tests.fit.motions import RIG
 
@@ -48,7 +48,7 @@ def integrated(trace, start, length):
 
 def test_it_is_as_far_off_as_the_equation_of_motion_says(model):
     trace = one_way(4.0)
-    found = let_free(model, trace, RIG)
+    found = free_run(model, trace, RIG)
     assert (found.windows, found.time.size) == (5, 2000)
     off = []
     for start in range(0, 2001, 500):
@@ -63,14 +63,14 @@ def test_it_is_as_far_off_as_the_equation_of_motion_says(model):
 
 
 def test_it_is_let_free_for_five_seconds_at_most(model):
-    found = let_free(model, one_way(12.0), RIG)
+    found = free_run(model, one_way(12.0), RIG)
     assert found.time[-1] == pytest.approx(5.0)
     assert found.windows == 6
 
 
 def test_it_begins_anew_every_so_often_where_the_sensors_have_the_axis(model):
     trace = one_way(4.0)
-    found = otherwise(model, trace, RIG)
+    found = restarted(model, trace, RIG)
     assert list(found) == ["let free every 0.5 s", "let free every 1 s", "let free every 2 s"]  # 5 s are not there
     for horizon, position in zip((0.5, 1.0, 2.0), found.values(), strict=True):
         length = round(horizon / trace.sample_period)
@@ -86,7 +86,7 @@ def test_without_what_was_found_it_is_held_where_it_is(tmp_path, model):
     trace, effect = one_way(4.0), Present.of("torque_offset", {"torque": 0.02})
     text = model_toml(StoredModel("axis", AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB), (effect,))))
     (tmp_path / "model.toml").write_text(f"{text}\n{BALANCE}", encoding="utf-8")
-    found = bare(tmp_path / "model.toml", trace, RIG)
+    found = without_effects(tmp_path / "model.toml", trace, RIG)
     without = AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB))
     plain = track(SoftTracking(without, trace, K_T * trace["current"]), holding_bandwidth(without, 66.0))
     np.testing.assert_allclose(found, plain.position, atol=1e-6)
@@ -95,5 +95,5 @@ def test_without_what_was_found_it_is_held_where_it_is(tmp_path, model):
 def test_a_model_without_motion_is_not_let_free(tmp_path):
     (tmp_path / "model.toml").write_text(BALANCE, encoding="utf-8")
     blind = only(one_way(4.0), "velocity", "current")
-    assert let_free(tmp_path / "model.toml", blind, RIG) is None
-    assert otherwise(tmp_path / "model.toml", blind, RIG) == {}
+    assert free_run(tmp_path / "model.toml", blind, RIG) is None
+    assert restarted(tmp_path / "model.toml", blind, RIG) == {}

@@ -9,10 +9,10 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.replay import BARE, HELD, otherwise, windows_of
 from bench.rig.rig import Rig
 from bench.trace.motion import integrated, stretches_of
 from bench.trace.trace import Trace
+from bench.view.free_running import BARE, HELD, restarted, windows_of
 
 #: Instants at most of which a motion is kept, to be drawn.
 INSTANTS = 1000
@@ -55,7 +55,7 @@ def joint_motion(
     if held[HELD] is None or not np.array_equal(course.time[:count], trace.time):
         return None
     runs = {how: _position(course.velocity - left, trace) for how, left in held.items() if left is not None}
-    free, ratio = otherwise(found, trace, rig, EVERY), rig.load.gear_ratio if rig.load is not None else 1.0
+    free, ratio = restarted(found, trace, rig, EVERY), rig.load.gear_ratio if rig.load is not None else 1.0
     few = np.linspace(trace.time[0], trace.time[-1], min(count, INSTANTS))
     return JointMotion(
         trace.origin,

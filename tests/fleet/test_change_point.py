@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from bench.comparison.spread import change_point, expected
+from bench.fleet.change_point import change_point, expected
 
 
 def test_one_more_recording_is_judged_by_the_prediction_interval_of_the_next():
