@@ -238,8 +238,9 @@ def course_table(results: Sequence[TaskResult]) -> Table:
 
 
 def first_numbers(results: Sequence[TaskResult]) -> Table:
-    """The same of the first numbers of each task, which fit on a screen."""
-    return course_table([replace(one, numbers=one.numbers[:FIRST]) for one in results if one.key.isdigit()])
+    """The same on one screen: the first numbers of each task, and whatever was not done."""
+    shown = (one for one in results if one.key.isdigit() or one.reason is not None)
+    return course_table([replace(one, numbers=one.numbers[:FIRST]) for one in shown])
 
 
 def lab_json(results: Sequence[TaskResult], axis: str) -> str:
