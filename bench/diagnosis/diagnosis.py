@@ -22,7 +22,7 @@ from bench.diagnosis.policy import POLICY, Policy
 from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.same_axis import SameAxis, apart
-from bench.diagnosis.search import Searched, Step
+from bench.diagnosis.search import Round
 from bench.diagnosis.tabulated import UnknownEffect, with_tables
 from bench.diagnosis.verdict import Gap, Objection, verdict
 from bench.diagnosis.where import Where, where
@@ -378,7 +378,7 @@ def shaken(fitted: Fit, bandwidth: float) -> float:
 
 def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, ...]:
     """All effects: those accepted in the order of addition, then the others by the share they explain."""
-    rounds = rounds_of(added.suspects.searched)
+    rounds = [each for each in added.suspects.searched.rounds if each.candidates]
     kept = {one.effect: one for one in added.effects}
     alike = {name: one for one in kept.values() for name in one.ambiguous_with}
     found: dict[Effect, Considered] = {}
@@ -400,20 +400,13 @@ def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, 
     return (*taken, *sorted(found.values(), key=lambda one: -(one.alone or 0.0)))
 
 
-def rounds_of(searched: Searched) -> list[Step]:
-    """Rounds of a search: each fit with what was tried beside it; beside the last nothing was accepted."""
-    pairs = zip(searched.steps, searched.steps[1:], strict=False)
-    rounds = [Step(before.fitted, after.rivals) for before, after in pairs]
-    return rounds if searched.ended is None else [*rounds, searched.ended]
-
-
-def _share(tried: Step, effect: Effect) -> float | None:
+def _share(tried: Round, effect: Effect) -> float | None:
     """Share of the squared residual that an effect explains beside a fit; None if it was not tried."""
-    gains = [candidate.gain for candidate in tried.rivals if candidate.term.effect is effect]
+    gains = [candidate.gain for candidate in tried.candidates if candidate.term.effect is effect]
     return max(0.0, *gains) / max(tried.fitted.squares, 1e-300) if gains else None
 
 
-def _against(effect: Effect, added: Added, rounds: Sequence[Step]) -> str:
+def _against(effect: Effect, added: Added, rounds: Sequence[Round]) -> str:
     """Why an effect is not in the model: the first of these reasons that holds."""
     suspects = added.suspects
     rejected = dict(added.rejected)

@@ -14,8 +14,8 @@ import numpy as np
 
 from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.diagnosis.policy import Policy, worth
-from bench.diagnosis.probability import Probabilities, neighbourhood, probabilities, scored
+from bench.diagnosis.policy import Policy
+from bench.diagnosis.probability import Probabilities, probabilities, weighed
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Searched, search
 from bench.effects.catalogue import catalogue
@@ -96,8 +96,7 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
         untried = excluded | unsized.keys()
         effects = [effect for name, effect in catalogue().items() if name not in untried]
         searched = search(bare, effects, policy)
-        hypotheses = scored([*neighbourhood(searched, untried, policy)], recordings.holdout_rows, policy)
-        likely = probabilities(hypotheses, direct, policy)
+        likely = probabilities(weighed(searched.visited, recordings.holdout_rows, policy), direct, policy)
         chosen = likely.fits[likely.chosen.names]
         last = with_events(chosen, effects, policy)
         more, shift = without_size(last, recordings), delay(last, policy)
@@ -168,8 +167,7 @@ def _with_event(fitted: Fit, effect: Occasional, apart: Standout, policy: Policy
     near = (fitted.time >= apart.around[0]) & (fitted.time <= apart.around[1])
     left = float(np.sum(after.residual[near] ** 2)) - np.count_nonzero(near) * fitted.floor**2
     numbers = after.theta[own].size + len(term.shape)
-    found = saved > max(policy.by_chance(fitted, numbers), left / policy.beside_event)
-    return after if found and policy.physical(after) else fitted
+    return after if policy.event_shows(fitted, numbers, saved, left) and policy.physical(after) else fitted
 
 
 def named(
@@ -212,12 +210,12 @@ def alike(fitted: Fit, index: int, policy: Policy) -> tuple[str, ...]:
         shape = effect.unlike(fitted) if term.effect.name in effect.replaces else None
         if shape is not None:
             other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, shape)))
-            if worth(other, fitted) < policy.by_chance(fitted, len(shape)) and policy.physical(other):
+            if policy.replaceable(fitted, other):
                 found.append(effect.name)
     for effect in (catalogue()[name] for name in term.effect.looks_like):
         if effect.sought(fitted.scope) and fitted.hypothesis.without(index).admits(effect):
             other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect)))
-            if policy.undecided(fitted, other) and policy.physical(other):
+            if policy.replaceable(fitted, other):
                 found.append(effect.name)
     return (*term.effect.ambiguous(fitted.scope), *found)
 

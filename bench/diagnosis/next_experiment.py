@@ -122,17 +122,20 @@ def _of_motion(effect: Effect) -> bool:
 
 
 def nearly_as_good(added: Added, model: AxisModel) -> Iterator[Alternatives]:
-    """Candidates that, instead of the effect accepted last, leave hardly more of the torque."""
+    """Effects that, instead of the one accepted last, leave hardly more of the torque."""
     whole, searched = added.extension.fitted, added.suspects.searched
     if not whole.terms or whole.hypothesis != searched.last.hypothesis:
         return
-    index = len(whole.terms) - 1
-    named = whole.terms[index].effect
-    for candidate in searched.steps[-1].rivals[:3]:
-        rival = candidate.term.effect
-        if rival.name in whole.hypothesis.names or rival.name in named.ambiguous(whole.scope):
+    *kept, named = (term.effect for term in whole.terms)
+    for visited in searched.visited:
+        effects = [term.effect for term in visited.terms]
+        rivals = [effect for effect in effects if effect not in kept and not effect.decoy]
+        if len(rivals) != 1 or len(effects) != len(whole.terms) or not {*kept} <= {*effects}:
             continue
-        other = fit(added.recordings.rows, whole.hypothesis.without(index).plus(candidate.term))
+        (rival,) = rivals
+        if rival is named or rival.name in named.ambiguous(whole.scope):
+            continue
+        other = fit(added.recordings.rows, visited.hypothesis)
         if other.rms < NEARLY * whole.rms:
             reason = f"{rival.name} leaves but {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
             try:

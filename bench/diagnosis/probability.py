@@ -22,7 +22,7 @@ known were likeliest (`python -m tests.studies.certainty`).
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -30,14 +30,10 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.diagnosis.policy import Policy, freedom
-from bench.diagnosis.search import Candidate, Searched, backward_elimination, candidates, refined, settled
-from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Coupling, Effect, Occasional
-from bench.effects.rivals import GAINS, RIVALS, WAVES
 from bench.effects.signals import Scope
-from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit
-from bench.fit.hypothesis import Term, lay_out
+from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 
@@ -50,8 +46,8 @@ UNSURE = 2.0
 #: Numbers that a scale of the torque counts for beyond its own, as it changes every other one: it comes before an
 #: unbalance, which has two, and after a friction that follows the torque, where a recording does not distinguish them.
 RESCALED = 0.5
-#: Candidates beyond the last step of a search that are hypotheses, too.
-NEXT = 2
+#: Probability of a hypothesis with a decoy below which the effects next to the decoy are not counted.
+LITTLE = 0.01
 #: Least of U: what is left is no more than noise.
 LEAST = -9.0
 #: Largest V that counts: real axes leave more than noise whatever is named.
@@ -173,86 +169,31 @@ class Contender:
     numbers: float
     outside: bool
 
-
-def neighbourhood(searched: Searched, excluded: frozenset[str], policy: Policy) -> Iterator[Fit]:
-    """The steps of a search, its result less each effect, the next best beside it and in place of each, and rivals.
-
-    Rivals are simpler forms of an effect, a wave of another form in the place of waves, and the best effect from
-    outside the catalogue beside the result and in the place of each of its names, and of all that it leaves nothing to;
-    those `excluded` are not tried.
-    """
-    last = searched.last
-    yield from (step.fitted for step in searched.steps)
-    less: Sequence[Fit] = searched.less if searched.ended is not None and searched.ended.fitted is last else ()
-    if not less:
-        less = [settled(fit(last.rows, last.hypothesis.without(index)), policy) for index in range(len(last.terms))]
-    if len(less) > 1:
-        yield from less
-    for instead in searched.instead:
-        if policy.undecided(last, instead):
-            yield from (instead, backward_elimination(instead, policy))
-    yield from _instead_of_the_last(searched, policy)
-    if searched.ended is not None:
-        yield from _promising(searched.ended.fitted, searched.ended.rivals[:NEXT], policy)
-    for index, term in enumerate(last.terms):
-        for form in simpler_forms(term.effect, last.scope):
-            if form.name not in excluded:
-                yield fit(last.rows, last.hypothesis.with_term(index, Term(form)))
-    yield from _of_other_form(last, policy)
-    rivals = [effect for effect in RIVALS if effect.name not in excluded]
-    beside_waves = [term for term in last.terms if not isinstance(term.effect, Wave)]
-    several = len(last.terms) - len(beside_waves) > 1
-    waveless = [fit(last.rows, last.hypothesis.with_terms(beside_waves))] if several else []
-    for beside in (last, *less, *waveless):
-        outside = rivals if policy.remains(beside) else GAINS if beside.depends else ()
-        for rival in _promising(beside, candidates(beside, outside)[:1], policy):
-            yield from (rival, backward_elimination(rival, policy))
+    def score(self, policy: Policy) -> float:
+        """ln P, up to a constant."""
+        distance = policy.left * max(self.left, LEAST) + policy.over * min(self.over, MUCH)
+        return -distance - policy.number * self.numbers - policy.outside * self.outside
 
 
-def _instead_of_the_last(searched: Searched, policy: Policy) -> Iterator[Fit]:
-    """What was nearly as good as the name that was taken up last, in its place."""
-    rivals, taken = searched.steps[-1].rivals, {term.effect for term in searched.last.terms}
-    as_good = [each for each in rivals if each.gain > policy.as_good * rivals[0].gain]
-    others = [each for each in as_good if each.term.effect not in taken]
-    if others:
-        found = _promising(searched.steps[-2].fitted, others[:NEXT], policy)
-        yield from (each for each in found if policy.undecided(searched.steps[-1].fitted, each))
+#: Effects of a hypothesis with how many terms each has.
+Key = frozenset[tuple[Effect, int]]
 
 
-def _of_other_form(last: Fit, policy: Policy) -> Iterator[Fit]:
-    """A wave of any form in the place of those of one number, if they leave a remainder or are several.
-
-    Of each form alone, too, in the place of several.
-    """
-    waves = [term for term in last.terms if isinstance(term.effect, Wave)]
-    numbers = [term.effect.wave_number(term.shape) for term in waves if isinstance(term.effect, Wave)]
-    for number in sorted(set(numbers)):
-        replaced = [term for term, own in zip(waves, numbers, strict=True) if own == number]
-        kept = last.hypothesis.with_terms(term for term in last.terms if term not in replaced)
-        rivals = WAVES if len(replaced) > 1 else WAVES[:1] if policy.remains(last) else ()
-        yield from (fit(last.rows, kept.plus(Term(rival, (number,)))) for rival in rivals)
+def key_of(fitted: Fit, *more: Effect) -> Key:
+    """The effects of a fit, and more of them."""
+    return frozenset(Counter([*(term.effect for term in fitted.terms), *more]).items())
 
 
-def _promising(beside: Fit, found: Sequence[Candidate], policy: Policy) -> Iterator[Fit]:
-    tried = (refined(beside, each.term) for each in found if policy.promises(beside, each.gain))
-    return (after for after in tried if not policy.only_damps(beside, after))
+def credible(fitted: Fit) -> bool:
+    """Whether a result may have such a coupling: one that hardly rings damps noise."""
+    return all(term.effect.credible(term.shape) for term in fitted.terms if isinstance(term.effect, Coupling))
 
 
-def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[Contender]:
-    """Hypotheses that physics allows, the first of them the bare axis, with what speaks for each.
-
-    Of several with the same effects it is the one that leaves least.
-    """
-    best: dict[frozenset[tuple[Effect, int]], Fit] = {frozenset(): tried[0]}
-    for each in tried[1:]:
-        effects = frozenset(Counter(term.effect for term in each.terms).items())
-        # a search may pass a coupling that hardly rings but not end with it
-        credible = all(term.effect.credible(term.shape) for term in each.terms if isinstance(term.effect, Coupling))
-        if policy.physical(each) and credible:
-            best[effects] = min(best.get(effects, each), each, key=lambda fitted: fitted.squares)
-    physical = list(best.values())
+def weighed(visited: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[Contender]:
+    """What speaks for each credible one of some physical fits of different effects, the first of them the bare axis."""
+    physical = [each for each in visited if credible(each)]
     common = np.logical_and.reduce([each.determined for each in physical])
-    if float(common.mean()) <= policy.determined:  # the other rows have to speak for it, too
+    if float(common.mean()) <= 0.5:  # the other rows have to speak for it, too
         common = np.ones_like(common)
     power = np.array([np.mean(each.left[common] ** 2) for each in physical])
     certain = [each.determined.all() for each in physical]
@@ -262,16 +203,16 @@ def scored(tried: Sequence[Fit], holdout: Rows | None, policy: Policy) -> list[C
     white[outside] = np.minimum(white[outside], white[~outside].max())  # its inertia may be any, and noise with that
     nearest = physical[int(np.argmin(power / white))]
     floor = white * (nearest.floor / nearest.noise.white) ** 2
-    if tried[0].depends is not None:  # noise is no more than what explains the dependence leaves
+    if visited[0].depends is not None:  # noise is no more than what explains the dependence leaves
         floor = np.minimum(floor, power.min())
-    elif len(physical) == 1 and not policy.remains(tried[0]):  # noise, whose level is known no better
+    elif len(physical) == 1 and not policy.remains(visited[0]):  # noise, whose level is known no better
         floor = np.maximum(floor, claimed)
     beyond = _on_holdout(physical, holdout, floor) if holdout is not None else 0.0
     excess, claimed = (np.maximum(of - floor, 0.0) + beyond for of in (power, claimed))
     left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: what damps it leaves no less for that
     over = np.log1p(claimed / (BESIDE_NOISE * floor))
     rescaled = [RESCALED * each.layout.rescaling.size for each in physical]
-    numbers = [freedom(each) - freedom(tried[0]) + more for each, more in zip(physical, rescaled, strict=True)]
+    numbers = [freedom(each) - freedom(visited[0]) + more for each, more in zip(physical, rescaled, strict=True)]
     columns = (left - left[0]).tolist(), over.tolist(), numbers, outside.tolist()
     return [Contender(*each) for each in zip(physical, *columns, strict=True)]
 
@@ -316,13 +257,7 @@ def _blocks(fitted: Fit, holdout: Rows) -> Array:
 
 def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy: Policy) -> Probabilities:
     """Of hypotheses beside each other, the first of them the bare axis, and of names that the signals show directly."""
-    logs = [
-        -policy.left * max(each.left, LEAST)
-        - policy.over * min(each.over, MUCH)
-        - policy.number * each.numbers
-        - policy.outside * each.outside
-        for each in scored
-    ]
+    logs = [each.score(policy) for each in scored]
     weights = np.exp(np.array([*logs, policy.none]) - max(*logs, policy.none))
     shares = (weights / weights.sum()).tolist()
     ranked = sorted(zip(scored, shares, strict=False), key=lambda one: (one[0].outside, -one[1]))
@@ -331,7 +266,7 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
     beside: dict[str, float] = {}
     fits: dict[frozenset[str], Fit] = {}
     for each, share in ranked:
-        if each.outside and share * policy.odds < 1.0:
+        if each.outside and share < LITTLE:
             continue
         held = standing(each.fitted, policy) if each.outside else [term.effect for term in each.fitted.terms]
         names = frozenset(_called(effect, each.fitted.scope, called) for effect in held)
@@ -348,7 +283,7 @@ def standing(fitted: Fit, policy: Policy) -> list[Effect]:
     """Effects beside one from outside the catalogue that it cannot make up for."""
     own = [(index, term.effect) for index, term in enumerate(fitted.terms) if not term.effect.decoy]
     less = (fit(fitted.rows, fitted.hypothesis.without(index)) for index, _ in own)
-    return [effect for (_, effect), without in zip(own, less, strict=True) if policy.stands_beside(without, fitted)]
+    return [effect for (_, effect), without in zip(own, less, strict=True) if fitted.chi < policy.beside * without.chi]
 
 
 def _called(effect: Effect, scope: Scope, called: dict[str, str]) -> str:

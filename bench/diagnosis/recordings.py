@@ -244,7 +244,7 @@ def _require_above_noise(base: Fit, unit: str, policy: Policy) -> None:
         rms(base.columns[:, places] @ base.theta[places])
         for places in (np.isin(base.owners, terms) for terms in ((VISCOUS, COULOMB), (INERTIA, VISCOUS, COULOMB)))
     )
-    least = math.sqrt(policy.by_chance(base, 1) / base.effort.size)
+    least = math.sqrt(policy.by_chance(base) / base.effort.size)
     loud = max(friction, torque / SMALL)
     if least > loud:
         raise UndeterminedError(

@@ -1,18 +1,25 @@
-"""Forward selection: try every effect, keep what explains, polish it, let go of what a later one explains.
+"""One local search over sets of effects, which the score that weighs them in the end drives.
 
-Stop, accept and "unexplained" are tests against the noise floor of the recording itself (chi = 1 where only noise is
-left), so a recording in which nothing is hidden ends without a name. The rules are `bench.diagnosis.policy`.
+The score is the logarithm of a probability (`bench.diagnosis.probability`). From the most likely set of effects that
+was not yet expanded, the search tries every effect in addition, the set without each of its effects, and every effect
+in the place of each. Effects are ranked by the squares that their columns take from the residual, all of a grid's
+shapes at once; shapes are searched for the few best of them. The search is best first and passes LOOKAHEAD sets that do
+not raise the score. Where more than noise remains then, two further moves are tried: an effect that replaces others,
+and a chain of many small effects, which take little each and most of the residual together. Decoys
+(`bench.effects.rivals`) are tried like any other effect; a set with one is not expanded.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 from bench.diagnosis.policy import Policy, worth
+from bench.diagnosis.probability import Key, key_of, weighed
+from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Effect
+from bench.effects.rivals import GAINS, RIVALS, WAVES
+from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit, shaped, together
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Term, on_other_side, outer_loads
@@ -20,8 +27,17 @@ from bench.fit.rows import Rows
 
 #: Said of a search that its limit ended.
 LIMIT = "limit of effects reached"
-#: Times at most that an effect in the place of others and what is beside it are searched in turn.
-TURNS = 3
+#: Terms of a set at most: more waves or events fit anything.
+MOST = 12
+#: Effects whose shapes are searched in addition to a set, or in the place of one of its effects.
+WIDTH = 3
+#: Sets expanded in succession without a higher score before the search ends, if more than noise remains: in some pairs
+#: neither effect explains much without the other.
+LOOKAHEAD = 2
+#: Residual above noise at a grid's shape, over that of the best effect, beyond which a shape is not searched.
+SCREEN = 4.0
+#: Score below the best one from which on a set is as good as impossible.
+NEGLIGIBLE = 30.0
 
 
 @dataclass(frozen=True)
@@ -38,124 +54,240 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Step:
-    """An effect taken up: its hypothesis fitted, and the candidates it was chosen from, best first."""
+class Round:
+    """A fit, and the effects that were tried in addition to it, best first."""
 
     fitted: Fit
-    rivals: tuple[Candidate, ...] = ()
+    candidates: tuple[Candidate, ...] = ()
 
 
 @dataclass(frozen=True)
 class Searched:
-    """Steps of a search.
+    """What a search visited.
 
     Attributes:
-        steps: the first without an effect.
+        rounds: fits that were expanded, the first without an effect, the last the result.
+        visited: all fits that are possible, the first without an effect.
         stopped: what ended it before it was done; None if nothing did.
-        ended: the fit to which nothing more was added, and what was tried beside it; None without a search.
-        less: that fit without each of its terms, the shapes of the others settled; () of one term or none.
-        instead: that fit with one of its earlier names exchanged for what was nearly as good.
     """
 
-    steps: tuple[Step, ...]
+    rounds: tuple[Round, ...]
+    visited: tuple[Fit, ...]
     stopped: str | None = None
-    ended: Step | None = None
-    less: tuple[Fit, ...] = ()
-    instead: tuple[Fit, ...] = ()
 
     @property
     def last(self) -> Fit:
-        """With all effects."""
-        return self.steps[-1].fitted
+        """The result."""
+        return self.rounds[-1].fitted
 
     def ending(self, fitted: Fit) -> Searched:
-        """The same with another fit in the place of the last one; without steps where that has no effect."""
-        if [term.key for term in fitted.terms] == [term.key for term in self.last.terms]:
-            return self
-        last = Step(fitted, self.steps[-1].rivals)
-        return replace(self, steps=(*self.steps[:-1], last) if fitted.terms else self.steps[:1])
+        """The same with another result; its candidates are kept where its effects are those of the last fit."""
+        if not fitted.terms:
+            return replace(self, rounds=(*self.rounds[:1],))
+        kept = [each for each in self.rounds if key_of(each.fitted) != key_of(fitted)]
+        same = next((each for each in self.rounds if key_of(each.fitted) == key_of(fitted)), self.rounds[-1])
+        return replace(self, rounds=(*kept, Round(fitted, same.candidates)))
 
     def through(self, rows: Rows) -> Searched:
-        """The same with the last fit anew, to rows through another filter."""
-        last = Step(fit(rows, self.last.hypothesis), self.steps[-1].rivals)
-        return replace(self, steps=(*self.steps[:-1], last))
+        """The same with the result fitted to rows through another filter."""
+        last = Round(fit(rows, self.last.hypothesis), self.rounds[-1].candidates)
+        return replace(self, rounds=(*self.rounds[:-1], last))
 
 
-def search(bare: Fit, effects: Sequence[Effect], policy: Policy) -> Searched:
-    """Effects in the order in which they are taken up beside the fit without one."""
-    found = from_rivals(selected(Searched((Step(bare),)), effects, policy), effects, policy)
-    for effect in (each for each in effects if each.replaces):
-        if policy.leaves_room(found.last, effect):
-            found = replacement(found, effect, effects, policy) or found
-    if policy.remains(found.last) and found.stopped is None:
-        # many small effects take little each and nearly all together; where they do not, each may be anything
-        further = selected(found, effects, policy.patient)
-        found = further if further.last.excess < policy.nearly_all * found.last.excess else found
-    return found
-
-
-def selected(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
-    """Steps with effects added from the last one on, and names exchanged for others, until neither leaves less."""
-    found = forward_selection(found, effects, policy)
-    for _ in range(policy.most):  # each leaves less, so it ends before; what is let go in between could turn it round
-        instead = instead_of_each(found.last, effects, policy)
-        better = exchanged(found.last, instead, policy)
-        if better is None:
-            return replace(found, instead=tuple(instead))
-        found = forward_selection(Searched((*found.steps, Step(better))), effects, policy)
-    return found
-
-
-def from_rivals(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
-    """The search, or that from what was nearly as good as its first name, if that leaves less.
-
-    Later names adapt their shapes to a wrong first one.
-    """
-    if len(set(found.last.hypothesis.names)) <= policy.undoubted:
-        return found
-    bare, first = found.steps[0].fitted, found.steps[1]
-    least = policy.as_good * first.rivals[0].gain
-    others = [
-        each for each in first.rivals if each.gain > least and each.term.effect is not first.fitted.terms[0].effect
-    ]
-    for rival in others[: policy.exchanges]:
-        start = refined(bare, rival.term)
-        if policy.accepts(bare, start):
-            other = selected(Searched((*found.steps[:1], Step(start))), effects, policy)
-            found = other if policy.exchanges_for(found.last, other.last) else found
-    return found
-
-
-def forward_selection(found: Searched, effects: Sequence[Effect], policy: Policy) -> Searched:
-    """Steps with effects added until none is worthwhile, or the limit is reached."""
-    steps, ended = found.steps, found.ended
+def search(bare: Fit, effects: Sequence[Effect], policy: Policy, most: int = MOST) -> Searched:
+    """Sets of effects around the most likely one; `most`: terms of a set."""
+    visited = Visited(bare, effects, policy)
+    best, waits, stopped = bare, 0, None
     while True:
-        current = steps[-1].fitted
-        tried = ended.rivals if ended is not None and ended.fitted is current else candidates(current, effects)
-        promising = [candidate for candidate in tried if policy.promises(current, candidate.gain)]
-        finalists = [refined(current, candidate.term) for candidate in promising[: policy.finalists]]
-        finalists = [physical_form(after, effects, policy) for after in finalists]
-        better = [after for after in finalists if policy.accepts(current, after)]
-        if not better:
-            fewer, less = settled_elimination(current, policy)
-            if fewer is current:
-                return Searched(steps, ended=Step(current, tuple(tried)), less=less)
-            steps = (*steps, Step(fewer, tuple(tried)))
-            continue
-        best = min(better, key=lambda after: after.squares)
-        simpler = [after for after in better if policy.as_simple(current, best, after)]
-        best = min(simpler, key=lambda after: after.squares, default=best)
-        names = Counter(best.hypothesis.names)
-        if len(names) > policy.most or max(names.values()) > policy.members:
-            return Searched(steps, LIMIT, Step(current, tuple(tried)))
-        chosen = with_hum(backward_elimination(on_its_side(polished(best, policy), policy), policy))
-        if _repeats_a_step(chosen, steps, policy):
-            return Searched(steps, ended=Step(current, tuple(tried)))
-        steps = (*steps, Step(chosen, tuple(tried)))
+        # the shape of what replaces others is bent to an effect that is still hidden: it is searched anew at once
+        ahead = 0 if any(term.effect.replaces for term in best.terms) or not policy.remains(best) else LOOKAHEAD
+        following = visited.next() if waits <= ahead else None
+        if following is not None and len(following.terms) < most:
+            visited.expand(following)
+        elif following is not None:
+            visited.pass_over(following)
+            stopped = LIMIT if following is best else stopped
+        elif not visited.try_further(best, most):
+            break
+        found = visited.best()
+        waits = 0 if key_of(found) != key_of(best) else waits + 1
+        best = found
+    visited.add_decoy_waves(best)
+    return visited.result(best, stopped if policy.remains(best) else None)
+
+
+class Visited:
+    """Fits that a search visited, the best one of each set of effects."""
+
+    def __init__(self, bare: Fit, effects: Sequence[Effect], policy: Policy) -> None:
+        self.effects, self.policy = effects, policy
+        self.fits: dict[Key, Fit] = {key_of(bare): bare}
+        self.tried: dict[Key, tuple[Candidate, ...]] = {}
+        self.grown: set[Key] = set()
+        self.expanded: dict[Key, None] = {}
+        self.further: set[Key] = set()
+
+    def add(self, fitted: Fit) -> Fit:
+        """Keep a fit that is physical; returns the best one of its effects."""
+        key = key_of(fitted)
+        if self.policy.physical(fitted) and (key not in self.fits or fitted.squares < self.fits[key].squares):
+            self.fits[key] = fitted
+        return self.fits.get(key, fitted)
+
+    def scores(self) -> dict[Key, float]:
+        """Logarithm of the probability of each set that may be a result, up to a constant."""
+        found = weighed([*self.fits.values()], None, self.policy)
+        return {key_of(each.fitted): each.score(self.policy) for each in found}
+
+    def named(self) -> dict[Key, float]:
+        """The scores of those without a decoy."""
+        return {key: score for key, score in self.scores().items() if not any(each.decoy for each, _ in key)}
+
+    def best(self) -> Fit:
+        """The most likely one without a decoy."""
+        scores = self.named()
+        return self.fits[max(scores, key=lambda key: scores[key])]
+
+    def next(self) -> Fit | None:
+        """The most likely one that was not expanded, its shapes settled."""
+        scores = {key: score for key, score in self.named().items() if key not in self.expanded}
+        if not scores:
+            return None
+        chosen = self.fits[max(scores, key=lambda key: scores[key])]
+        return self.add(with_hum(on_its_side(settled(chosen, self.policy), self.policy)))
+
+    def pass_over(self, fitted: Fit) -> None:
+        """Do not expand a fit."""
+        self.expanded[key_of(fitted)] = None
+
+    def expand(self, current: Fit) -> None:
+        """Visit what a move away is: an effect more, one less, or another in its place."""
+        self.pass_over(current)
+        self.grow(current)
+        for index, term in enumerate(current.terms):
+            self.grow(self.without(current, [index]))
+            for form in simpler_forms(term.effect, current.scope):
+                if form in self.effects and current.hypothesis.without(index).admits(form):
+                    self.add(fit(current.rows, current.hypothesis.with_term(index, Term(form))))
+
+    def without(self, current: Fit, indices: Sequence[int]) -> Fit:
+        """The fit without some terms, the shapes of the others settled."""
+        kept = [term for index, term in enumerate(current.terms) if index not in indices]
+        less = fit(current.rows, current.hypothesis.with_terms(kept))
+        return self.fits[key_of(less)] if key_of(less) in self.fits else self.add(settled(less, self.policy))
+
+    def candidates(self, fitted: Fit) -> tuple[Candidate, ...]:
+        """What may be added to a fit, best first; once for each set of effects."""
+        key = key_of(fitted)
+        if key not in self.tried:
+            decoys = RIVALS if self.policy.remains(fitted) else GAINS if fitted.depends else ()
+            self.tried[key] = (*candidates(fitted, [*self.effects, *decoys]),)
+        return self.tried[key]
+
+    def grow(self, fitted: Fit) -> None:
+        """Visit the fit with each of the few best effects added, and with the best decoy."""
+        key = key_of(fitted)
+        if key in self.grown or key not in self.fits:
+            return
+        self.grown.add(key)
+        tried = self.promising(fitted)
+        own = [each for each in tried if not each.term.effect.decoy][:WIDTH]
+        decoys = [each for each in tried if each.term.effect.decoy][:1]
+        for candidate in (*own, *decoys):
+            self.added(fitted, candidate)
+
+    def promising(self, fitted: Fit) -> list[Candidate]:
+        """Candidates that take more than chance does, and leave not much more than the best one."""
+        noise = fitted.count * fitted.floor**2
+        tried = [each for each in self.candidates(fitted) if each.gain > self.policy.by_chance(fitted)]
+        left = [max(fitted.squares - each.gain - noise, 0.0) for each in tried]
+        least = max(min(left, default=0.0), 0.05 * noise)
+        return [each for each, rest in zip(tried, left, strict=True) if rest <= SCREEN * least]
+
+    def added(self, fitted: Fit, candidate: Candidate) -> Fit | None:
+        """The fit with a candidate of searched shape; None if impossible, or no more than damped noise."""
+        effect = candidate.term.effect
+        known = self.fits.get(key_of(fitted, effect))
+        if known is not None and not effect.repeatable:
+            return known
+        after = shaped(fitted.rows, fitted.hypothesis.plus(candidate.term), len(fitted.terms))
+        after = physical_form(after, self.effects, self.policy)
+        if self.policy.only_damps(fitted, after) or not self.policy.physical(after):
+            return None
+        return self.add(after) if worth(fitted, after) >= effect.needed * fitted.excess else None
+
+    def try_further(self, best: Fit, most: int) -> bool:
+        """Visit sets beyond one move: an effect in place of those it replaces, and many small ones; whether any is new.
+
+        What an effect that replaces others can be is searched once beside each set.
+        """
+        before = len(self.fits), best.squares
+        for effect in (each for each in self.effects if each.replaces and self.policy.leaves_room(best, each)):
+            names = {effect.name, *effect.replaces}
+            less = self.without(best, [k for k, term in enumerate(best.terms) if term.effect.name in names])
+            if key_of(less, effect) not in self.further and less.hypothesis.admits(effect):
+                self.further.add(key_of(less, effect))
+                self.put_in_place(less, effect)
+        if key_of(best) not in self.further and self.policy.remains(best):
+            self.further.add(key_of(best))
+            self.add_many(best, most)
+        return (len(self.fits), self.best().squares) != before
+
+    def put_in_place(self, less: Fit, effect: Effect) -> None:
+        """Visit the fit with an effect whose shape is searched in its own way, and what is a move away from that."""
+        shape = effect.in_place_of(less, lambda gain: gain > self.part(less))
+        if shape is None:
+            return
+        first = fit(less.rows, less.hypothesis.plus(Term(effect, shape)))
+        after = shaped(less.rows, first.hypothesis, len(less.terms))  # from where levels and loads have settled
+        after = physical_form(after, self.effects, self.policy)
+        if self.policy.only_damps(less, after) or not self.policy.physical(after):
+            return
+        self.add(after)
+        if worth(less, after) > self.part(less):  # what is present in addition may be most of the residual still
+            self.expand(self.fits[key_of(after)])
+
+    def part(self, fitted: Fit) -> float:
+        """Squares that each of as many effects as there may be takes on average of a residual - (N*m)**2 (N**2).
+
+        More than chance in any case.
+        """
+        return max(fitted.excess / MOST, self.policy.by_chance(fitted))
+
+    def add_many(self, fitted: Fit | None, most: int) -> None:
+        """Visit a chain of effects each of which takes its part of the residual above noise."""
+        while fitted is not None and self.policy.remains(fitted) and len(fitted.terms) < most:
+            tried = (each for each in self.candidates(fitted) if not each.term.effect.decoy)
+            least = self.part(fitted)
+            found = next((each for each in tried if each.gain > least), None)
+            fitted = None if found is None else self.added(fitted, found)
+
+    def add_decoy_waves(self, best: Fit) -> None:
+        """Visit a wave of any form in the place of those of one number, and a decoy in the place of all waves."""
+        numbers = {
+            index: term.effect.wave_number(term.shape)
+            for index, term in enumerate(best.terms)
+            if isinstance(term.effect, Wave)
+        }
+        if len(numbers) > 1:
+            self.grow(self.without(best, [*numbers]))
+        for number in sorted(set(numbers.values())):
+            alike = [index for index, own in numbers.items() if own == number]
+            kept = best.hypothesis.with_terms(term for k, term in enumerate(best.terms) if k not in alike)
+            for decoy in WAVES if len(alike) > 1 else WAVES[:1] if self.policy.remains(best) else ():
+                self.add(fit(best.rows, kept.plus(Term(decoy, (number,)))))
+
+    def result(self, best: Fit, stopped: str | None) -> Searched:
+        """What is possible of it."""
+        scores, bare = self.scores(), next(iter(self.fits.values()))
+        least = max(scores.values()) - NEGLIGIBLE
+        visited = [self.fits[key] for key, score in scores.items() if score > least and self.fits[key] is not bare]
+        rounds = tuple(Round(self.fits[key], self.tried[key]) for key in self.expanded if key in self.tried)
+        return Searched(rounds or (Round(bare),), (bare, *visited), stopped).ending(best)
 
 
 def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
-    """The best shape of every effect that may come beside what is fitted, best first."""
+    """The best shape of every effect that may be added to a fit, best first."""
     found = []
     for effect in effects:
         if not effect.sought(current.scope) or not current.hypothesis.admits(effect):
@@ -167,13 +299,8 @@ def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
     return sorted(found, key=lambda candidate: -candidate.gain)
 
 
-def refined(current: Fit, term: Term) -> Fit:
-    """A term added, its shape searched around where the grid found it."""
-    return shaped(current.rows, current.hypothesis.plus(term), len(current.terms))
-
-
 def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit:
-    """With an earlier name in a form that no recording distinguishes, where only that is physical with the last one."""
+    """With an earlier effect in a form that no recording distinguishes, where only that is physical with the last."""
     if policy.physical(fitted):
         return fitted
     for index, term in enumerate(fitted.terms[:-1]):
@@ -185,127 +312,17 @@ def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit
     return fitted
 
 
-def polished(fitted: Fit, policy: Policy) -> Fit:
-    """Every term's shape searched again beside the others, then all of them at once."""
-    if len(fitted.terms) < 2:
-        return fitted
-    for index in range(len(fitted.terms)):
-        tried = shaped(fitted.rows, fitted.hypothesis, index)
-        fitted = tried if policy.physical(tried) else fitted
-    tried = together(fitted)
-    return tried if policy.physical(tried) else fitted
-
-
 def on_its_side(fitted: Fit, policy: Policy) -> Fit:
-    """With outer loads on the side of a coupling, motor or load, on which they explain more, if much is left."""
+    """With outer loads on the side of a coupling, motor or load, on which they explain more, if a residual remains."""
     if not policy.remains(fitted) or not outer_loads(fitted.hypothesis) or fitted.hypothesis.coupling is None:
         return fitted
     moved = shaped(fitted.rows, on_other_side(fitted.hypothesis), fitted.hypothesis.coupling)
     return min(fitted, moved, key=lambda found: found.squares)
 
 
-def backward_elimination(fitted: Fit, policy: Policy) -> Fit:
-    """Without the terms that no longer explain anything beside the later ones; then the shapes of the others settle."""
-    for index in range(len(fitted.terms) - 1, -1, -1):
-        if len(fitted.terms) < 2:
-            break
-        less = fit(fitted.rows, fitted.hypothesis.without(index))
-        if not policy.needs(fitted, less, index):
-            fitted = settled(less, policy)
-    return fitted
-
-
-def settled_elimination(fitted: Fit, policy: Policy) -> tuple[Fit, tuple[Fit, ...]]:
-    """The same where the others settle before it is decided; and the fits against which terms were kept."""
-    kept: list[Fit] = []
-    for index in range(len(fitted.terms) - 1, -1, -1):
-        if len(fitted.terms) < 2:
-            break
-        less = settled(fit(fitted.rows, fitted.hypothesis.without(index)), policy)
-        if policy.needs(fitted, less, index):
-            kept.insert(0, less)
-        else:
-            fitted = less
-    return fitted, tuple(kept)
-
-
-def settled(less: Fit, policy: Policy) -> Fit:
-    """Without a term, the shapes of the others where they are without it.
-
-    What no catalogue holds stays as it was searched: further off its shape makes up for anything.
-    """
-    if any(term.effect.decoy for term in less.terms):
-        return less
-    tried = together(less)
-    return tried if policy.physical(tried) else less
-
-
-def _repeats_a_step(fitted: Fit, steps: Sequence[Step], policy: Policy) -> bool:
-    """Whether an earlier step had the same effects and left no more: what is taken up and let go in turn never ends."""
-    names = Counter(fitted.hypothesis.names)
-    same = [step.fitted for step in steps if Counter(step.fitted.hypothesis.names) == names]
-    return any(worth(earlier, fitted) <= policy.by_chance(fitted, 1) for earlier in same)
-
-
-def instead_of_each(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> list[Fit]:
-    """The hypothesis with each of its earlier names exchanged for what saves nearly as much in its place.
-
-    Sequential replacement: A. J. Miller, Journal of the Royal Statistical Society A 147, 1984, 389-425.
-    """
-    instead = []
-    for index, term in enumerate(fitted.terms[:-1]):
-        less = fit(fitted.rows, fitted.hypothesis.without(index))
-        tried = candidates(less, effects)
-        own = [candidate.gain for candidate in tried if candidate.term.effect is term.effect]
-        least = policy.as_good * min([worth(less, fitted), *own])  # like with like: its own at a grid's shape, too
-        as_good = [each for each in tried if each.gain > least and each.term.effect is not term.effect]
-        instead += [refined(less, candidate.term) for candidate in as_good[: policy.exchanges]]
-    return instead
-
-
-def exchanged(fitted: Fit, instead: Sequence[Fit], policy: Policy) -> Fit | None:
-    """The one of these hypotheses that leaves least, if that is less by more than chance; else None."""
-    found = [after for after in instead if policy.exchanges_for(fitted, after)]
-    if not found:
-        return None
-    return with_hum(backward_elimination(polished(min(found, key=lambda after: after.squares), policy), policy))
-
-
-def replacement(found: Searched, effect: Effect, effects: Sequence[Effect], policy: Policy) -> Searched | None:
-    """Steps with an effect in the place of those it replaces, if that explains clearly more.
-
-    Beside an effect that is hidden still a dead zone bends its shape to that. So it and the others are searched in turn
-    (backfitting: A. Buja, T. Hastie, R. Tibshirani, Annals of Statistics 17, 1989, 453-510).
-    """
-    last, earlier = found.last, found.steps[:-1] or found.steps
-    beside = [term for term in last.terms if term.effect.name not in effect.replaces]
-    current = without = fit(last.rows, last.hypothesis.with_terms(beside))
-    replaced, shape = None, None
-    for _ in range(TURNS):
-        placed = in_place(current, effect, shape, effects, policy)
-        if placed is None or not policy.leads(current, placed):
-            break
-        replaced = selected(Searched((*earlier, Step(backward_elimination(placed, policy)))), effects, policy)
-        others = [term for term in replaced.last.terms if term.effect is not effect]
-        if Counter(term.effect for term in others) == Counter(term.effect for term in beside):
-            break
-        beside = others
-        current = fit(last.rows, last.hypothesis.with_terms(beside))
-        left = [] if policy.remains(replaced.last) else replaced.last.terms  # bent to what was hidden still
-        shape = next((term.shape for term in left if term.effect is effect), None)
-    return replaced if replaced is not None and policy.replaces_by(last, replaced.last, without) else None
-
-
-def in_place(
-    current: Fit, effect: Effect, shape: tuple[float, ...] | None, effects: Sequence[Effect], policy: Policy
-) -> Fit | None:
-    """A fit with an effect whose shape is searched beside it, from one or anywhere; None where none may explain."""
-    beside = current.hypothesis
-    if not beside.admits(effect):
-        return None
-    shape = shape or effect.in_place_of(current, partial(policy.promises, current))
-    if shape is None:
-        return None
-    first = fit(current.rows, beside.plus(Term(effect, shape)))
-    after = shaped(current.rows, first.hypothesis, len(beside.terms))  # from where levels and loads have settled
-    return physical_form(after, effects, policy)
+def settled(fitted: Fit, policy: Policy) -> Fit:
+    """The shapes of all terms searched at once; those of a decoy stay, as further off they make up for anything."""
+    if any(term.effect.decoy for term in fitted.terms):
+        return fitted
+    tried = together(fitted)
+    return tried if policy.physical(tried) else fitted

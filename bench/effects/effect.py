@@ -26,16 +26,13 @@ from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, namespace, recursive_filter
 from bench.effects.mjcf import Spec
-from bench.effects.shape import LAG, Shape, Shapes, grid_of, is_pitch
+from bench.effects.shape import LAG, Shape, Shapes, grid_of
 from bench.effects.signals import Axis, Base, Number, Scope, Signals, Values
 from bench.rig.rig import Rig
 from bench.trace.filter import Column, GaussianFilter
 from bench.trace.trace import Trace
 from bench.units import Quantity
 
-#: Share of the squared residual above noise that a pitch must explain of which a linear axis' travel has more than
-#: MANY half cycles, as no smooth error imitates it.
-PITCH_SHARE, MANY = 0.1, 20.0
 #: Share of the inertia that sits behind a coupling, at least and at most.
 BEHIND = (0.02, 0.98)
 #: Share of the torque that friction takes at most; at one, torque would explain itself whatever it did. The lossiest of
@@ -131,7 +128,7 @@ class Effect(ABC):
         derived: quantities reported too, which follow from them.
         shapes: the nonlinear quantities, in the order in which all methods take them.
         stage: where it acts.
-        needed: share of the squared residual above noise that it must explain (see `tests.studies.blind.margins`).
+        needed: share of the squared residual above noise that it must explain, where others imitate a part of it.
         looks_like: names of effects without a shape that some recordings cannot distinguish from it, which fits decide.
         repeatable: an axis may have several, each of another shape (harmonics, events).
         replaces: names of effects that it is tried instead of, once no other addition explains more; see `in_place_of`.
@@ -159,7 +156,7 @@ class Effect(ABC):
     derived: ClassVar[tuple[Quantity, ...]] = ()
     shapes: ClassVar[tuple[Shape, ...]] = ()
     stage: ClassVar[Stage] = Stage.MECHANICS
-    needed: ClassVar[float] = 0.25
+    needed: ClassVar[float] = 0.0
     looks_like: ClassVar[tuple[str, ...]] = ()
     repeatable: ClassVar[bool] = False
     replaces: ClassVar[frozenset[str]] = frozenset()
@@ -239,11 +236,6 @@ class Effect(ABC):
     def reach(self, shape: Sequence[float], k: int) -> float:
         """First range of a search in the k-th shape quantity; see `Shape.reach`."""
         return self.shapes[k].reach
-
-    def needed_share(self, shape: Sequence[float], scope: Scope) -> float:
-        """Share of the squared residual above the noise floor that it must explain to be accepted."""
-        pitches = [value for slot, value in zip(self.shapes, shape, strict=True) if is_pitch(slot, scope)]
-        return PITCH_SHARE if any(value > MANY * scope.spacing for value in pitches) else self.needed
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
         """Whether every quantity lies within its physical bounds."""

@@ -54,7 +54,6 @@ class LoadTorqueEvent(Occasional, Torque):
         Quantity("end", "t_2", "s", lower=0.0, instant=True),
     )
     shapes = tuple(Shape(instant, reach=0.05, additive=True) for instant in quantities[1:])
-    needed = 0.5  # more than of others: with a window of time to choose freely, an event fits a part of anything
 
     def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
         """What acts of it within a step around the moment, on average."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import Probabilities, neighbourhood, probabilities, scored
+from bench.diagnosis.probability import Probabilities, probabilities, weighed
 from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
@@ -110,8 +110,7 @@ def likely(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace 
     searched = search(without_effect, [catalogue()[name] for name in effects], policy)
     width = without_effect.rows.conditioning.filter.width
     other = None if holdout is None else Rows.of(replace(holdout, origin="holdout"), RIG, width=width)
-    tried = neighbourhood(searched, frozenset(catalogue()) - set(effects), policy)
-    return probabilities(scored([*tried], other, policy), frozenset(), policy)
+    return probabilities(weighed(searched.visited, other, policy), frozenset(), policy)
 
 
 def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> tuple[str, ...]:
@@ -121,5 +120,5 @@ def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace |
 
 
 def sought(policy: Policy, trace: Trace, effects: Sequence[str]) -> tuple[str, ...]:
-    """Names that a search takes up, however likely they are."""
+    """Names that a search ends with, however likely an unknown effect is."""
     return search(bare(trace), [catalogue()[name] for name in effects], policy).last.hypothesis.names

@@ -9,7 +9,7 @@ from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.search import Searched, Step
+from bench.diagnosis.search import Round, Searched
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
 from bench.fit.fit import fit
@@ -46,7 +46,8 @@ def recorded(tmp_path_factory):
 def added(recorded, terms, detected=None, with_holdout=True):
     rig, trace, holdout = recorded
     recordings = Recordings.of(trace, rig, holdout if with_holdout else None)
-    searched = Searched((Step(fit(recordings.rows, Hypothesis(tuple(terms)))),))
+    fitted = fit(recordings.rows, Hypothesis(tuple(terms)))
+    searched = Searched((Round(fitted),), (fitted,))
     return add(recordings, Suspects(searched, Probabilities((), 1.0), detected or {}, False, Policy()))
 
 

@@ -8,7 +8,7 @@ from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.search import Searched, Step
+from bench.diagnosis.search import Round, Searched
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
 from bench.fit.fit import fit
@@ -30,7 +30,8 @@ def spring(motion):
 def added(trace, holdout, terms, detected=None):
     """What is kept of effects that somebody names."""
     recordings = Recordings.of(trace, RIG, holdout)
-    searched = Searched((Step(fit(recordings.rows, Hypothesis(tuple(terms)))),))
+    fitted = fit(recordings.rows, Hypothesis(tuple(terms)))
+    searched = Searched((Round(fitted),), (fitted,))
     return add(recordings, Suspects(searched, Probabilities((), 1.0), detected or {}, False, Policy()))
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from bench.diagnosis.policy import POLICY
-from bench.diagnosis.probability import neighbourhood, probabilities, scored
+from bench.diagnosis.probability import probabilities, weighed
 from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
@@ -41,7 +41,7 @@ def of_the_blind_set(tmp_path_factory):
 def likely(bare, excluded):
     """Probabilities without some effects."""
     searched = search(bare, [effect for name, effect in catalogue().items() if name not in excluded], POLICY)
-    return probabilities(scored([*neighbourhood(searched, excluded, POLICY)], None, POLICY), frozenset(), POLICY)
+    return probabilities(weighed(searched.visited, None, POLICY), frozenset(), POLICY)
 
 
 def test_a_rival_is_not_excused_by_noise_that_its_own_inertia_makes(of_the_blind_set):

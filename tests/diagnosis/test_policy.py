@@ -1,14 +1,13 @@
-"""Every rule of the search decides somewhere: with it the outcome is right, with the rule off it is another."""
+"""What the search names and what it does not, on recordings whose truth is constructed."""
 
 import numpy as np
 import pytest
 
 from bench.diagnosis import policy as rules
-from bench.diagnosis import search as searching
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy, freedom, worth
 from bench.diagnosis.recordings import Recordings, fit_bare
-from bench.diagnosis.search import LIMIT, candidates, search
+from bench.diagnosis.search import LIMIT, search
 from bench.effects import backlash
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
@@ -40,29 +39,12 @@ SHORT_STROKE = moved(4.0, sines=tuple((0.4 * amplitude, 2.0 * f, phase) for ampl
 WAVES = ("cogging_torque", "torque_ripple", "unbalance", "quadratic_drag", "stribeck_friction")
 
 
-def test_no_shape_is_searched_where_the_grid_promises_nothing(monkeypatch):
-    """Promising spares work: beside noise alone no shape of any effect is searched."""
-    asked, refined = [], searching.refined
-    monkeypatch.setattr(searching, "refined", lambda current, term: asked.append(term) or refined(current, term))
-    null, few = bare(recorded(MOTION)), [catalogue()[name] for name in WAVES]
-    assert search(null, few, POLICY).last is null
-    assert asked == []
-    search(null, few, without("promises", finalists=99))
-    assert len(asked) == len(few)
-
-
-def test_a_significant_part_of_something_else_is_not_named():
-    trace = recorded(MOTION, vibration(0.05, 3.3))
-    assert sought(POLICY, trace, WAVES[:3]) == ()
-    assert sought(without("accepts"), trace, WAVES[:3]) != ()
-
-
 @pytest.mark.parametrize("seed", [3, 11])
 def test_noise_that_takes_its_share_by_chance_is_not_named(seed):
-    """Where no effect is, a quarter of almost nothing above the floor is soon explained."""
-    trace = recorded(moved(3.0), seed=seed)
-    assert names(POLICY, trace, WAVES) == ()
-    assert sought(without("by_chance"), trace, WAVES) == ("torque_ripple",)
+    """Where no effect is, nothing is more than chance: no set of effects is visited at all."""
+    without_effect, few = bare(recorded(moved(3.0), seed=seed)), [catalogue()[name] for name in WAVES]
+    assert search(without_effect, few, POLICY).visited == (without_effect,)
+    assert len(search(without_effect, few, without("by_chance")).visited) > 1
 
 
 @pytest.mark.parametrize("seed", [0, 1])
@@ -90,7 +72,6 @@ def test_a_name_that_later_ones_make_good_goes():
     effects = ["torsion_spring", "unbalance", "cogging_torque", "torque_offset"]
     hidden = {"torsion_spring", "cogging_torque"}
     assert set(names(POLICY, trace, effects)) == hidden
-    assert set(sought(without("needs"), trace, effects)) == {*hidden, "unbalance"}
 
 
 def coupled(share, antiresonance, damping):
@@ -115,10 +96,9 @@ def test_a_coupling_beside_something_else_is_no_gap(monkeypatch):
     Its gap is far smaller than what its contact yields, too, which alone keeps it from being one.
     """
     trace, effects = recorded(MOTION, coupled(0.6, 100.0, 0.1), vibration(0.02, 11.0)), ["elastic_coupling", "backlash"]
-    assert sought(without("replaces_by"), trace, effects) == ("elastic_coupling",)
+    assert "backlash" not in names(POLICY, trace, effects)
     monkeypatch.setattr(backlash, "OF_YIELDING", 0.0)
-    assert sought(POLICY, trace, effects) == ("elastic_coupling",)
-    assert sought(without("replaces_by"), trace, effects) == ("backlash",)
+    assert "backlash" not in names(POLICY, trace, effects)
 
 
 def test_what_no_effect_explains_is_reported():
@@ -136,17 +116,6 @@ def test_noise_alone_is_no_remainder():
     ] * 6
 
 
-def test_few_finalists_are_searched_and_the_best_of_them(monkeypatch):
-    current = bare(recorded(MOTION, wave(0.05, 6.0), offset(0.05)))
-    tried = candidates(current, catalogue().values())
-    promising = [candidate.term for candidate in tried if POLICY.promises(current, candidate.gain)]
-    asked, refined = [], searching.refined
-    monkeypatch.setattr(searching, "refined", lambda fitted, term: asked.append(term) or refined(fitted, term))
-    search(current, list(catalogue().values()), Policy(most=0))
-    assert asked == promising[:4]
-    assert 4 < len(promising) < len(tried)
-
-
 def test_rows_that_a_gap_does_not_determine_are_not_saved():
     """A gap that the axis does not have excludes rows near its impacts: their squares are not explained by it."""
     without = bare(recorded(MOTION, coupled(0.6, 100.0, 0.1), vibration(0.02, 11.0)))
@@ -161,46 +130,13 @@ def test_rows_that_a_gap_does_not_determine_are_not_saved():
 def test_a_search_that_its_limit_ends_says_so():
     trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
     effects = [catalogue()[name] for name in ("torque_offset", "cogging_torque")]
-    cut = search(bare(trace), effects, Policy(most=1))
+    cut = search(bare(trace), effects, POLICY, most=1)
     assert (len(cut.last.terms), cut.stopped) == (1, LIMIT)
-    whole = search(bare(trace), effects, Policy(most=2))
+    whole = search(bare(trace), effects, POLICY, most=2)
     assert (set(whole.last.hypothesis.names), whole.stopped) == ({"torque_offset", "cogging_torque"}, None)
 
 
-def test_a_family_of_harmonics_is_one_effect():
-    trace = recorded(MOTION, wave(0.05, 6.0), wave(0.05, 9.0, 1.0))
-    found = search(bare(trace), [catalogue()["cogging_torque"]], Policy(most=1))
-    assert sorted(term.shape for term in found.last.terms) == [(6.0,), (9.0,)]
-    assert found.stopped is None
-    cut = search(bare(trace), [catalogue()["cogging_torque"]], Policy(members=1))
-    assert len(cut.last.terms) == 1
-    assert cut.stopped == LIMIT
-
-
-class OneAtATime(Policy):
-    """Lets go of the first effect as soon as there is a second one."""
-
-    def needs(self, fitted, less, index):
-        return index != 0
-
-
-def test_what_is_taken_up_and_let_go_in_turn_ends():
-    """Each of two effects is worth taking up beside the other, and the other is let go for it."""
-    trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
-    effects = [catalogue()[name] for name in ("torque_offset", "cogging_torque")]
-    found = search(bare(trace), effects, OneAtATime())
-    assert [len(step.fitted.terms) for step in found.steps] == [0, 1, 1]
-    assert found.stopped is None
-
-
-def test_what_the_limit_cut_off_is_a_remainder():
-    trace = recorded(MOTION, wave(0.05, 6.0), offset(0.05))
-    others = frozenset(catalogue()) - {"torque_offset", "cogging_torque"}
-    cut = diagnose(trace, RIG, excluded=others, policy=Policy(most=1))
-    assert (cut.verdict, cut.stopped) == ("unexplained_remainder", LIMIT)
-
-
-#: Each of seven waves takes a seventh of what all leave, where an effect needs a quarter.
+#: Each of seven waves takes a seventh of the residual, less than its two numbers cost by themselves.
 NUMBERS = (3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 16.0)
 SEVEN = [wave(0.02, number) for number in NUMBERS]
 
@@ -210,7 +146,6 @@ def test_many_small_effects_are_named_that_explain_it_together():
     found = search(bare(recorded(MOTION, *SEVEN)), [catalogue()[name] for name in few], POLICY).last
     assert sorted(term.shape[0] for term in found.terms) == [*NUMBERS]
     assert found.chi < 1.1
-    assert len(sought(Policy(nearly_all=0.0), recorded(MOTION, *SEVEN), few)) < 3
 
 
 def test_small_effects_beside_a_remainder_are_not_named():

@@ -8,7 +8,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import NameSet, Probabilities, probabilities, scored
+from bench.diagnosis.probability import NameSet, Probabilities, probabilities, weighed
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from tests.diagnosis.constructed import (
@@ -130,15 +130,14 @@ def test_a_torque_that_wanders_is_no_event(seed):
     """Half of what wanders may pass for an event; what stays beside it says that it is none."""
     trace = recorded(MOTION, wandering(seed, 0.1))
     assert names(POLICY, trace, RIGID) == ()
-    assert "load_torque_event" in sought(POLICY, trace, RIGID)
 
 
 def test_of_names_beside_a_large_remainder_an_event_goes_first():
     """Most of the torque is cogging; what wanders beside it speaks against an event, and not against cogging."""
     trace = recorded(MOTION, wandering(7, 0.06), wave(0.3, 6.0))
-    kept, all_of_them = names(POLICY, trace, RIGID), sought(POLICY, trace, RIGID)
+    kept = names(POLICY, trace, RIGID)
     assert "cogging_torque" in kept
-    assert "load_torque_event" in set(all_of_them) - set(kept)
+    assert "load_torque_event" not in kept
 
 
 @pytest.mark.parametrize(("determined", "nothing"), [(0.3, 0.01), (0.6, 0.01), (1.0, 0.86)])
@@ -150,7 +149,7 @@ def test_what_rings_beside_impacts_is_not_nothing(determined, nothing):
     sure = np.arange(100) < 100 * determined
     left = np.where(sure, 1.0, 10.0)
     gap = made(left, term("backlash", 0.01, 500.0, 0.4, 0.0), determined=list(sure), strengths=(0.5,))
-    found = probabilities(scored([made(left), gap], None, POLICY), frozenset(), POLICY)
+    found = probabilities(weighed([made(left), gap], None, POLICY), frozenset(), POLICY)
     assert found.nothing == pytest.approx(nothing, abs=0.05)
     assert found.names.get("backlash", 0.0) < 0.05
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.axis_kind import LINEAR
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from bench.effects.signals import Base
@@ -84,26 +83,15 @@ def test_a_coupling_rings_and_one_that_hardly_does_is_passed_through_only():
 
 
 @pytest.mark.parametrize(
-    ("name", "shape", "share"),
+    ("name", "share"),
     [
-        ("torque_offset", (), 0.25),
-        ("load_torque_event", (1.0, 2.0), 0.5),
-        ("current_offset_drift", (), 0.8),  # above 3/4, which of a constant torque time takes
-        ("torque_constant_drift", (), 0.85),  # above 27/32, which of a change at half time it takes
+        ("torque_offset", 0.0),
+        ("current_offset_drift", 0.8),  # above 3/4, which of a constant torque time takes
+        ("torque_constant_drift", 0.85),  # above 27/32, which of a change at half time it takes
     ],
 )
-def test_share_that_an_effect_needs(name, shape, share):
-    assert effect(name).needed_share(shape, SCOPE) == share
-
-
-def test_a_fine_pitch_of_a_linear_axis_needs_less():
-    """Of more than twenty half cycles in the travel, which no smooth error imitates."""
-    linear = replace(SCOPE, kind=LINEAR)
-    half_cycle = np.pi / linear.travel
-    cogging = effect("cogging_torque")
-    assert cogging.needed_share((20.1 * half_cycle,), linear) == 0.1
-    assert cogging.needed_share((19.9 * half_cycle,), linear) == 0.25
-    assert cogging.needed_share((80.0,), SCOPE) == 0.25
+def test_share_that_an_effect_needs_as_others_imitate_it(name, share):
+    assert effect(name).needed == share
 
 
 RIG = Rig.of(

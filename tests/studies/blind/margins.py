@@ -2,7 +2,7 @@
 
 Of nulls: the most that any candidate would save, over noise power, per number and independent row (`Policy.chance`),
 and residual over noise floor (`remainder`). Of singles named rightly: the share of what stands above the noise floor
-that the hidden effect explains when it is taken up (`accepts`), and residual over noise floor with it. Of all that is
+that the hidden effect explains, and residual over noise floor with it. Of all that is
 explained: the torque gap of the holdout over that of the recording, noise at least (`holdout_gap`). Of all recordings:
 where a voltage limit is said to be, by how much more voltage may be reached without falling behind (`BEYOND`).
 """
@@ -57,12 +57,12 @@ def of_nulls(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[fl
 
 
 def of_singles(folder: Path, cases: Sequence[Drawn]) -> tuple[list[float], list[float]]:
-    """Share explained by the hidden effect when taken up, and residual over noise floor, where it alone is named."""
+    """Share explained by the hidden effect, and residual over noise floor, where it alone is named."""
     shares, chi = [], []
     for case in track(cases, "singles", console=Console(stderr=True)):
-        steps = search(bare(folder / case.name), list(catalogue().values()), POLICY).steps
-        if len(steps) == 2 and same(steps[1].fitted.hypothesis.names) == same(truth_of(folder, case.name)["effects"]):
-            before, after = steps[0].fitted, steps[1].fitted
+        before = bare(folder / case.name)
+        after = search(before, list(catalogue().values()), POLICY).last
+        if same(after.hypothesis.names) == same(truth_of(folder, case.name)["effects"]):
             shares.append(worth(before, after) / before.excess if before.excess else 1.0)
             chi.append(after.chi)
     return shares, chi

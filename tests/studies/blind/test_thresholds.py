@@ -4,17 +4,16 @@ import pytest
 
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import Recordings, fit_bare
-from bench.effects import effect
 from tests.diagnosis.constructed import RIG, moved, recorded, wave
 from tests.studies.blind.thresholds import AS_IS, Named, Tally, key, markdown, named, sample, tried
-from tests.studies.blind.variants import switched_off, thresholds
+from tests.studies.blind.variants import thresholds
 
 TRUTHS = [{"group": "single", "effects": ["unbalance"]}, {"group": "null", "effects": []}]
 
 
 def test_every_threshold_says_what_it_decides():
     found = thresholds()
-    assert {"chance", "number", "none", "most"} <= {each.name for each in found}
+    assert {"chance", "number", "none", "remainder"} <= {each.name for each in found}
     assert all(each.decides for each in found)
 
 
@@ -26,7 +25,6 @@ def test_one_threshold_changes_and_comes_back(threshold):
         assert changed is not (policy != Policy())
         assert changed is (threshold.owner != "Policy")
     assert thresholds() == before
-    assert effect.Effect.needed == 0.25
 
 
 def test_a_sample_holds_every_effect_and_group():
@@ -49,7 +47,7 @@ def test_a_recording_is_named_under_a_policy():
 
 
 def test_a_threshold_that_changes_nothing_is_marked():
-    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in each.factors), *switched_off()]
+    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in each.factors)]
     same = [dict.fromkeys(keys, Named(("unbalance",))), dict.fromkeys(keys, Named())]
     same[0]["Policy.chance half"] = Named(("unbalance", "backlash"))
     rows = markdown(TRUTHS, same, "command").splitlines()

@@ -1,7 +1,7 @@
 """Every number off, halved and doubled over a part of the blind set: `python -m tests.studies.blind.thresholds --help`.
 
-A case's recordings are laid out once and named under every policy. Names are the likeliest of a search and its
-neighbours; the judgement of held-out motion that follows has no threshold of its own and is left out for its time.
+A case's recordings are laid out once and named under every policy. The judgement of held-out motion that follows has no
+threshold of its own and is left out for its time.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from bench.diagnosis.policy import POLICY, Policy
-from bench.diagnosis.probability import Contender, neighbourhood, probabilities, scored
+from bench.diagnosis.probability import Contender, probabilities, weighed
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
@@ -30,7 +30,7 @@ from tests.studies.blind.__main__ import workers
 from tests.studies.blind.draw import Drawn, draw
 from tests.studies.blind.record import home, recorded, truth_of
 from tests.studies.blind.score import same
-from tests.studies.blind.variants import FACTORS, Threshold, switched_off, thresholds
+from tests.studies.blind.variants import FACTORS, Threshold, thresholds
 
 COUNTS = {"single": 252, "pair": 60, "null": 100, "outside": 32}
 AS_IS = "as is"
@@ -46,24 +46,20 @@ class Named:
 
 
 def variants_of(folder: Path) -> dict[str, Named]:
-    """A case under the policy as it is, with each threshold halved and doubled, and with each rule off."""
+    """A case under the policy as it is, with each threshold halved and doubled."""
     rig = load_rig(folder / "rig.toml")
     runs = [read(folder / f"{run}.csv.gz", rig.trace.columns) for run in ("run1", "run2")]
-    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in each.factors), *switched_off()]
+    keys = [AS_IS, *(key(each, factor) for each in thresholds() for factor in each.factors)]
     try:
         recordings = Recordings.of(runs[0], rig, runs[1])
     except BenchError:
         return dict.fromkeys(keys, Named(refused=True))
     bare = fit_bare(recordings.rows)
-    as_is = tried(recordings, bare, POLICY)
-    found = {AS_IS: named(recordings, as_is, POLICY)}
+    found = {AS_IS: named(recordings, tried(recordings, bare, POLICY), POLICY)}
     for each in thresholds():
         for label, factor in each.factors.items():
             with each.times(factor) as policy:
-                known = as_is if each.weighs else tried(recordings, bare, policy)
-                found[key(each, label)] = named(recordings, known, policy)
-    for rule, policy in switched_off().items():
-        found[rule] = named(recordings, tried(recordings, bare, policy), policy)
+                found[key(each, label)] = named(recordings, tried(recordings, bare, policy), policy)
     return found
 
 
@@ -74,8 +70,7 @@ def key(threshold: Threshold, factor: str) -> str:
 
 def tried(recordings: Recordings, bare: Fit, policy: Policy) -> list[Contender]:
     """The hypotheses that a policy comes to."""
-    searched = search(bare, [*catalogue().values()], policy)
-    return scored([*neighbourhood(searched, frozenset(), policy)], recordings.holdout_rows, policy)
+    return weighed(search(bare, [*catalogue().values()], policy).visited, recordings.holdout_rows, policy)
 
 
 def named(recordings: Recordings, hypotheses: Sequence[Contender], policy: Policy) -> Named:
@@ -132,7 +127,6 @@ def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, N
         cells = " | ".join(str(others.get(factor, "")) for factor in FACTORS)
         owner = each.owner.rpartition(".")[2].partition(":")[0]
         rows.append(f"| {owner}.{each.name} | {each.value:g} | {each.decides}{idle} | {as_is} | {cells} |")
-    off = [f"| {rule} | {as_is} | {tally(rule)} |" for rule in switched_off()]
     lines = [
         "# Thresholds",
         "",
@@ -144,12 +138,6 @@ def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, N
         "| threshold | value | what it decides | as is | off | half | double |",
         "|---|---|---|---|---|---|---|",
         *rows,
-        "",
-        "Rules off, one at a time:",
-        "",
-        "| rule | as is | off |",
-        "|---|---|---|",
-        *off,
     ]
     return "\n".join(lines) + "\n"
 

@@ -1,4 +1,4 @@
-"""The policy with one number off, halved or doubled, or one rule off; numbers are read from the policy itself."""
+"""The policy with one number off, halved or doubled; numbers are read from the policy itself."""
 
 from __future__ import annotations
 
@@ -10,20 +10,15 @@ from dataclasses import dataclass, fields, replace
 from pkgutil import resolve_name
 
 from bench.diagnosis.policy import POLICY, Policy
-from tests.diagnosis.off import without
 
 #: Shares and bounds that effects state of themselves: where each stands, and what it decides.
 OF_EFFECTS = (
-    ("bench.effects.effect:Effect", "needed", "share of what stands above the noise floor that an effect must explain"),
-    ("bench.effects.effect", "PITCH_SHARE", "the same for a fine pitch of a linear axis"),
-    ("bench.effects.effect", "MANY", "half cycles over the travel from which a pitch is fine"),
     ("bench.effects.backlash", "OF_YIELDING", "gap over what its contact yields to the peak torque, at least"),
-    ("bench.effects.load_torque_event:LoadTorqueEvent", "needed", "share that an event must explain"),
     ("bench.effects.load_torque_event", "RESOLVED", "filter widths that an event lasts at least"),
     ("bench.effects.load_torque_event", "LONGEST", "share of the recording that events last together at most"),
 )
 FACTORS = {"off": 0.0, "half": 0.5, "double": 2.0}
-#: Weights of the probability, with which a search finds the same.
+#: Weights of the score: each may be zero.
 WEIGHTS = frozenset({"left", "over", "number", "outside", "none", "beside"})
 
 
@@ -44,7 +39,7 @@ class Threshold:
 
     @property
     def weighs(self) -> bool:
-        """Whether only the probability asks it, so that a search finds the same."""
+        """Whether it is a weight of the score."""
         return self.name in WEIGHTS
 
     @property
@@ -76,11 +71,6 @@ def thresholds() -> list[Threshold]:
     return found + [
         Threshold(owner, name, getattr(resolve_name(owner), name), decides) for owner, name, decides in OF_EFFECTS
     ]
-
-
-def switched_off() -> dict[str, Policy]:
-    """The policy without each of the rules without which a search ends all the same."""
-    return {"needs": without("needs")}
 
 
 def _documented(name: str) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from bench.diagnosis.policy import POLICY
-from bench.diagnosis.probability import neighbourhood, scored, standing
+from bench.diagnosis.probability import standing, weighed
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
@@ -101,7 +101,7 @@ def known(folder: Path, withheld: bool) -> Known | None:
             one.outside,
             tuple(effect.name for effect in standing(one.fitted, POLICY)) if one.outside else (),
         )
-        for one in scored([*neighbourhood(searched, excluded, POLICY)], None, POLICY)
+        for one in weighed(searched.visited, None, POLICY)
     ]
     detected = {effect.name for effect in recordings.detected}
     truth = tuple(name for name in of_case["effects"] if name not in detected and name != "voltage_limit")
