@@ -30,6 +30,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.diagnosis.policy import Policy, freedom
+from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling, Effect, Occasional
 from bench.effects.signals import Scope
 from bench.fit.fit import Fit, fit
@@ -112,13 +113,20 @@ class Probabilities:
         """The names that are likelier than not, or of sets without others the one that misses least of them.
 
         It predicts best, though another set may be the likeliest (median probability model: M. M. Barbieri, J. O.
-        Berger, Annals of Statistics 32, 2004, 870-897): of A beside B, .46, and A beside C, .29, it is A.
+        Berger, Annals of Statistics 32, 2004, 870-897): of A beside B, .46, and A beside C, .29, it is A. Of names that
+        some recordings cannot distinguish, the likeliest counts for all of them.
         """
-        sure = {name: probability - 0.5 for name, probability in self.names.items() if probability > 0.5}
+        sure = {name: shared - 0.5 for name in self.names if (shared := self._with_likeness(name)) > 0.5}
         return max(
             (each for each in self.sets if each.names <= sure.keys()),
             key=lambda each: sum(sure[name] for name in each.names),
         )
+
+    def _with_likeness(self, name: str) -> float:
+        """Probability of a name or one that looks like it, if none of those is likelier; else its own."""
+        alike = [other for other in catalogue()[name].looks_like if other in self.names]
+        own = self.names[name]
+        return self.of_any([name, *alike]) if all(self.names[other] < own for other in alike) else own
 
     def instead_of(self, name: str) -> dict[str | None, float]:
         """What stands in the place of a chosen name in the sets without it; None: none of the catalogue."""

@@ -11,6 +11,7 @@ and a chain of many small effects, which take little each and most of the residu
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -190,19 +191,20 @@ class Visited:
         if key in self.grown or key not in self.fits:
             return
         self.grown.add(key)
-        tried = self.promising(fitted)
-        own = [each for each in tried if not each.term.effect.decoy][:WIDTH]
-        decoys = [each for each in tried if each.term.effect.decoy][:1]
-        for candidate in (*own, *decoys):
-            self.added(fitted, candidate)
-
-    def promising(self, fitted: Fit) -> list[Candidate]:
-        """Candidates that take more than chance does, and leave not much more than the best one."""
-        noise = fitted.count * fitted.floor**2
         tried = [each for each in self.candidates(fitted) if each.gain > self.policy.by_chance(fitted)]
-        left = [max(fitted.squares - each.gain - noise, 0.0) for each in tried]
-        least = max(min(left, default=0.0), 0.05 * noise)
-        return [each for each, rest in zip(tried, left, strict=True) if rest <= SCREEN * least]
+        self.add_best(fitted, (each for each in tried if not each.term.effect.decoy), WIDTH)
+        self.add_best(fitted, (each for each in tried if each.term.effect.decoy), 1)
+
+    def add_best(self, fitted: Fit, tried: Iterable[Candidate], width: int) -> None:
+        """Visit the fit with each of the few best candidates, as far as they leave not much more than the first."""
+        noise = fitted.count * fitted.floor**2
+        least = math.inf
+        for candidate in tried:
+            rest = max(fitted.squares - candidate.gain - noise, 0.0)
+            if width == 0 or rest > SCREEN * least:
+                return
+            if self.added(fitted, candidate) is not None:  # what is impossible takes no other effect's place
+                least, width = min(least, max(rest, 0.05 * noise)), width - 1
 
     def added(self, fitted: Fit, candidate: Candidate) -> Fit | None:
         """The fit with a candidate of searched shape; None if impossible, or no more than damped noise."""
