@@ -124,7 +124,8 @@ class Probabilities:
 
     def _with_likeness(self, name: str) -> float:
         """Probability of a name or one that looks like it, if none of those is likelier; else its own."""
-        alike = [other for other in catalogue()[name].looks_like if other in self.names]
+        looks_like = catalogue()[name].looks_like if name in catalogue() else ()
+        alike = [other for other in looks_like if other in self.names]
         own = self.names[name]
         return self.of_any([name, *alike]) if all(self.names[other] < own for other in alike) else own
 

@@ -192,19 +192,22 @@ class Visited:
             return
         self.grown.add(key)
         tried = [each for each in self.candidates(fitted) if each.gain > self.policy.by_chance(fitted)]
-        self.add_best(fitted, (each for each in tried if not each.term.effect.decoy), WIDTH)
-        self.add_best(fitted, (each for each in tried if each.term.effect.decoy), 1)
+        least = self.add_best(fitted, (each for each in tried if not each.term.effect.decoy), WIDTH, math.inf)
+        self.add_best(fitted, (each for each in tried if each.term.effect.decoy), 1, least)
 
-    def add_best(self, fitted: Fit, tried: Iterable[Candidate], width: int) -> None:
-        """Visit the fit with each of the few best candidates, as far as they leave not much more than the first."""
+    def add_best(self, fitted: Fit, tried: Iterable[Candidate], width: int, least: float) -> float:
+        """Visit the fit with each of the few best candidates that leave not much more above noise than the least.
+
+        Returns the least that a possible one leaves, each at a grid's shape.
+        """
         noise = fitted.count * fitted.floor**2
-        least = math.inf
         for candidate in tried:
             rest = max(fitted.squares - candidate.gain - noise, 0.0)
             if width == 0 or rest > SCREEN * least:
-                return
+                break
             if self.added(fitted, candidate) is not None:  # what is impossible takes no other effect's place
                 least, width = min(least, max(rest, 0.05 * noise)), width - 1
+        return least
 
     def added(self, fitted: Fit, candidate: Candidate) -> Fit | None:
         """The fit with a candidate of searched shape; None if impossible, or no more than damped noise."""

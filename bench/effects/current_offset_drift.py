@@ -21,6 +21,7 @@ class CurrentOffsetDrift(Torque):
     summary = "the zero of the current sensor drifts during the recording"
     stage = Stage.CURRENT_SENSOR
     quantities = (Quantity("rate", "r", "N*m/s", null=0.0),)
+    looks_like = ("torque_offset",)
     needed = 0.8  # more than a constant torque gives it: of the squares of one, r*t takes (T**2/2)**2/(T**3/3)/T = 3/4
 
     def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:

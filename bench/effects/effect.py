@@ -452,6 +452,10 @@ class Lag(Distortion):
             samples[part] = self.leading(values, samples[part], trace.sample_period)
         return trace.with_signals({self.signal: samples}, {})
 
+    def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:
+        """Whether its corner 1/(2*pi*T) is above the lowest frequency of the recording; below that, it integrates."""
+        return all(2.0 * np.pi * shape[0] <= scope.duration for shape in shapes)
+
     def shape_errors(self, shape: Sequence[float], scope: Scope, time: Array) -> Sequence[float]:
         """By the tick within which current and speed were taken."""
         return [scope.latched / NORMAL95]

@@ -19,6 +19,7 @@ class TorqueOffset(Torque):
     transmitted = True
     constant = True
     quantities = (Quantity("torque", "M_0", "N*m", null=0.0),)
+    looks_like = ("current_offset_drift",)  # with r = 3*M_0/(2*T): all but a quarter of the squares over a time T
 
     def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
         return values["torque"]
