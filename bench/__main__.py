@@ -11,7 +11,7 @@ from types import FrameType
 # Many small least-squares problems: BLAS threads only wait for one another (a diagnosis took 9.7 s with one thread, 14
 # to 26 s with two on two cores). Read when numpy is first imported, so it stands before everything else.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# MuJoCo loads a library of windows when it is imported, 0.1 s; `bench.view.video.prepare` asks for one to render with.
+# MuJoCo loads a window library at import, 0.1 s; `bench.view.video.prepare` selects one to render with.
 os.environ.setdefault("MUJOCO_GL", "off")
 
 from bench import __version__

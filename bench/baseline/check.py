@@ -306,7 +306,7 @@ class Allowed:
 
     @property
     def factor(self) -> float:
-        """By which the motion may change what a model leaves and the torque of an effect, at most."""
+        """Largest change of a residual, or of the torque of an effect, that another motion causes."""
         return self.motion**POWER
 
     @property

@@ -86,7 +86,7 @@ Exact = Annotated[Measured, PlainValidator(_read), PlainSerializer(lambda found:
 
 
 class _Written(BaseModel):
-    """A measured quantity in the file; one that is exact has a value alone."""
+    """A measured quantity in the file; an exact one has only a value."""
 
     value: Exact
     std_error: Exact | None = None
@@ -182,7 +182,7 @@ class AxisEffect:
 
 @dataclass(frozen=True)
 class RemainingGap:
-    """RMS of a gap that remains with the effects found, and its noise floor, from noise alone."""
+    """RMS of a gap that remains with the effects found, and what noise causes of it."""
 
     after: Exact
     noise_floor: Exact

@@ -131,7 +131,7 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
     try:
         free = free_run(model, recording, of.rig)
     except SimulationError as error:
-        warnings.append(f"let free, the model is not shown: {error}")
+        warnings.append(f"free-running, the model is not shown: {error}")
     if "position" not in recording:
         warnings.append(
             f"{trace.name} holds no position: shown is the integral of its speed, from zero after each hole"

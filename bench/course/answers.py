@@ -152,7 +152,7 @@ MISTAKES: tuple[tuple[str, str, tuple[Way, ...]], ...] = (
 )
 
 
-#: Of these, what the text's equations give when they are taken at their word: its backward difference (16) is half a
+#: Of these, what the text's equations give literally: its backward difference (16) is half a
 #: sample late, in the bare and in the filtered acceleration.
 AS_THE_TEXT_SAYS = ("half-sample lag", "backward difference")
 

@@ -45,7 +45,7 @@ ROUNDS = 6
 TURN = 'turn one of them by a rig.toml beside it with [trace.columns] current = "-name of its column [unit]"'
 UNEXPLAINED = "no known mistake explains it: look at its signals"
 OTHER_DISK = (
-    "no known mistake explains it: if another disk turns, give it in a rig.toml beside the recordings, "
+    "no known mistake explains it: if another disk turns, give it in a rig.toml next to the recordings, "
     '[load] and below it moment_of_inertia = "30 kg*cm**2", or outer_diameter, inner_diameter, thickness and density'
 )
 TOGETHER = "record both in one task of the drive"

@@ -150,9 +150,9 @@ class LabRecordings:
             labels = ", ".join(f"'{channel.label}'" for channel in recording.channels)
             raise InputError(
                 path,
-                f"holds no {' and no '.join(missing)} by a name the bench knows; its columns are {labels}",
-                f"write a file rig.toml beside it with {_lines(chosen, recording)}, each with its own column and unit; "
-                "what else a rig file has may be left out",
+                f"found no column for {' and '.join(missing)}; its columns are {labels}",
+                f"write {_lines(chosen, recording)} into a rig.toml next to it, each with its own column and unit; "
+                "the rest of a rig file is optional",
             )
         notes = tuple(f"{other.name} passed over, as {path.name} has the name of the course." for other in others)
         return run_of(assemble(recording, self.rig.trace), self.rig, read_truth(truth_path(path)), notes)

@@ -74,7 +74,7 @@ class Cover:
         return cls(str(content.get("group", "")), tuple((str(s["name"]), str(s["number"])) for s in students))
 
     def sheet(self, synthetic: bool) -> Section:
-        """To be signed, with blank rows where no students are given; a note alone for `synthetic` recordings."""
+        """To be signed, with blank rows where no students are given; only a note for `synthetic` recordings."""
         if synthetic:
             note = "Synthetic recordings, simulated in MuJoCo: an example of a report, not one to hand in."
             return section("cover", "Cover sheet", Paragraph(text=note))

@@ -10,7 +10,7 @@ from bench.arrays import Array
 from bench.errors import BenchError
 from bench.report.document import COLOURS, Chart, Panel, Series, Style, Table, series
 
-#: Points that can be told apart across a diagram.
+#: Points that can be distinguished across a diagram.
 COLUMNS = 400
 #: Where a number comes from.
 RECORDING, COMPUTED, SIMULATED = "recording", "computed", "simulated"
@@ -101,7 +101,7 @@ def chart(title: str, *panels: Panel) -> Chart:
 
 
 def thinned(whole: Chart) -> Chart:
-    """A chart with as many points as can be told apart on a page: of a line the extremes of each of COLUMNS stretches.
+    """A chart of the points that a page can show: of a line, the extremes of each of COLUMNS stretches.
 
     Of dots those stay that have a place of their own, a COLUMNS-th of the width and a third of that number high.
     """

@@ -170,7 +170,7 @@ def read_submission(path: Path) -> Submission:
             raise InputError(where, found, f"allowed: {', '.join(allowed)}")
         name = names[written.lower()]
         if value.strip() and name in answers:
-            raise InputError(where, f"'{written}' stands there twice", "give it once")
+            raise InputError(where, f"found '{written}' twice", "give it once")
         if value.strip():
             plain = value.strip().replace("−", "-")
             if not _NUMBER.fullmatch(plain):
@@ -208,7 +208,7 @@ def _given_once(text: str, path: Path) -> None:
         names = [name for name, _ in pairs]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
-            raise InputError(path, f"'{twice}' stands there twice", "give it once")
+            raise InputError(path, f"found '{twice}' twice", "give it once")
         return dict(pairs)
 
     json.loads(text, object_pairs_hook=once)

@@ -1,4 +1,4 @@
-"""Forms that share wrong answers beyond what honest work does, for the teacher alone: which two, and in which tasks.
+"""Forms that share wrong answers beyond what honest work does, for the teacher only: which two, and in which tasks.
 
 What is compared are answers of the own recordings that are not derived from each other: J, both friction coefficients
 and the errors of both least squares. An answer that is right, that a known mistake gives, or that the neighbour's
@@ -133,7 +133,7 @@ def _matches(answer: GradedAnswer, other: float | None) -> bool:
 
 
 def suspicion_csv(found: Sequence[Suspicion]) -> str:
-    """A row for each task of two forms that are alike; the head alone where no two are."""
+    """A row for each task of two forms that are alike; only the head where no two are."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(("student", "like student", "times likelier than honest work", "task", "the same wrong answers"))

@@ -134,7 +134,7 @@ class Diagnosis(Presented):
         refused: why a parameter is not determined beside the effects, by its name; the model is the last that has all.
         stopped: what ended the search before it was done; None if nothing did.
         unknown_effect: what remains, as tables of the model; None where held-out motion confirms none.
-        model, balance: with all effects; no model where MuJoCo cannot have them. The tables are in the model alone.
+        model, balance: with all effects; no model where MuJoCo cannot have them. Only the model has the tables.
         courses: the recordings over time beside the model as it grew.
         considered: every effect of the catalogue, and why it was taken or not.
         recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.

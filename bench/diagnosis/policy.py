@@ -46,12 +46,13 @@ class Policy:
         remainder: residual over noise floor above which the residual is not noise.
         large: residual over white noise from which on it is not noise, even if the noise is stronger than it appears.
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave.
-        left: weight of the residual above noise over that of the bare axis: independent rows, as far as what the axis
-            has of its own leaves them (`bench.diagnosis.probability`; all weights are fitted, `docs/certainty.md`).
+        left: weight of the residual above noise over that of the bare axis: it acts as a number of independent rows,
+            which other effects of a real axis make few (`bench.diagnosis.probability`; all weights are fitted,
+            `docs/certainty.md`).
         over: weight of the residual above noise over noise.
         number: weight of a fitted number.
         outside: weight of an effect from outside the catalogue.
-        none: weight of what was not tried.
+        none: weight of effects that were not tried.
         beside: residual over noise floor, as share of that without a name, up to which the name is present together
             with an effect from outside the catalogue.
     """
@@ -105,12 +106,12 @@ class Policy:
         )
 
     def replaceable(self, fitted: Fit, other: Fit) -> bool:
-        """Whether another fit leaves no more than chance takes, by as many numbers as it has fewer, one at least."""
+        """Whether the numbers that another fit has fewer, one at least, explain no more than chance."""
         numbers = max(freedom(fitted) - freedom(other), 1)
         return worth(other, fitted) < self.by_chance(fitted, numbers) and self.physical(other)
 
     def event_shows(self, fitted: Fit, numbers: int, saved: float, left: float) -> bool:
-        """Whether an event saves more than chance, and so much of its stretch of time that its numbers are worth it.
+        """Whether an event saves more than chance, and enough of its stretch of time for its numbers.
 
         It is found next to a remainder, so its score has the weight of an unknown effect, too.
         """

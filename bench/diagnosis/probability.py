@@ -38,7 +38,7 @@ from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 
-#: Noise power beside which what is left beyond noise no longer counts.
+#: Share of the noise power below which a residual beyond noise no longer counts.
 BESIDE_NOISE = 0.03
 #: Blocks that a holdout is judged in, and residual over noise floor above which no hypothesis explains one.
 BLOCKS, EXPLAINED = 32, 3.0
@@ -113,7 +113,7 @@ class Probabilities:
         """The names that are likelier than not, or of sets without others the one that misses least of them.
 
         It predicts best, though another set may be the likeliest (median probability model: M. M. Barbieri, J. O.
-        Berger, Annals of Statistics 32, 2004, 870-897): of A beside B, .46, and A beside C, .29, it is A. Of names that
+        Berger, Annals of Statistics 32, 2004, 870-897): of A with B, .46, and A with C, .29, it is A. Of names that
         some recordings cannot distinguish, the likeliest counts for all of them.
         """
         sure = {name: shared - 0.5 for name in self.names if (shared := self._with_likeness(name)) > 0.5}
@@ -124,7 +124,7 @@ class Probabilities:
 
     def _with_likeness(self, name: str) -> float:
         """Probability of a name or one that looks like it, if none of those is likelier; else its own."""
-        looks_like = catalogue()[name].looks_like if name in catalogue() else ()
+        looks_like = catalogue()[name].looks_like if name in catalogue() else ()  # a plug-in may be missing by now
         alike = [other for other in looks_like if other in self.names]
         own = self.names[name]
         return self.of_any([name, *alike]) if all(self.names[other] < own for other in alike) else own
@@ -212,7 +212,7 @@ def weighed(visited: Sequence[Fit], holdout: Rows | None, policy: Policy) -> lis
     white[outside] = np.minimum(white[outside], white[~outside].max())  # its inertia may be any, and noise with that
     nearest = physical[int(np.argmin(power / white))]
     floor = white * (nearest.floor / nearest.noise.white) ** 2
-    if visited[0].depends is not None:  # noise is no more than what explains the dependence leaves
+    if visited[0].depends is not None:  # the fit that explains the dependence bounds the noise
         floor = np.minimum(floor, power.min())
     elif len(physical) == 1 and not policy.remains(visited[0]):  # noise, whose level is known no better
         floor = np.maximum(floor, claimed)

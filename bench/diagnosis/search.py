@@ -16,7 +16,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from bench.diagnosis.policy import Policy, worth
-from bench.diagnosis.probability import Key, key_of, weighed
+from bench.diagnosis.probability import BESIDE_NOISE, Key, key_of, weighed
 from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Effect
 from bench.effects.rivals import GAINS, RIVALS, WAVES
@@ -196,9 +196,9 @@ class Visited:
         self.add_best(fitted, (each for each in tried if each.term.effect.decoy), 1, least)
 
     def add_best(self, fitted: Fit, tried: Iterable[Candidate], width: int, least: float) -> float:
-        """Visit the fit with each of the few best candidates that leave not much more above noise than the least.
+        """Visit the fit with each of the few best candidates whose residual is not much above the least.
 
-        Returns the least that a possible one leaves, each at a grid's shape.
+        Returns the least residual above noise of the possible ones, at a grid's shape - (N*m)**2 (N**2).
         """
         noise = fitted.count * fitted.floor**2
         for candidate in tried:
@@ -206,7 +206,7 @@ class Visited:
             if width == 0 or rest > SCREEN * least:
                 break
             if self.added(fitted, candidate) is not None:  # what is impossible takes no other effect's place
-                least, width = min(least, max(rest, 0.05 * noise)), width - 1
+                least, width = min(least, max(rest, BESIDE_NOISE * noise)), width - 1
         return least
 
     def added(self, fitted: Fit, candidate: Candidate) -> Fit | None:
@@ -224,7 +224,7 @@ class Visited:
     def try_further(self, best: Fit, most: int) -> bool:
         """Visit sets beyond one move: an effect in place of those it replaces, and many small ones; whether any is new.
 
-        What an effect that replaces others can be is searched once beside each set.
+        The shape of an effect that replaces others is searched once with each set.
         """
         before = len(self.fits), best.squares
         for effect in (each for each in self.effects if each.replaces and self.policy.leaves_room(best, each)):

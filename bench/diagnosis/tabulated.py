@@ -32,7 +32,7 @@ from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.plant.model_file import StoredModel
 from bench.plant.tracking import run_free
-from bench.trace.motion import measured_velocity, stretches_of
+from bench.trace.motion import measured_velocity, windows_of
 
 #: Blocks that the motion is cut into, and parts that they are dealt to, each of which is predicted from the others.
 BLOCKS, PARTS = 24, 6
@@ -103,12 +103,10 @@ def with_tables(stored: StoredModel, tables: Sequence[Present]) -> StoredModel:
 def free_gap(stored: StoredModel, recorded: Recorded) -> float:
     """RMS of simulated less measured speed at the judged samples - rad/s (m/s); nan where the simulation diverged.
 
-    In windows of a recording, side by side, each of which begins as the recording has it and is held by nothing.
+    In windows of a recording, side by side, each of which begins as the recording has it and runs free.
     """
     trace = recorded.trace
-    size = max(round(WINDOW / trace.sample_period), 2)
-    parts = [slice(k, k + size) for part in stretches_of(trace) for k in range(part.start, part.stop - size + 1, size)]
-    parts = [part for part in parts if recorded.judged[part].any()]
+    parts = [part for part in windows_of(trace, WINDOW) if recorded.judged[part].any()]
     parts = parts[:: -(-len(parts) // WINDOWS) or 1]
     held, velocity = tracking(stored, trace, recorded.rig, recorded.events), measured_velocity(trace)
     try:
@@ -140,7 +138,7 @@ def remaining(balance: Balance, rows: Rows, effects: Iterable[Present]) -> Array
 
 
 def choices(fitted: Fit) -> list[list[Tabulated]]:
-    """Tables that may explain what is left: each that the recording can show, then a torque with each friction."""
+    """Tables that may explain the residual: each that the recording can show, then a torque with each friction."""
     known = [table for table in TABLES.values() if table.sought(fitted.scope)]
     torques = [table for table in known if isinstance(table, TorqueOverPosition)]
     return [*([table] for table in known), *([one, other] for one in torques for other in known if other is not one)]
@@ -160,8 +158,8 @@ def tabulated(fitted: Fit, among: Sequence[Sequence[Tabulated]]) -> list[tuple[P
     for choice in among:
         nodes, missed = smoothed(np.concatenate([columns[table] for table in choice], axis=1), fitted.residual)
         found.append((missed, len(found), list(zip(choice, np.split(nodes, len(choice)), strict=True))))
-    alone = min((missed for missed, _, parts in found if len(parts) == 1), default=math.inf)
-    kept = [one for one in found if one[0] < min(limit, (1.0 - LEAST) ** 2 * alone if len(one[2]) > 1 else math.inf)]
+    single = min((missed for missed, _, parts in found if len(parts) == 1), default=math.inf)
+    kept = [one for one in found if one[0] < min(limit, (1.0 - LEAST) ** 2 * single if len(one[2]) > 1 else math.inf)]
     return [
         tuple(present(table, sizes[table], nodes, fitted.base) for table, nodes in parts)
         for _, _, parts in sorted(kept, key=lambda one: one[0])

@@ -1,4 +1,4 @@
-"""Whether a model explains everything: each criterion that speaks against it, with the figures by which it does."""
+"""Whether a model explains everything: each criterion that it fails, with its figures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Gap:
 
     Attributes:
         unit: of all numbers.
-        noise_floor: expected RMS from sensor noise alone.
+        noise_floor: expected RMS from sensor noise.
         identify, holdout: (before, after) over all rows; None if not available.
         judged: share of the rows that the verdict is based on, and the gap on them; None if it is all rows.
         limit: RMS up to which a model matches the recording.
@@ -59,7 +59,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Objection:
-    """A criterion that speaks against a model's being all, with its figures by name (`bench.report.verdict`)."""
+    """A criterion by which a model is incomplete, with its figures by name (`bench.report.verdict`)."""
 
     criterion: str
     figures: Mapping[str, str | float | Parameter] = field(default_factory=dict)
@@ -126,7 +126,7 @@ def undetermined(added: Added, torque: Gap) -> Iterator[Objection]:
 
     One that is minor, as a share between dry and viscous friction, does not count. A phase is wide if it may be
     anywhere in its turn, an instant if it may be anywhere in the recording. Friction as wide counts where the torque
-    that it leaves open is more than noise.
+    that it leaves undetermined is more than noise.
     """
     time = added.recordings.trace.time
     for one in added.effects:

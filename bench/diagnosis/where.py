@@ -14,7 +14,7 @@ from bench.fit.rows import Rows
 
 #: Number of bins of a coordinate, and rows that a bin contains: fewer bins of a short recording.
 BINS, LEAST = 48, 12
-#: Distance of rows in widths of the filter beyond which noise of them does not correlate: exp(-9) is left of it.
+#: Distance of rows in widths of the filter beyond which their noise is uncorrelated: the correlation is exp(-9).
 CORRELATED = 6.0
 
 
@@ -111,7 +111,7 @@ def means_in(index: NDArray[np.int64], values: Array) -> Array:
 def by_chance(index: NDArray[np.int64], kept: NDArray[np.bool_], rows: Rows) -> float:
     """Share of the variance of filtered white noise that is expected between bins, 0 to 1.
 
-    Rows i, j that lie tau apart correlate as rho = exp(-(tau/(2*width))**2), so that the means m_b of n_b rows have
+    Rows at a distance tau in time correlate as rho = exp(-(tau/(2*width))**2), so that the means m_b of n_b rows have
 
         E[sum of n_b*(m_b - mean)**2] = variance*(sum over bins of (sum over i, j in b of rho)/n_b - share*K)
 
@@ -127,10 +127,10 @@ def by_chance(index: NDArray[np.int64], kept: NDArray[np.bool_], rows: Rows) -> 
     weight = np.where(kept, 1.0 / np.maximum(np.bincount(index), 1), 0.0)[index]
     own, whole = float(weight.sum()), 1.0
     for lag in range(1, time.size):
-        apart = np.abs(time[lag:] - time[:-lag])
-        if apart.min() > CORRELATED * width:
+        distance = np.abs(time[lag:] - time[:-lag])
+        if distance.min() > CORRELATED * width:
             break
-        correlation = 2.0 * np.exp(-((apart / (2.0 * width)) ** 2))
+        correlation = 2.0 * np.exp(-((distance / (2.0 * width)) ** 2))
         own += float(np.sum((correlation * weight[lag:])[index[lag:] == index[:-lag]]))
         whole += float(correlation.sum()) / time.size
     return max(own - whole * float(np.mean(kept[index])), 0.0) / max(time.size - whole, 1.0)

@@ -107,7 +107,7 @@ def _run(
         _beyond(ahead, below, above, after)
         np.equal(after, 0.0, out=free)
         np.multiply(explicit, before, out=held)
-        np.multiply(resist, before, out=held, where=free)  # where they part, or were apart
+        np.multiply(resist, before, out=held, where=free)  # where they separate, or were separate
         np.multiply(implicit, after, out=moved)
         moved += held
         if springs:

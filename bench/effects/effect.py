@@ -3,7 +3,7 @@
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
 Strengths enter linearly; shapes (a Stribeck speed, a harmonic) do not and are searched. An effect derives from the kind
-that it is; its attributes declare what else is true of it. The rest of the bench reads both, and knows no effect by
+that it is; its attributes declare what else is true of it. The rest of the bench reads both, and refers to no effect by
 name.
 
     without memory          Torque, Friction, Inertia: one function is column and simulation (`bench.effects.torque`)
@@ -134,19 +134,19 @@ class Effect(ABC):
         replaces: names of effects that it is tried instead of, once no other addition explains more; see `in_place_of`.
         decoy: physics that no catalogue lists: it competes with the names of a search and never gets one.
         copies_torque: its columns are made of the torque that reaches it, and of the noise of that, see
-            `bench.fit.hypothesis.not_reaching`; each value of the sample in its place alone: those of a recording with
+            `bench.fit.hypothesis.not_reaching`; each value from its own sample only: those of a recording with
             holes are made at once.
         rescales_torque: its one strength is what the torque that acts has more than the reported one, as share of that.
-        of_speed: its torque depends on speed alone.
-        external: a torque of motion and time alone, which varies: behind a coupling it may act on the load as on the
-            motor.
+        of_speed: its torque depends only on speed.
+        external: a varying torque that depends only on motion and time: behind a coupling it may act on the load as on
+            the motor.
         transmitted: a torque of the load, which the transmission carries and friction may follow.
         constant: a transmitted torque that never varies: in motion of one direction it looks like dry friction.
         spring: a transmitted torque that pulls back to a position; its first strength is the stiffness - N*m/rad
             (N/m) -, its second a constant.
         directed: dry friction that differs between the directions.
         scales_friction: dry friction in proportion to the level that other effects make.
-        follows_load: dry friction caused by the torque of the load, which `AxisState.load` holds.
+        follows_load: dry friction caused by the torque of the load, given by `AxisState.load`.
         filters_motion: noise of the motion passes through it, and so biases its strength or shape.
     """
 
@@ -218,7 +218,7 @@ class Effect(ABC):
     def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
         """Its most likely shape in a fit without the effects that it replaces; None where it can be none.
 
-        `promises` says of the squares that a grid's shape takes whether a search from it is worth it.
+        `promises`: whether the squares that a grid's shape explains make a search from it worth its cost.
         """
         return None
 
@@ -285,11 +285,11 @@ class Columns(Effect):
 
 @dataclass(frozen=True)
 class Standout:
-    """What stands out of all that is left.
+    """An event in a residual.
 
     Attributes:
         shape: of an effect.
-        around: begin and end of the stretch of time that tells it from what else is left - s.
+        around: begin and end of the stretch of time that distinguishes it from the rest of the residual - s.
     """
 
     shape: tuple[float, ...]
@@ -303,7 +303,7 @@ class Occasional(Columns):
 
     @abstractmethod
     def apart(self, fitted: Fitted) -> list[Standout]:
-        """Those that what is left shows by themselves, whatever else it holds."""
+        """Those that a residual shows by themselves, whatever else it contains."""
 
     @abstractmethod
     def duration(self, shape: Sequence[float]) -> float:
@@ -311,7 +311,7 @@ class Occasional(Columns):
 
     @abstractmethod
     def indistinct(self, shape: Sequence[float], time: Array, scope: Scope) -> list[tuple[float, ...]]:
-        """Shapes that rows at some times (m,) - s - do not tell from one, that one first."""
+        """Shapes that rows at some times (m,) - s - do not distinguish from one, that one first."""
 
 
 #: An effect on the load behind a coupling: the effect, its shape, its strengths divided by the load inertia.

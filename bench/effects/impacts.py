@@ -40,7 +40,7 @@ TOGETHER = 4_000_000
 AROUND = (np.linspace(-0.12, 0.12, 7), np.linspace(-0.6, 0.6, 5), np.linspace(-0.5, 0.5, 3))
 #: Length of what is drawn: longer than a load rings after an impact - s.
 STRETCH = 0.2
-#: Standard errors that all resampled recordings share, as shares: a contact of microns hardly stands out of the noise
+#: Standard errors that all resampled recordings share, as shares: a contact of microns is hardly above the noise
 #: of the motion that presses it, and rebounds run faster than samples follow, so the likeliest one is softer and damps
 #: more. Of 39 drawn axes (`python -m tests.studies.blind --only backlash`, seeds 101 and 102) the logarithms of
 #: gap, frequency and damping ratio err by .03, .50 and 1.46 by root mean square, 1.34 of it too much damping.
@@ -58,12 +58,12 @@ class Likely:
     spring_rate: float
 
     def around(self, factors: Array) -> Array:
-        """Shapes (k, 4) around it, with the spring that was found beside it."""
+        """Shapes (k, 4) around it, with the spring that was found with it."""
         return np.column_stack([self.shape[:3] * factors, np.full(len(factors), self.spring_rate)])
 
 
 def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
-    """Gap, contact's frequency and damping ratio, and spring's rate beside a fit without them; see `load_positions`.
+    """Gap, contact's frequency and damping ratio, and spring's rate, added to a fit without them; see `load_positions`.
 
     None where no shape of the first grid takes squares that promise more.
     """

@@ -63,12 +63,11 @@ class Tabulated(Torque):
     def level(self, values: Values, at: AxisState) -> Number:
         """Torque, or friction in the direction of the motion, between the nodes - N*m (N)."""
         place, nodes = self.place(values, at), [values[name] for name in NAMES]
-        if np.ndim(place) == 0 and namespace(place) is np:  # the two nodes beside it alone: a fifth of the time
+        if np.ndim(place) == 0 and namespace(place) is np:  # only its two nodes: a fifth of the time
             node = min(int(place), NODES - 2)
             return nodes[node] + (place - node) * (nodes[node + 1] - nodes[node])
         share = hats(place)
-        # NumPy's stack takes twenty times as long
-        xp = namespace(share)
+        xp = namespace(share)  # NumPy's own stack takes twenty times as long as np.array
         return xp.sum(share * (np.array(nodes).T if xp is np else xp.stack(nodes, axis=-1)), axis=-1)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

@@ -425,7 +425,7 @@ def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = Fa
 
 
 def together(fitted: Fit) -> Fit:
-    """Search the shapes of all terms at once: in a valley between two, a search of one stands still."""
+    """Search the shapes of all terms at once: in a valley of two, a search of one makes no progress."""
     found = _projected(fitted.rows, fitted.hypothesis, range(len(fitted.terms)))
     return found if found.squares < fitted.squares else fitted
 

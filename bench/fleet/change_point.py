@@ -1,4 +1,4 @@
-"""The step that stands out most from a series of values of one axis, and where the next one lies.
+"""The largest step in a series of values of one axis over its error, and where the next one is.
 
 A series of recordings may step at some time:
 
@@ -29,14 +29,14 @@ FEWEST = 3
 
 @dataclass(frozen=True)
 class ChangePoint:
-    """The step that stands out most from a series of values.
+    """The most significant step of a series of values.
 
     Attributes:
         place: of the first recording after it.
         before, after: means on both sides - the quantity's unit.
         reach: half width of the interval of 95 % of their difference - the same.
         size: their difference in standard errors.
-        chance: that a series without a step has one that stands out as much, at most.
+        chance: that a series without a step shows one as significant, at most.
     """
 
     place: int
@@ -48,7 +48,7 @@ class ChangePoint:
 
 
 def change_point(values: Array, errors: Array) -> ChangePoint | None:
-    """The step that stands out most of values in the order of time (n,) with errors (n,); None of fewer than three."""
+    """The most significant step of values in the order of time (n,) with errors (n,); None of fewer than three."""
     n = values.size
     if n < FEWEST:
         return None

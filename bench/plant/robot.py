@@ -418,7 +418,7 @@ def logs_of(
 def _known(
     moved: tuple[Trace, Array, Array, list[str]], rig: Rig, robot: Robot, changes: Sequence[AddedBody]
 ) -> list[Trace]:
-    """What `_moved` returns with the torque that the rest of the robot asks, as it is and with each change."""
+    """What `_moved` returns with the torque of the rest of the robot, as it is and with each change."""
     own = rig.of_joint(robot.joint)
     trace, position, velocity, stand = moved
     torque, momentum = robot.rest(position, velocity)

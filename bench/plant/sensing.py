@@ -1,4 +1,4 @@
-"""What drive and recording have of motion and current: sensors' faults are in both, lags in the recording alone."""
+"""Motion and current as drive and recording have them: sensor faults are in both, lags only in the recording."""
 
 from __future__ import annotations
 

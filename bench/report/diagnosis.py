@@ -378,7 +378,7 @@ def _motion(found: Diagnosis) -> doc.Section:
     rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in both for _ in names)))
     steps = doc.table("RMS gaps before and after each addition", ("model", *headings), rows)
     graphs = (_over_time(found, course) for course in found.courses)
-    loop = "The models run in MuJoCo on the recorded torque, held softly to the recorded motion at "
+    loop = "The models run in MuJoCo on the recorded torque, weakly coupled to the recorded motion at "
     held = doc.Paragraph(text=f"{loop}{number(found.velocity.bandwidth, 'rad/s', 3)}.")
     return doc.section("motion", "Measured and simulated", steps, *rms_gaps(found), *graphs, held)
 

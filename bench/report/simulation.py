@@ -32,7 +32,7 @@ MOST = 40_000
 #: Part of what a page may hold of graphs over time that is left beside them.
 PART = 0.8
 #: The axis of a model that nothing holds.
-LET_FREE = ("time since it was let free", "s")
+LET_FREE = ("time since it was started", "s")
 #: Points that are drawn of the curve of how far off it is.
 DRAWN = 300
 #: How much slower a page plays; what turns plays at first so that it goes round at most once a second.
@@ -173,7 +173,7 @@ def view(
     answers = {
         "What moves?": shown.simulated_is,
         "How far apart?": f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most",
-        **({} if free is None else {"And let free?": _after(free, kind)}),
+        **({} if free is None else {"And free-running?": _after(free, kind)}),
     }
     both = {
         ("speed", kind.speed_unit): (shown.ghost_velocity, shown.velocity),
@@ -203,7 +203,7 @@ def view(
 
 
 def _after(free: FreeRun, kind: AxisKind) -> str:
-    """How far off it is a while after it was let free."""
+    """How far off it is a while after it was started."""
     at = [(horizon, int(np.searchsorted(free.time, horizon * (1.0 - 1e-6)))) for horizon in HORIZONS]
     at = [(number(horizon, "s"), k) for horizon, k in at if k < free.time.size]
     at = at or [(number(float(free.time[-1]), "s", 3), -1)]
@@ -212,10 +212,10 @@ def _after(free: FreeRun, kind: AxisKind) -> str:
 
 
 def _let_free(free: FreeRun, kind: AxisKind) -> Iterator[doc.Chart]:
-    """How far off position and speed are over the time since it was let free."""
+    """How far off position and speed are over the time since it was started."""
     every = max(free.time.size // DRAWN, 1)
     alternative = (
-        f"RMS of simulated less measured over the time since the model was let free: {free.windows} windows begin "
+        f"RMS of simulated less measured over the time since the model was started: {free.windows} windows begin "
         "with what the sensors say, the recorded effort drives the model, and nothing holds it."
     )
     for name, unit, off in (("position", kind.length_unit, free.position), ("speed", kind.speed_unit, free.velocity)):
@@ -273,7 +273,7 @@ def moving_section(mjcf: Path, motions: Mapping[str, JointMotion]) -> doc.Sectio
         if drawn:
             alternative = (
                 f"RMS of simulated less measured position of the joints that {move}, over the time since the model of"
-                " each was let free, driven by its recorded torque, beside the others as measured."
+                " each was started, driven by its recorded torque, with the others as measured."
             )
             charts.append(one_panel("Let free.", alternative, LET_FREE, ("position off (RMS)", unit), drawn))
     robot = _robot_motion(mjcf, max(origins, key=origins.count), motions)
@@ -291,7 +291,7 @@ def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) ->
     runs = sorted(ways, key=lambda how: [HELD, BARE, how].index(how))
 
     def apart(name: str, how: str) -> Array:
-        """Of a joint that the log tells; as held softly where its model has nothing to leave out."""
+        """Of a joint that the log tells; as weakly coupled where its model has nothing to leave out."""
         one = here.get(name)
         return np.zeros_like(motion.time) if one is None else one.runs.get(how, one.runs[HELD]) - one.measured[name]
 
@@ -299,7 +299,7 @@ def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) ->
     low, high = float(measured.min()), float(measured.max())
     return doc.Moving(
         title=f"The robot along {readable(Path(along).name)}; the numbers are of {readable(first)}.",
-        alternative="Each joint's recorded torque drives its model beside the others as measured. How it is run is"
+        alternative="Each joint's recorded torque drives its model with the others as measured. How it is run is"
         " chosen below. The ghost is the robot as measured.",
         turns=motion.unit == "rad",
         unit=motion.unit,

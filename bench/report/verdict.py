@@ -1,4 +1,4 @@
-"""What speaks against a diagnosis' being all, in words."""
+"""Why a diagnosis is incomplete, in words."""
 
 from __future__ import annotations
 

@@ -290,6 +290,16 @@ def stretches_of(trace: Trace) -> tuple[slice, ...]:
     return tuple(part for part in trace.segments if part.stop - part.start > 1)
 
 
+def windows_of(trace: Trace, length: float) -> list[slice]:
+    """Windows of a length - s -, one after the other; the last one of each stretch without holes may be shorter."""
+    samples = max(round(length / trace.sample_period), 2)
+    return [
+        slice(start, min(start + samples, part.stop))
+        for part in stretches_of(trace)
+        for start in range(part.start, part.stop - 1, samples)
+    ]
+
+
 def in_stretches(trace: Trace) -> NDArray[np.bool_]:
     """Samples at which a model held to a recording says something, (n,): those of `stretches_of`."""
     found = np.zeros(len(trace), dtype=np.bool_)

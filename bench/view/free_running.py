@@ -1,6 +1,6 @@
-"""Motions of a model that are drawn beside its recording: free-running, restarted every so often, without its effects.
+"""Motions of a model that are drawn with its recording: free-running, restarted periodically, without its effects.
 
-A free-running simulation begins as the sensors have the axis, and is driven by the recorded torque alone.
+A free-running simulation begins at the measured position and speed, and only the recorded torque drives it.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from bench.errors import SimulationError
 from bench.fit.stored import EVERY
 from bench.plant.tracking import SoftTracking, Tracked, run_free, track
 from bench.rig.rig import Rig
-from bench.trace.motion import measured_position, measured_velocity, stretches_of
+from bench.trace.motion import measured_position, measured_velocity, stretches_of, windows_of
 from bench.trace.trace import Trace
 
-#: Longest that it is let free - s -, and how many windows begin within the length of one.
+#: Longest free run - s -, and how many windows begin within the length of one.
 LONGEST, BEGIN = 5.0, 4
-#: After so long it is shown how far off it is, and begins anew where that is shown - s.
+#: Times after which a simulation is restarted, where its error is shown - s.
 HORIZONS = (0.5, 1.0, 2.0, 5.0)
-#: How a model is run that a weak cascade keeps near its recording, with and without its effects.
-HELD, BARE = "held softly", "held, without what was found"
+#: Names of the motions that a weak cascade keeps near the recording, with and without the effects.
+HELD, BARE = "weakly coupled", "weakly coupled, without the effects found"
 
 
 @dataclass(frozen=True)
 class FreeRun:
-    """How far off a model runs, over the time since it was let free.
+    """Error of a free-running model over the time since its start.
 
     Attributes:
         time: since then - s (n,).
@@ -48,7 +48,7 @@ class FreeRun:
 
 
 def free_run(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> FreeRun | None:
-    """Run a model from many moments of a recording by itself; None where it holds no motion.
+    """Simulate a model from many moments of a recording; None where it contains no motion.
 
     Windows of 5 s, or of half of the longest stretch without holes, begin every quarter of one. Noise of the sensors at
     the moment at which a window begins stays in its motion.
@@ -75,9 +75,9 @@ def free_run(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> FreeRun |
 def restarted(
     model: Diagnosis | str | Path, trace: Trace, rig: Rig, horizons: Sequence[float] = HORIZONS
 ) -> dict[str, Array]:
-    """Positions of a model that is let free anew every so often, by how often - rad (m) - (n,).
+    """Positions of a model that is restarted periodically, by the period - rad (m) - (n,).
 
-    None of them where the model holds no motion, the recording is shorter, or the model diverged.
+    None of them where the model contains no motion, the recording is shorter, or the model diverged.
 
     Raises:
         InputError: as `bench.replay`.
@@ -92,22 +92,12 @@ def restarted(
         with suppress(SimulationError):
             for part, one in zip(windows, _free(held, windows), strict=True):
                 position[part] = one.position
-            found[f"let free every {horizon:g} s"] = position
+            found[f"restarted every {horizon:g} s"] = position
     return found
 
 
-def windows_of(trace: Trace, horizon: float) -> list[slice]:
-    """Windows of so long - s -, one after the other, the last one of each stretch without holes as long as that is."""
-    length = max(round(horizon / trace.sample_period), 2)
-    return [
-        slice(start, min(start + length, part.stop))
-        for part in stretches_of(trace)
-        for start in range(part.start, part.stop - 1, length)
-    ]
-
-
 def without_effects(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> Array | None:
-    """Position of a model without its effects, held softly - rad (m) - (n,); None where it has none, or diverged.
+    """Position of a model without its effects, weakly coupled - rad (m) - (n,); None where it has none, or diverged.
 
     Raises:
         InputError: as `bench.replay`.
@@ -122,7 +112,7 @@ def without_effects(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> Ar
 
 
 def _held(model: Diagnosis | str | Path, trace: Trace, rig: Rig) -> SoftTracking | None:
-    """A model and what drives it along a recording; None where it holds no motion."""
+    """A model and what drives it along a recording; None where it contains no motion."""
     _, _, balance, stored = parts_of(model, rig)
     return None if stored is None else tracking(stored, trace, rig, balance.recording in (EVERY, trace.origin))
 

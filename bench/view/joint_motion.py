@@ -1,4 +1,4 @@
-"""A joint along its log, measured and as its model moves: held softly, and let free anew every so often."""
+"""A joint along its log, measured and as its model moves: weakly coupled, and restarted every so often."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.rig.rig import Rig
-from bench.trace.motion import integrated, stretches_of
+from bench.trace.motion import integrated, stretches_of, windows_of
 from bench.trace.trace import Trace
-from bench.view.free_running import BARE, HELD, restarted, windows_of
+from bench.view.free_running import BARE, HELD, restarted
 
 #: Instants at most of which a motion is kept, to be drawn.
 INSTANTS = 1000
-#: How often a joint is let free anew - s -, and instants of the curve over the longest.
+#: How often a joint runs free anew - s -, and instants of the curve over the longest.
 EVERY, POINTS = (0.5, 5.0), 100
 
 
@@ -30,7 +30,7 @@ class JointMotion:
         time: s (n,).
         measured: positions of all joints, by name - rad (m) - (n,).
         runs: positions of this one, by how its model was run - rad (m) - (n,).
-        horizon, off: time since it was let free - s -, and how far off it is then (RMS) - rad (m) - (k,).
+        horizon, off: time since it was started - s -, and how far off it is then (RMS) - rad (m) - (k,).
     """
 
     origin: str
@@ -76,7 +76,7 @@ def _position(velocity: Array, trace: Trace) -> Array:
 
 
 def _horizon(free: Mapping[str, Array], trace: Trace, ratio: float) -> tuple[Array, Array]:
-    """How far off a joint is over the time since it was let free, of the longest windows; both empty without one."""
+    """How far off a joint is over the time since it was started, of the longest windows; both empty without one."""
     if not free:
         return np.zeros(0), np.zeros(0)
     *_, (every, position) = zip(EVERY, free.values(), strict=False)

@@ -98,7 +98,7 @@ def along_recording(model: str | Path, replayed: Replay) -> SideBySide:
     return SideBySide(
         kind=next(kind for kind in KINDS if kind.speed_unit == replayed.speed_unit),
         ghost_is="measured",
-        simulated_is=f"The recorded {effort} drives the model, which is held softly to the recording.",
+        simulated_is=f"The recorded {effort} drives the model, which is weakly coupled to the recording.",
         time=replayed.time,
         ghost=replayed.position,
         position=replayed.position_simulated,

@@ -37,7 +37,7 @@ def turns_once(effect: Effect) -> bool:
 
 #: What is true of an effect, in words.
 DECLARED: tuple[tuple[Callable[[Effect], bool], str], ...] = (
-    (turns_once, "It has a meaning on rotary axes alone."),
+    (turns_once, "It applies only to rotary axes."),
     (lambda effect: effect.repeatable, "An axis may have several of it, each of another shape."),
     (
         lambda effect: isinstance(effect, Occasional),

@@ -1,4 +1,4 @@
-"""A model held softly to a recording of the independent axis: the effect closes the velocity gap."""
+"""A model weakly coupled to a recording of the independent axis: the effect closes the velocity gap."""
 
 import time
 

@@ -31,7 +31,7 @@ def test_the_page_of_a_joint_shows_the_robot_moving(folder):
     page = json.loads((folder / "found" / "report.json").read_text())
     moving = next(section for section in page["sections"] if section["key"] == "moving")["blocks"][0]
     apart = {run["name"]: rms(floats(run["apart"])) for run in moving["runs"]}
-    assert apart["held softly"] < 0.2 * apart["held, without what was found"]
+    assert apart["weakly coupled"] < 0.2 * apart["weakly coupled, without the effects found"]
     assert [joint["of"] for body in moving["robot"]["bodies"] for joint in body["joints"]] == [1, 0]
 
 

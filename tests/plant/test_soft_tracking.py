@@ -1,4 +1,4 @@
-"""A model held softly to a recording, against the closed form of its linear loop."""
+"""A model weakly coupled to a recording, against the closed form of its linear loop."""
 
 import numpy as np
 import pytest

@@ -107,7 +107,7 @@ def test_its_links_stand_in_the_page_where_the_joints_say(arm, opened, tmp_path)
     times = np.linspace(0.0, 2.0, 201)
     poses = {"shoulder": 0.3 + 0.4 * times, "elbow": 0.0 * times}
     one = shown()
-    moved = type(one)(**{**vars(one), "others": {"let free every 1 s": one.position + 0.2}})
+    moved = type(one)(**{**vars(one), "others": {"restarted every 1 s": one.position + 0.2}})
     robot = RobotAlong(arm, "elbow", RATIO, times, poses)
     write_html(tmp_path / "view.html", view(moved, tmp_path / "model.toml", "run", robot=robot))
     page = opened(tmp_path / "view.html", bypass_csp=True)

@@ -23,7 +23,7 @@ def test_a_page_is_written_and_said(bench, diagnosed, tmp_path):
     assert (status, out, err) == (0, "wrote view.html\n", "")
     page = (tmp_path / "view.html").read_text(encoding="utf-8")
     assert "The simulated axis stays within" in page
-    assert "And let free?" in page
+    assert "And free-running?" in page
     assert "5 windows begin with what the sensors say" in page
 
 

@@ -1,4 +1,4 @@
-"""A model let free runs as the equation of motion says that is integrated here: SciPy's, nothing of MuJoCo in it."""
+"""A free-running model moves as an equation of motion that SciPy integrates here, without MuJoCo."""
 
 import numpy as np
 import pytest
@@ -71,7 +71,7 @@ def test_it_is_let_free_for_five_seconds_at_most(model):
 def test_it_begins_anew_every_so_often_where_the_sensors_have_the_axis(model):
     trace = one_way(4.0)
     found = restarted(model, trace, RIG)
-    assert list(found) == ["let free every 0.5 s", "let free every 1 s", "let free every 2 s"]  # 5 s are not there
+    assert list(found) == ["restarted every 0.5 s", "restarted every 1 s", "restarted every 2 s"]  # 5 s are not there
     for horizon, position in zip((0.5, 1.0, 2.0), found.values(), strict=True):
         length = round(horizon / trace.sample_period)
         np.testing.assert_allclose(position[::length], measured_position(trace)[::length], atol=1e-9)

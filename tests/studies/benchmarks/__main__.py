@@ -85,8 +85,8 @@ def growing() -> list[Table]:
 BENCHMARKS: dict[str, tuple[str, Callable[[], list[Table]]]] = {
     "sysid": ("Identification beside mujoco.sysid", sysid),
     "lstsq": ("Least squares beside NumPy's", lstsq),
-    "before": ("CPU time of an identification beside an earlier one", before),
-    "starting": ("CPU time of whole commands beside an earlier one", starting),
+    "before": ("CPU time of an identification against an earlier version", before),
+    "starting": ("CPU time of whole commands against an earlier version", starting),
     "stepping": ("Simulation beside bare stepping", stepping),
     "reading": ("Reading beside pyarrow", reading),
     "diagnosing": ("CPU time of a diagnosis", diagnosing),
