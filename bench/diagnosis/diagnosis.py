@@ -402,8 +402,7 @@ def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, 
 
 def _share(tried: Round, effect: Effect) -> float | None:
     """Share of the squared residual that an effect explains beside a fit; None if it was not tried."""
-    gains = [candidate.gain for candidate in tried.candidates if candidate.term.effect is effect]
-    return max(0.0, *gains) / max(tried.fitted.squares, 1e-300) if gains else None
+    return max((each.share for each in tried.candidates if each.term.effect is effect), default=None)
 
 
 def _against(effect: Effect, added: Added, rounds: Sequence[Round]) -> str:
@@ -420,7 +419,7 @@ def _against(effect: Effect, added: Added, rounds: Sequence[Round]) -> str:
         "this recording cannot show it": not effect.sought(added.recordings.rows.scope),
         "no more than chance": share is not None
         and share * rounds[-1].fitted.squares < suspects.policy.by_chance(rounds[-1].fitted, 1),
-        "too weak, or physically impossible": share is not None,
+        suspects.searched.refused.get(effect.name, "others explain more"): share is not None,
         "the recording does not distinguish it from an added effect": not suspects.searched.last.hypothesis.admits(
             effect
         ),

@@ -12,8 +12,8 @@ and a chain of many small effects, which take little each and most of the residu
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from bench.diagnosis.policy import Policy, worth
 from bench.diagnosis.probability import BESIDE_NOISE, Key, key_of, weighed
@@ -48,10 +48,12 @@ class Candidate:
     Attributes:
         term: effect and shape.
         gain: sum of squares it would take from the residual - (N*m)**2 (N**2).
+        share: of the squared residual that it would take, through the filter that it was tried with.
     """
 
     term: Term
     gain: float
+    share: float
 
 
 @dataclass(frozen=True)
@@ -70,11 +72,13 @@ class Searched:
         rounds: fits that were expanded, the first without an effect, the last the result.
         visited: all fits that are possible, the first without an effect.
         stopped: what ended it before it was done; None if nothing did.
+        refused: why an effect that was fitted was not visited, by its name.
     """
 
     rounds: tuple[Round, ...]
     visited: tuple[Fit, ...]
     stopped: str | None = None
+    refused: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def last(self) -> Fit:
@@ -127,6 +131,7 @@ class Visited:
         self.grown: set[Key] = set()
         self.expanded: dict[Key, None] = {}
         self.further: set[Key] = set()
+        self.refused: dict[str, str] = {}
 
     def add(self, fitted: Fit) -> Fit:
         """Keep a fit that is physical; returns the best one of its effects."""
@@ -217,9 +222,15 @@ class Visited:
             return known
         after = shaped(fitted.rows, fitted.hypothesis.plus(candidate.term), len(fitted.terms))
         after = physical_form(after, self.effects, self.policy)
-        if self.policy.only_damps(fitted, after) or not self.policy.physical(after):
-            return None
-        return self.add(after) if worth(fitted, after) >= effect.needed * fitted.excess else None
+        if not self.policy.physical(after):
+            self.refused[effect.name] = "it fits only with values that are physically impossible"
+        elif self.policy.only_damps(fitted, after):
+            self.refused[effect.name] = "it takes no more than noise that it damps"
+        elif worth(fitted, after) < effect.needed * fitted.excess:
+            self.refused[effect.name] = "it explains too small a part of what remains"
+        else:
+            return self.add(after)
+        return None
 
     def try_further(self, best: Fit, most: int) -> bool:
         """Visit sets beyond one move: an effect in place of those it replaces, and many small ones; whether any is new.
@@ -288,16 +299,19 @@ class Visited:
         least = max(scores.values()) - NEGLIGIBLE
         visited = [self.fits[key] for key, score in scores.items() if score > least and self.fits[key] is not bare]
         rounds = tuple(Round(self.fits[key], self.tried[key]) for key in self.expanded if key in self.tried)
-        return Searched(rounds or (Round(bare),), (bare, *visited), stopped).ending(best)
+        return Searched(rounds or (Round(bare),), (bare, *visited), stopped, self.refused).ending(best)
 
 
 def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
     """The best shape of every effect that may be added to a fit, best first."""
-    found = []
+    found, whole = [], max(current.squares, 1e-300)
     for effect in effects:
         if not effect.sought(current.scope) or not current.hypothesis.admits(effect):
             continue
-        tried = [Candidate(Term(effect, proposal.shape), proposal.gain) for proposal in effect.propose(current)]
+        tried = [
+            Candidate(Term(effect, each.shape), each.gain, max(0.0, each.gain) / whole)
+            for each in effect.propose(current)
+        ]
         tried = [candidate for candidate in tried if not any(candidate.term.same(term) for term in current.terms)]
         if tried:
             found.append(max(tried, key=lambda candidate: candidate.gain))

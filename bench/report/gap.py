@@ -175,8 +175,8 @@ def states(found: Diagnosis) -> list[str]:
 
 #: A region is narrow, or near zero, within this share of what was seen; a trend and a wave are clear from this share.
 NARROW, CLEAR = 0.15, 0.6
-#: Suspects that are named.
-NEAREST = 2
+#: Suspects that are named, and the least share of the residual worth a word.
+NEAREST, LEAST = 2, 0.01
 #: By coordinate: what to record, and the command for it.
 DECIDES = {
     "position": ("the whole travel slowly, both ways: what stays at its place is the axis'", "diagnose slow.csv"),
@@ -197,10 +197,11 @@ def remainder(found: Diagnosis) -> Iterator[str]:
     """Sentences about what is left; none where nothing is."""
     if not found.unexplained_where:
         return
-    shapes = [f"{shape(one)} ({share(one.share)} of it)" for one in found.unexplained_where]
-    yield f"Remaining residual: {'; '.join(shapes)}."
+    shapes = [f"{shape(one)} ({share(one.share)} of it)" for one in found.unexplained_where if one.share >= LEAST]
+    if shapes:
+        yield f"Remaining residual: {'; '.join(shapes)}."
     parts = [(one.beside if found.effects else one.alone, one) for one in found.considered if not one.taken]
-    near = sorted(((part, one) for part, one in parts if part), key=lambda pair: -pair[0])[:NEAREST]
+    near = sorted(((part, one) for part, one in parts if part and part >= LEAST), key=lambda pair: -pair[0])[:NEAREST]
     nearest = [f"{words(one.effect.name)}, {share(part)} of it, but {one.reason}" for part, one in near]
     yield (
         f"Closest effects of the catalogue: {'; '.join(nearest)}."

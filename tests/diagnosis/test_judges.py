@@ -1,5 +1,6 @@
 """Held-out motion judges what was named; each judge takes back an effect that the others would have kept."""
 
+import numpy as np
 import pytest
 
 from bench.diagnosis.add import add, unlimited
@@ -7,8 +8,8 @@ from bench.diagnosis.model import Extension
 from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
-from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.search import Round, Searched
+from bench.diagnosis.recordings import Recordings, fit_bare
+from bench.diagnosis.search import Round, Searched, candidates
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected
 from bench.fit.fit import fit
@@ -33,6 +34,20 @@ def added(trace, holdout, terms, detected=None):
     fitted = fit(recordings.rows, Hypothesis(tuple(terms)))
     searched = Searched((Round(fitted),), (fitted,))
     return add(recordings, Suspects(searched, Probabilities((), 1.0), detected or {}, False, Policy()))
+
+
+def test_a_share_stays_that_of_the_residual_it_was_measured_on():
+    """A lower cut-off takes a vibration of 40 Hz away: what a spring takes is still no more than there was."""
+    recordings = Recordings.of(
+        recorded(MOTION, spring, lambda motion: 0.3 * np.sin(2.0 * np.pi * 40.0 * motion.time)), RIG, None
+    )
+    bare = fit_bare(recordings.rows)
+    tried = candidates(bare, [catalogue()["torsion_spring"]])
+    with_spring = fit(bare.rows, Hypothesis((tried[0].term,)))
+    low = list(recordings.lower())[-1].rows
+    after = Searched((Round(bare, (*tried,)),), (bare,)).through(low)
+    assert after.last.squares / low.time.size < 0.5 * bare.squares / bare.time.size
+    assert after.rounds[-1].candidates[0].share == pytest.approx(1.0 - with_spring.squares / bare.squares, rel=1e-3)
 
 
 def test_what_both_recordings_show_is_kept():
