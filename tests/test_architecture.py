@@ -2,17 +2,12 @@
 
 import ast
 import re
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Iterable, Iterator
 
 import pytest
 
 from bench.effects.catalogue import catalogue
-
-ROOT = Path(__file__).resolve().parents[1]
-SOURCES = sorted((ROOT / "bench").rglob("*.py"))
-#: What makes the pages of the documentation.
-PAGE_MAKERS = sorted((ROOT / "docs" / "_ext").glob("*.py"))
+from tests.sources import PAGE_MAKERS, ROOT, SOURCES, module_of, nodes
 
 #: Later layers may import earlier ones, and their own.
 LAYERS = (
@@ -43,52 +38,90 @@ def layer_of(module: str) -> int:
     return next(level for level, names in enumerate(LAYERS) if part in names)
 
 
-def imports(path: Path):
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+def imports(found: Iterable[ast.AST]) -> Iterator[str]:
+    """Modules of the bench that nodes of a file import."""
+    for node in found:
         if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "bench":
             yield node.module if node.module != "bench" else f"bench.{node.names[0].name}"
         elif isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name.split(".")[0] == "bench")
 
 
-def module_of(path: Path) -> str:
-    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+def backward(module: str, found: Iterable[ast.AST]) -> list[str]:
+    """Imports of a module from a later layer."""
+    own = layer_of(module)
+    return [name for name in imports(found) if name != "bench.__version__" and layer_of(name) > own]
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=module_of)
-def test_no_import_goes_back(path):
-    own = layer_of(module_of(path))
-    back = [name for name in imports(path) if name != "bench.__version__" and layer_of(name) > own]
-    assert not back, f"{module_of(path)} imports {back} from further down the way of the data"
-
-
-def files_imported(path: Path) -> set[str]:
-    """Modules of the bench whose file a file imports, those for type checkers included."""
-    modules = {module_of(source) for source in SOURCES}
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            every = {f"{node.module}.{alias.name}" for alias in node.names}
-            found |= every & modules or {node.module} & modules
-        elif isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names} & modules
-    return found - {"bench", module_of(path)}
-
-
-def test_no_files_import_each_other_in_a_circle():
-    waiting = {module_of(path): files_imported(path) for path in SOURCES}
-    while free := {name for name, needed in waiting.items() if not needed & waiting.keys()}:
-        waiting = {name: needed for name, needed in waiting.items() if name not in free}
-    assert not waiting, "each of these imports one of them"
+def test_no_import_goes_back():
+    assert {module_of(path): back for path in SOURCES if (back := backward(module_of(path), nodes(path)))} == {}
 
 
 @pytest.mark.parametrize(
-    "path", [path for path in SOURCES if layer_of(module_of(path)) < len(LAYERS) - 2], ids=module_of
+    ("module", "code", "back"),
+    [
+        ("bench.fit.identify", "from bench.diagnosis.search import search", ["bench.diagnosis.search"]),
+        ("bench.trace.trace", "def f():\n    import bench.report.html", ["bench.report.html"]),
+        ("bench.diagnosis.search", "from bench.fit.identify import identify\nfrom bench import __version__", []),
+    ],
 )
-def test_no_string_names_a_module(path):
+def test_an_import_from_a_later_layer_is_found(module, code, back):
+    assert backward(module, ast.walk(ast.parse(code))) == back
+
+
+def files_imported(found: Iterable[ast.AST], modules: set[str]) -> set[str]:
+    """Modules of the bench whose file a file imports, those for type checkers included."""
+    files = set()
+    for node in found:
+        if isinstance(node, ast.ImportFrom) and node.module:
+            every = {f"{node.module}.{alias.name}" for alias in node.names}
+            files |= every & modules or {node.module} & modules
+        elif isinstance(node, ast.Import):
+            files |= {alias.name for alias in node.names} & modules
+    return files - {"bench"}
+
+
+def in_a_circle(needs: dict[str, set[str]]) -> dict[str, set[str]]:
+    """Modules of which each imports another of them."""
+    waiting = {module: needed - {module} for module, needed in needs.items()}
+    while free := {name for name, needed in waiting.items() if not needed & waiting.keys()}:
+        waiting = {name: needed for name, needed in waiting.items() if name not in free}
+    return waiting
+
+
+def test_no_files_import_each_other_in_a_circle():
+    modules = {module_of(path) for path in SOURCES}
+    needs = {module_of(path): files_imported(nodes(path), modules) for path in SOURCES}
+    assert sum(map(len, needs.values())) > len(SOURCES)
+    assert in_a_circle(needs) == {}
+
+
+def test_a_circle_of_imports_is_found():
+    names = {"bench.a", "bench.b", "bench.c"}
+    code = {
+        "bench.a": "from bench import b",
+        "bench.b": "def f():\n    from bench.a import g",
+        "bench.c": "import bench.a",
+    }
+    needs = {name: files_imported(ast.walk(ast.parse(text)), names) for name, text in code.items()}
+    assert in_a_circle(needs).keys() == names, "c waits for the circle of a and b"
+    assert in_a_circle({**needs, "bench.b": set()}) == {}
+
+
+def module_names(found: Iterable[ast.AST], modules: set[str]) -> list[str]:
+    return [f"{node.lineno}: {node.value}" for node in texts(found) if node.value in modules]
+
+
+def test_no_string_names_a_module():
     """Which would be an import that no test above sees: only what is above all folders has a table of them."""
-    modules = {module_of(source) for source in SOURCES if source.stem != "__init__"}
-    assert modules.isdisjoint(node.value for node in texts(ast.parse(path.read_text(encoding="utf-8"))))
+    modules = {module_of(path) for path in SOURCES if path.stem != "__init__"}
+    below = [path for path in SOURCES if layer_of(module_of(path)) < len(LAYERS) - 2]
+    assert {module_of(path): named for path in below if (named := module_names(nodes(path), modules))} == {}
+    assert module_names(ast.walk(ast.parse('import_module("bench.fit.identify")')), modules)
+
+
+def classes_of(found: Iterable[ast.AST]) -> list[str]:
+    return [node.name for node in found if isinstance(node, ast.ClassDef)]
 
 
 def test_a_class_name_has_one_meaning():
@@ -96,16 +129,16 @@ def test_a_class_name_has_one_meaning():
     found: dict[str, list[str]] = {}
     for path in SOURCES:
         if "independent" not in path.parts:
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-                if isinstance(node, ast.ClassDef):
-                    found.setdefault(node.name, []).append(module_of(path))
+            for name in classes_of(nodes(path)):
+                found.setdefault(name, []).append(module_of(path))
+    assert len(found) > 100
     assert {name: modules for name, modules in found.items() if len(modules) > 1} == {}
 
 
 def test_the_truth_owes_nothing_to_what_it_judges():
-    folder = ROOT / "bench" / "validation" / "independent"
-    found = {name for path in sorted(folder.rglob("*.py")) for name in imports(path)}
-    others = {name for name in found if not name.startswith("bench.validation.independent")}
+    truth = [path for path in SOURCES if path.is_relative_to(ROOT / "bench" / "validation" / "independent")]
+    others = {name for path in truth for name in imports(nodes(path))}
+    others = {name for name in others if not name.startswith("bench.validation.independent")}
     assert others == {"bench.trace.trace"}, "a recording is a Trace; nothing else of the bench has a part in making one"
 
 
@@ -115,24 +148,26 @@ NAMED = re.compile(rf"(?<![a-z_])({'|'.join(catalogue())})(?![a-z_])")
 OF_EFFECTS = {type(effect).__module__ for effect in catalogue().values()}
 
 
-def texts(tree: ast.AST) -> Iterator[ast.Constant]:
+def texts(found: Iterable[ast.AST]) -> Iterator[ast.Constant]:
     """All string constants but docstrings."""
+    found = list(found)
     documented = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
-    first = [node.body[0] for node in ast.walk(tree) if isinstance(node, documented) and node.body]
+    first = [node.body[0] for node in found if isinstance(node, documented) and node.body]
     documenting = {id(node.value) for node in first if isinstance(node, ast.Expr)}
-    for node in ast.walk(tree):
+    for node in found:
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in documenting:
             yield node
 
 
-def known_by_name(tree: ast.AST) -> list[str]:
+def known_by_name(nodes_of_a_file: Iterable[ast.AST]) -> list[str]:
     """Where code knows one effect from another: by its name, by the module it is in, or by comparing names.
 
     Whether a name is in a set is no such knowledge: an effect declares the set, or the caller asked for it. Two names
     held against each other are: what is one is decided by `is`.
     """
-    found = [f"{node.lineno}: {node.value!r}" for node in texts(tree) if NAMED.search(node.value)]
-    for node in ast.walk(tree):
+    every = list(nodes_of_a_file)
+    found = [f"{node.lineno}: {node.value!r}" for node in texts(every) if NAMED.search(node.value)]
+    for node in every:
         if isinstance(node, ast.ImportFrom) and node.module:
             whole = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
         elif isinstance(node, ast.Import):
@@ -146,46 +181,41 @@ def known_by_name(tree: ast.AST) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize(
-    "path", [path for path in (*SOURCES, *PAGE_MAKERS) if "effects" not in path.parts], ids=module_of
-)
-def test_no_effect_is_known_by_name(path):
-    assert known_by_name(ast.parse(path.read_text(encoding="utf-8"))) == []
+def test_no_effect_is_known_by_name():
+    others = [path for path in (*SOURCES, *PAGE_MAKERS) if "effects" not in path.parts]
+    assert {module_of(path): found for path in others if (found := known_by_name(nodes(path)))} == {}
 
 
-@pytest.mark.parametrize(
-    "code",
-    [
-        'catalogue()["torque_offset"]',
-        'if term.effect.name == "backlash": pass',
-        'lags = {"current_loop_lag", "velocity_filter_lag"}',
-        'say(f"it is unbalance of {amplitude}")',
-        "from bench.effects.backlash import EFFECT",
-        "from bench.effects import torque_ripple",
-        "from bench.effects.backlash import load_positions",
-        "import bench.effects.cogging_torque",
-        "same = present.effect.name == named.effect.name",
-    ],
-)
-def test_knowing_an_effect_by_name_is_seen(code):
-    assert known_by_name(ast.parse(code))
+KNOWING = """
+catalogue()["torque_offset"]
+if term.effect.name == "backlash": pass
+lags = {"current_loop_lag", "velocity_filter_lag"}
+say(f"it is unbalance of {amplitude}")
+from bench.effects.backlash import EFFECT
+from bench.effects import torque_ripple
+from bench.effects.backlash import load_positions
+import bench.effects.cogging_torque
+same = present.effect.name == named.effect.name
+""".strip().splitlines()
+NOT_KNOWING = [
+    'def f():\n    """As backlash does."""',
+    "taken = other.name in effect.replaces",
+    "catalogue()[name]",
+    'unit = {"torque_offset_unit": 1}',
+]
 
 
-@pytest.mark.parametrize(
-    "code",
-    [
-        'def f():\n    """As backlash does."""',
-        "taken = other.name in effect.replaces",
-        "catalogue()[name]",
-        'unit = {"torque_offset_unit": 1}',
-    ],
-)
-def test_asking_an_effect_is_not_knowing_its_name(code):
-    assert not known_by_name(ast.parse(code))
+def test_knowing_an_effect_by_name_is_found_and_asking_it_is_not():
+    assert [code for code in KNOWING if not known_by_name(ast.walk(ast.parse(code)))] == []
+    assert [code for code in NOT_KNOWING if known_by_name(ast.walk(ast.parse(code)))] == []
 
 
-@pytest.mark.parametrize("path", (*SOURCES, *PAGE_MAKERS), ids=module_of)
-def test_functions_stay_small(path):
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef):
-            assert node.end_lineno - node.lineno < 50, f"{node.name} has {node.end_lineno - node.lineno + 1} lines"
+def too_long(found: Iterable[ast.AST]) -> list[str]:
+    lengths = [(node.name, node.end_lineno - node.lineno + 1) for node in found if isinstance(node, ast.FunctionDef)]
+    return [f"{name} has {length} lines" for name, length in lengths if length > 50]
+
+
+def test_functions_stay_small():
+    assert {module_of(path): long for path in (*SOURCES, *PAGE_MAKERS) if (long := too_long(nodes(path)))} == {}
+    assert too_long(ast.walk(ast.parse("def f():" + 49 * "\n    pass"))) == []
+    assert too_long(ast.walk(ast.parse("class C:\n  def f():" + 50 * "\n    pass"))) == ["f has 51 lines"]

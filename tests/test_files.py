@@ -25,6 +25,7 @@ from bench.plant.mjcf_file import read_mjcf
 from bench.plant.robot import Robot
 from tests.command import bench
 from tests.hostile import RIG, ROOT, assert_one_line, columns, csv_of, run
+from tests.sources import SOURCES, nodes
 
 
 @pytest.fixture
@@ -161,8 +162,8 @@ COPIED = {"fleet/evaluate.py"}  # from a storage
 def test_what_is_read_is_opened_in_one_place():
     """Anything else could be overwritten, or could be a pipe that never ends."""
     found = set()
-    for path in (ROOT / "bench").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for path in SOURCES:
+        for node in nodes(path):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in OPENING:
                 found.add(path.relative_to(ROOT / "bench").as_posix())
     assert found == {"files.py"} | SHIPPED | WRITES | BYTES | READ_BEFORE | COPIED

@@ -10,6 +10,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 from tests.hostile import ROOT
+from tests.sources import SOURCES, nodes
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 EXTRAS = PROJECT["optional-dependencies"]
@@ -60,7 +61,7 @@ def test_the_lock_keeps_to_every_bound_and_holds_no_project():
 def imported(path):
     """Packages outside the standard library and the bench that a file imports, wherever in it."""
     names = []
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             names += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.level == 0:
@@ -71,7 +72,7 @@ def imported(path):
 def test_every_import_is_of_something_that_is_declared():
     providers = packages_distributions()
     known = {*declared(*OPTIONAL), *BROUGHT, "distributed"}
-    packages = set().union(*(imported(path) for path in (ROOT / "bench").rglob("*.py")))
+    packages = set().union(*(imported(path) for path in SOURCES))
     assert len(packages) > 10
     for package in packages:
         given = {canonicalize_name(name) for name in providers.get(package, [])}

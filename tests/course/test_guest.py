@@ -2,7 +2,8 @@
 
 import ast
 
-from tests.test_architecture import ROOT, SOURCES, imports, module_of
+from tests.sources import ROOT, SOURCES, module_of, nodes
+from tests.test_architecture import imports
 
 COMMANDS = {"bench.cli.lab"}
 
@@ -12,14 +13,14 @@ def of_course(module):
 
 
 def test_only_its_command_imports_it():
-    users = {module_of(path) for path in SOURCES if any(map(of_course, imports(path)))}
+    users = {module_of(path) for path in SOURCES if any(map(of_course, imports(nodes(path))))}
     assert {user for user in users if not of_course(user)} == COMMANDS
 
 
 def test_its_command_imports_it_when_it_runs():
     for command in COMMANDS:
-        tree = ast.parse((ROOT / f"{command.replace('.', '/')}.py").read_text(encoding="utf-8"))
-        first = [node.module for node in tree.body if isinstance(node, ast.ImportFrom)]
+        module = nodes(ROOT / f"{command.replace('.', '/')}.py")[0]
+        first = [node.module for node in module.body if isinstance(node, ast.ImportFrom)]
         assert first
         assert not any(of_course(module) for module in first)
 
@@ -27,7 +28,7 @@ def test_its_command_imports_it_when_it_runs():
 def test_it_takes_no_private_names():
     for path in SOURCES:
         if of_course(module_of(path)):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            for node in nodes(path):
                 if isinstance(node, ast.ImportFrom):
                     names = [*(node.module or "").split("."), *(alias.name for alias in node.names)]
                     assert not [name for name in names if name.startswith("_") and not name.startswith("__")], path

@@ -22,8 +22,8 @@ import tomli_w
 from bench.rig.rig import rig_file
 from tests.command import bench
 from tests.faults.advised import CASES, FILES, MADE
+from tests.sources import ROOT, SOURCES, nodes
 
-ROOT = Path(__file__).resolve().parents[2]
 ADVICE = re.compile(r"`((?:bench |--|\[)[^`]*)`")
 MEANT = re.compile(r"did you mean '([^']*)'\?")
 TABLE = re.compile(r"\[([\w.]+)\]\s*(.*)", re.DOTALL)
@@ -126,10 +126,9 @@ def test_what_a_message_advises_gets_further(command, files, tmp_path, monkeypat
 def advising() -> dict[str, str]:
     """Strings of the bench with something to type between backticks: place, and text with {} for what varies."""
     found = {}
-    for path in sorted((ROOT / "bench").rglob("*.py")):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        skipped = {id(part) for node in ast.walk(tree) if not_printed(node) for part in ast.walk(node)}
-        for node in ast.walk(tree):
+    for path in SOURCES:
+        skipped = {id(part) for node in nodes(path) if not_printed(node) for part in ast.walk(node)}
+        for node in nodes(path):
             if id(node) in skipped or not isinstance(node, ast.JoinedStr | ast.Constant):
                 continue
             text = template(node)
