@@ -57,13 +57,9 @@ class LoadTorqueEvent(Occasional, Torque):
 
     def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
         """What acts of it within a step around the moment, on average."""
-        time, torque = at.began + at.time, values["torque"]
-        xp = namespace(torque)
-        none, all_of_it = xp.zeros_like(time - values["start"]), xp.ones_like(time - values["start"])
-        begun, over = (
-            xp.minimum(xp.maximum((time - values[edge]) / at.step + 0.5, none), all_of_it) for edge in ("start", "end")
-        )
-        return torque * (begun - over)
+        instants = ((at.began + at.time - values[edge]) / at.step + 0.5 for edge in ("start", "end"))
+        begun, over = (namespace(passed).clip(passed, 0.0, 1.0) for passed in instants)
+        return values["torque"] * (begun - over)
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """The best window of time, all of them compared through cumulative sums.

@@ -63,7 +63,7 @@ class Tabulated(Torque):
     def level(self, values: Values, at: AxisState) -> Number:
         """Torque, or friction in the direction of the motion, between the nodes - N*m (N)."""
         place, nodes = self.place(values, at), [values[name] for name in NAMES]
-        if np.ndim(place) == 0 and namespace(place) is np:  # only its two nodes: a fifth of the time
+        if isinstance(place, float):  # only its two nodes: a fifth of the time
             node = min(int(place), NODES - 2)
             return nodes[node] + (place - node) * (nodes[node + 1] - nodes[node])
         share = hats(place)

@@ -17,7 +17,6 @@ M = i*M_m, so that friction is i times, inertia i**2 times the motor's.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -35,7 +34,8 @@ from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.signals import Number
 from bench.errors import InputError
 from bench.plant.model_file import StoredModel, load_models
-from bench.plant.stepped_effects import Acts, Joints, Made, Remembered, SteppedEffects, per_axis
+from bench.plant.simulations import Joints, Simulations
+from bench.plant.stepped_effects import Acts, Made, Remembered, SteppedEffects, per_axis
 
 #: A model or its data of another engine, whose types are known where it is installed.
 Foreign = Any
@@ -114,15 +114,7 @@ class Effects:
         if self._running is None or known is None or known[0] is not model or known[1] is not data:
             if self._running is not None and self._running.joints:
                 self._running.place.restore_inertia()
-            simulations = Simulations(
-                model,
-                1,
-                lambda name: np.asarray(getattr(data, name))[None],
-                cache(lambda name: getattr(model, name)[None]),
-                lambda: mujoco.mj_forward(model, data),
-                lambda: mujoco.mj_step(model, data),
-            )
-            self._running, self._simulated = Worlds(self.models, simulations), (model, data)
+            self._running, self._simulated = Worlds(self.models, Simulations.lone(model, data)), (model, data)
         return self._running
 
     def on(self, batch: Batch, models: Sequence[StoredModel | Mapping[str, StoredModel]] | None = None) -> Worlds:
@@ -135,9 +127,7 @@ class Effects:
         own = None
         if models is not None:
             own = [one if isinstance(one, Mapping) else dict.fromkeys(self.models, one) for one in models]
-        reads, writes = cache(batch.bind), cache(batch.expand)
-        simulations = Simulations(batch.model, batch.nsim, reads, writes, batch.forward, batch.step)
-        return Worlds(self.models, simulations, own)
+        return Worlds(self.models, Simulations.of(batch), own)
 
     def on_warp(self, model: mujoco.MjModel, warp_model: Foreign, warp_data: Foreign) -> Worlds:
         """The effects on all worlds of mujoco_warp: `model`, and what its `put_model` and `put_data` made of it.
@@ -178,27 +168,6 @@ class Effects:
         """
         models = list(self.models.values())
         return AtJoints(models, step, bristled(models), made_like(like))
-
-
-@dataclass(frozen=True)
-class Simulations:
-    """Simulations of one model side by side, whose state and parameters may be read and written in place.
-
-    Attributes:
-        model: of all of them.
-        count: how many.
-        state: gives a field of their data (count, ...), live.
-        field: gives a field of the model that each has for itself (count, ...), live.
-        forward: computes forces.
-        advance: goes on by a step.
-    """
-
-    model: mujoco.MjModel
-    count: int
-    state: Callable[[str], Number]
-    field: Callable[[str], Number]
-    forward: Callable[[], object]
-    advance: Callable[[], object]
 
 
 class Worlds:
@@ -269,15 +238,15 @@ class _Place(Joints):
     """Joints of simulations, beside whatever else is applied to them."""
 
     def __init__(self, simulations: Simulations, joints: Sequence[str]) -> None:
-        model, self.applied = simulations.model, simulations.state("qfrc_applied")
-        exported, kind = (f"{joint} {BRISTLES}" for joint in joints), mujoco.mjtObj.mjOBJ_ACTUATOR
+        model, kind = simulations.model, mujoco.mjtObj.mjOBJ_ACTUATOR
+        exported = (f"{joint} {BRISTLES}" for joint in joints)
         bristles = [name if mujoco.mj_name2id(model, kind, name) >= 0 else BRISTLES for name in exported]
-        super().__init__(model, simulations.field, self.applied, joints, bristles)
+        super().__init__(simulations, joints, bristles)
         self._given: Number = 0.0
 
     def apply(self, torque: Number) -> None:
         """In the place of what was applied before; what others apply stays."""
-        self._applied[:, self._columns] += torque - self._given
+        self.applied[:, self._columns] += torque - self._given
         self._given = torque
 
     def again(self, where: Number) -> None:

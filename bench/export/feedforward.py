@@ -30,7 +30,8 @@ from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant
 from bench.plant.run import run
-from bench.plant.stepped_effects import Joints, SteppedEffects
+from bench.plant.simulations import Joints, Simulations
+from bench.plant.stepped_effects import SteppedEffects
 from bench.rig.rig import Rig
 from bench.structured import csv_text
 from bench.trace.channel import split_label
@@ -170,7 +171,7 @@ def resisting_torque(model: AxisModel, position: Array, velocity: Array) -> Arra
     applied, passive, made = (batch.bind(f"qfrc_{part}")[:, dof] for part in ("applied", "passive", "actuator"))
     effects = SteppedEffects([model], TIMESTEP)
     none = np.zeros_like(velocity)
-    Joints.of(batch).take(effects.act(effects.start(velocity), np.inf, position, velocity, none))
+    Joints(Simulations.of(batch)).take(effects.act(effects.start(velocity), np.inf, position, velocity, none))
     batch.forward()
     return batch.expand("dof_frictionloss")[:, dof] * np.sign(velocity) - applied - passive - made
 

@@ -91,8 +91,8 @@ class CascadeDrive:
         self._integral_step = cascade.integral_gain * period
         self._upper = cascade.torque_limit
         self._lower = -self._upper
-        self._speed_demand = _by_ticks(references.velocity + self._position_gain * references.position)
-        self._feedforward = _by_ticks(references.feedforward(cascade.inertia_feedforward))
+        self._speed_demand = by_ticks(references.velocity + self._position_gain * references.position)
+        self._feedforward = by_ticks(references.feedforward(cascade.inertia_feedforward))
         self._integral: Values = 0.0
         start = per_axis(references.velocity[0])
         self._friction = None if emulated is None else _EmulatedFriction(emulated, period, start)
@@ -129,9 +129,9 @@ class CascadeDrive:
         return setpoint, motor
 
 
-def _by_ticks(values: Array) -> Array:
-    """Values of axes (ticks, axes), those of a lone axis (ticks,)."""
-    return values[:, 0] if values.shape[1] == 1 else values
+def by_ticks(values: Array) -> Sequence[Values]:
+    """Values of axes (ticks, axes) tick by tick, those of a lone axis as numbers."""
+    return values[:, 0].tolist() if values.shape[1] == 1 else list(values)
 
 
 def _limited(torque: Values, lower: Values, upper: Values) -> Values:

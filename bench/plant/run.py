@@ -6,6 +6,7 @@ import os
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from copy import copy
 
 import mujoco
 import numpy as np
@@ -17,10 +18,11 @@ from bench.arrays import Array
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.effects.signals import Number
 from bench.errors import InputError, SimulationError
-from bench.plant.drive import TORQUE, CascadeDrive, FollowReferences, References
+from bench.plant.drive import TORQUE, CascadeDrive, FollowReferences, References, by_ticks
 from bench.plant.plant import DIVERGED, ClosedLoop, Plant, States
 from bench.plant.silenced import silenced
-from bench.plant.stepped_effects import Joints, SteppedEffects, per_axis
+from bench.plant.simulations import Joints, Simulations
+from bench.plant.stepped_effects import SteppedEffects, per_axis
 
 Progress = Callable[[float], None]
 
@@ -28,6 +30,8 @@ Progress = Callable[[float], None]
 BLOCK_BYTES = 8 * 2**20
 #: Axes from which it pays to share a step between threads: calling them costs some 10 to 50 us, an axis 2 to 4.
 SHARED_FROM = 64
+#: Axes from which arrays of all of them take less time than the numbers of each in turn.
+TOGETHER_FROM = 5
 #: Ticks between two reports of progress.
 REPORT_EVERY = 1000
 
@@ -66,7 +70,8 @@ def run(plants: Sequence[Plant], references: Sequence[References], progress: Pro
 def run_loops(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> list[States]:
     """Motion of each loop at its own ticks, nan where it diverged.
 
-    Native ones run on all cores, the others side by side with those that are alike, which costs hardly more than one.
+    Native ones run on all cores, the others tick by tick: several that are alike side by side,
+    which costs hardly more than one, few of them in turn.
     """
     alike = defaultdict[object, list[int]](list)
     for k, loop in enumerate(loops):
@@ -76,9 +81,10 @@ def run_loops(loops: Sequence[ClosedLoop], progress: Progress | None = None) -> 
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             found = dict(zip(native, pool.map(run_native, (loops[k] for k in native)), strict=True))
         for group in alike.values():
-            together = run_ticked([loops[k] for k in group], progress)
-            for column, k in enumerate(group):
-                found[k] = together.axis(column, -(-loops[k].ticks // loops[k].every))
+            for part in [group] if len(group) >= TOGETHER_FROM else [[k] for k in group]:
+                together = run_ticked([loops[k] for k in part], progress)
+                for column, k in enumerate(part):
+                    found[k] = together.axis(column, -(-loops[k].ticks // loops[k].every))
     return [found[k] for k in range(len(loops))]
 
 
@@ -119,7 +125,7 @@ def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) ->
     Loops are alike, as `ClosedLoop.alike` has it, and run as long as the longest. MuJoCo's warnings are the caller's to
     silence.
     """
-    axes, every = _SideBySide(loops), loops[0].every
+    axes, every = _Axes(loops), loops[0].every
     time = max((loop.time for loop in loops), key=len)
     recorded = States(time[::every], *np.zeros((4, -(-time.size // every), len(loops))))
     for k in range(time.size):
@@ -133,20 +139,28 @@ def run_ticked(loops: Sequence[ClosedLoop], progress: Progress | None = None) ->
     return recorded
 
 
-class _SideBySide:
-    """Axes on a batch."""
+class _Axes:
+    """Axes that go on tick by tick: a lone one in numbers, several side by side in arrays (axes,)."""
 
     def __init__(self, loops: Sequence[ClosedLoop]) -> None:
-        batch, axes = batch_of([loop.compiled for loop in loops]), [loop.axis for loop in loops]
-        joint, actuator = batch.model.joint(AXIS), batch.model.actuator(DRIVE).id
-        self._batch, self._step, self._substeps = batch, batch.model.opt.timestep, loops[0].substeps
-        self._position = batch.bind("qpos")[:, joint.qposadr[0]]
-        self._velocity = batch.bind("qvel")[:, joint.dofadr[0]]
-        self._velocity[:] = [loop.velocity for loop in loops]
+        compiled, axes = [loop.compiled for loop in loops], [loop.axis for loop in loops]
         self._lone = len(loops) == 1
+        if self._lone:
+            model = copy(compiled[0])  # effects write to it
+            simulations = Simulations.lone(model, data := mujoco.MjData(model))
+            self._warned = lambda: np.array([any(data.warning.number)])
+        else:
+            batch = batch_of(compiled)
+            simulations = Simulations.of(batch)
+            self._warned = lambda: np.any(np.reshape(batch.warning, (batch.nsim, -1)), axis=1)
+        model, state = simulations.model, simulations.state
+        joint, actuator = model.joint(AXIS), model.actuator(DRIVE).id
+        self._step, self._substeps, self._advance = model.opt.timestep, loops[0].substeps, simulations.advance
+        self._position, self._velocity = state("qpos")[:, joint.qposadr[0]], state("qvel")[:, joint.dofadr[0]]
+        self._velocity[:] = [loop.velocity for loop in loops]
         self._position[:] = np.array([loop.position for loop in loops]) + self._step / 2.0 * self._velocity
-        at = batch.model.actuator_ctrladr[actuator]
-        inputs = batch.bind("ctrl")[:, at : at + batch.model.actuator_ctrlnum[actuator]]
+        at = model.actuator_ctrladr[actuator]
+        inputs = state("ctrl")[:, at : at + model.actuator_ctrlnum[actuator]]
         self._setpoints, self._effort = inputs[:, :-1], inputs[:, -1]
         drives = [loop.controller for loop in loops if isinstance(loop.controller, FollowReferences)]
         self._drive = CascadeDrive.of(drives, axes) if drives else None
@@ -154,9 +168,9 @@ class _SideBySide:
         self._since, self._began = (per_axis([getattr(loop, name) for loop in loops]) for name in ("since", "began"))
         self._effects = None
         if not all(axis.all_native for axis in axes):
-            self._joints = Joints.of(batch)
+            self._joints = Joints(simulations)
             self._effects = SteppedEffects(axes, self._step, bool(self._joints.bristled.any()))
-            self._memory = self._effects.start(per_axis(self._velocity))
+            self._memory = self._effects.start(self._state()[1])
 
     def tick(self, k: int, time: float) -> tuple[Number, Number, Number, Number]:
         """Go on by a tick, the next one, which starts at a time - s.
@@ -169,7 +183,8 @@ class _SideBySide:
         setpoint, motor, known = self._asked(k, position, velocity)
         if self._effects is None:
             self._effort[:] = motor - known
-            self._batch.step(nstep=self._substeps)
+            for _ in range(self._substeps):
+                self._advance()
             return position, velocity, setpoint, motor
         flowing, acting = self._step_on(time, here, velocity, motor, known)
         for substep in range(1, self._substeps):
@@ -180,17 +195,15 @@ class _SideBySide:
     def _state(self) -> tuple[Number, Number]:
         """MuJoCo's position and velocity as they are now."""
         if self._lone:
-            return self._position[0], self._velocity[0]
+            return self._position.item(), self._velocity.item()
         return self._position.copy(), self._velocity.copy()
 
     def _asked(self, k: int, position: Number, velocity: Number) -> tuple[Number, Number, Number]:
         """Effort from a tick to the next that is reported, asked of the motor, and known to resist beside."""
         if self._drive is not None:
             return *self._drive.tick(k, position, velocity), 0.0
-        inputs = next(self._planned)
-        self._setpoints[:] = inputs[:, :-2]
-        effort = per_axis(inputs[:, -2])
-        return effort, effort, per_axis(inputs[:, -1])
+        self._setpoints[:], effort, known = next(self._planned)
+        return effort, effort, known
 
     def _step_on(
         self, time: float, position: Number, velocity: Number, motor: Number, known: Number
@@ -200,13 +213,13 @@ class _SideBySide:
         acts = self._effects.act(self._memory, self._since + time, position, velocity, motor, self._began)
         self._memory, self._effort[:] = acts.memory, acts.motor - known
         self._joints.take(acts)
-        self._batch.step()
+        self._advance()
         return acts.reported, acts.motor
 
     @property
     def diverged(self) -> NDArray[np.bool_]:
         """Of which axes MuJoCo warned - (axes,)."""
-        return np.any(np.reshape(self._batch.warning, (self._batch.nsim, -1)), axis=1)
+        return self._warned()
 
 
 def _blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
@@ -215,8 +228,11 @@ def _blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
     return ((start, min(start + size, ticks)) for start in range(0, ticks, size))
 
 
-def _planned(loops: Sequence[ClosedLoop], inputs: int) -> Iterator[Array]:
-    """Planned inputs at each tick of the longest loop - (axes, inputs); after the end of a loop its last are held."""
+def _planned(loops: Sequence[ClosedLoop], inputs: int) -> Iterator[tuple[Array, Number, Number]]:
+    """Planned set-points (axes, inputs - 2), effort and known torque at each tick of the longest loop.
+
+    After the end of a loop its last are held.
+    """
     for start, stop in _blocks(max(loop.ticks for loop in loops), 8 * inputs * len(loops)):
         held = []
         for loop in loops:
@@ -224,7 +240,8 @@ def _planned(loops: Sequence[ClosedLoop], inputs: int) -> Iterator[Array]:
             first = min(start, loop.ticks - 1)
             known = loop.controller(first, min(stop, loop.ticks))
             held.append(known[np.minimum(np.arange(start, stop), loop.ticks - 1) - first])
-        yield from np.stack(held, axis=1)
+        *setpoints, effort, known = np.moveaxis(np.stack(held, axis=1), -1, 0)
+        yield from zip(np.stack(setpoints, axis=-1), by_ticks(effort), by_ticks(known), strict=True)
 
 
 def batch_of(models: Sequence[mujoco.MjModel]) -> Batch:

@@ -17,17 +17,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from functools import cached_property
-from typing import Any, Generic, NamedTuple, TypeVar, cast
+from typing import Any, Generic, NamedTuple, TypeAlias, TypeVar, cast
 
-import mujoco
 import numpy as np
-from mujoco.batch import Batch
-from numpy.typing import NDArray
 
 from bench.arrays import Array, namespace
 from bench.effects.effect import DriveLimit, Effect, Lag, Stage
-from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.present import Present
 from bench.effects.signals import Axis, AxisState, Number, Winding
 from bench.effects.torque import Friction, Inertia, Torque
@@ -37,9 +32,6 @@ Kind = TypeVar("Kind", bound=Effect)
 Kind_co = TypeVar("Kind_co", bound=Effect, covariant=True)
 #: Makes NumPy's numbers and arrays those of a library.
 Made = Callable[[Any], Number]
-
-#: Places of the two friction levels among the parameters of a passive motor with bristles.
-BRISTLE_LEVELS = slice(3, 5)
 
 
 def numpys(value: Number) -> Number:
@@ -97,20 +89,15 @@ class SteppedEffects:
         everything = on_axes(models, Effect, made)
         self._flowing = of_kind(everything, DriveLimit)
         self._lags = [some for some in of_kind(everything, Lag) if some.effect.signal == "torque"]
-        torques = of_kind(everything, Torque)
-        self._sensors, self._motor = (
-            [some for some in torques if some.effect.stage == stage]
-            for stage in (Stage.CURRENT_SENSOR, Stage.TORQUE_CONSTANT)
-        )
+        torques, ticked = of_kind(everything, Torque), of_kind(on_axes(models, Effect, made, ticked=True), Torque)
+        self._sensors = [some for some in torques if some.effect.stage == Stage.CURRENT_SENSOR]
+        self._motor = [some for some in torques if some.effect.stage == Stage.TORQUE_CONSTANT]
+        self._motor += [some for some in ticked if some.effect.stage == Stage.COMMUTATION]
+        self._electric = bool(self._flowing or self._sensors or self._lags or self._motor)
         follow = any(some.effect.follows_load for some in torques)
         self._loads = [some for some in torques if some.effect.transmitted] if follow else []
-        ticked = of_kind(on_axes(models, Effect, made, ticked=True), Torque)
-        self._commutation = [some for some in ticked if some.effect.stage == Stage.COMMUTATION]
-        self._resisting = [
-            some
-            for some in ticked
-            if some.effect.stage == Stage.MECHANICS and type(some.effect).torque is not Friction.torque
-        ]
+        mechanics = [some for some in ticked if some.effect.stage == Stage.MECHANICS]
+        self._resisting = [some for some in mechanics if type(some.effect).torque is not Friction.torque]
         self._inertia = of_kind(ticked, Inertia)
         # stable: those that add before those that scale what is added
         self._frictions = sorted(of_kind(ticked, Friction), key=lambda some: some.effect.scales_friction)
@@ -145,19 +132,19 @@ class SteppedEffects:
             demand: effort that the drive asks for - N*m (N) - (..., axes).
             began: the recording, as `AxisState` has it - s - one for all axes, or (axes,).
         """
-        middle, time = 1.5 * velocity - 0.5 * memory.velocity, time + 0.5 * self._step
-        at = AxisState(time, position, middle, demand, began, step=self._step)
-        reported, torque, kept = self._driven(memory.kept, at)
-        at = at._replace(effort=torque)
-        friction, offset = self._friction(at)
-        applied = self._none - offset
+        step = self._step
+        middle = 1.5 * velocity - 0.5 * memory.velocity
+        at = AxisState(time + 0.5 * step, position, middle, demand, began, 0.0, 0.0, 1.0, step)
+        reported, torque, kept = demand, demand, ()
+        if self._electric:
+            reported, torque, kept = self._driven(memory.kept, at)
+            at = at._replace(effort=torque)
+        friction, applied = self._friction(at)
         for some in self._resisting:
-            applied = some.with_these(applied, some.of(applied) - some.torque(at))
+            applied = some.changed(_resisted, applied, at)
         inertia = None
         for some in self._inertia:
-            before = self._none if inertia is None else inertia
-            more, _ = some.effect.inertia(some.values, some.axis, some.of(position))
-            inertia = some.with_these(before, some.of(before) + more)
+            inertia = some.changed(_laden, self._none if inertia is None else inertia, at)
         return Acts(reported, torque, applied, friction, inertia, Remembered(velocity, kept))
 
     def _driven(self, before: tuple[Number, ...], at: AxisState) -> tuple[Number, Number, tuple[Number, ...]]:
@@ -171,29 +158,35 @@ class SteppedEffects:
             flows, end = some.effect.flowing(some.values, some.axis, speed, wanted, next(memories), self._step)
             reported = some.with_these(reported, flows)
             kept.append(end)
-        torque = _less(reported, self._sensors, at)
+        torque = reported
+        for some in self._sensors:
+            torque = some.changed(_lost, torque, at)
         for some in self._lags:
             acts, end = some.effect.stepped(some.values, some.of(torque), next(memories), self._step)
             torque = some.with_these(torque, acts)
             kept.append(end)
-        return reported, _less(_less(torque, self._motor, at), self._commutation, at), tuple(kept)
+        for some in self._motor:
+            torque = some.changed(_lost, torque, at)
+        return reported, torque, tuple(kept)
 
     def _friction(self, at: AxisState) -> tuple[Number | None, Number]:
-        """Mean level of dry friction over both directions, None where no effect changes it, and half the difference."""
+        """Mean level of dry friction over both directions, None where no effect changes it; torque of half of their
+        difference.
+        """
         if not self._frictions:
-            return None, 0.0
+            return None, self._none
         if self._loads:
             load = self._none  # that the transmission carries
             for some in self._loads:
-                load = some.with_these(load, some.of(load) + some.torque(at))
+                load = some.changed(_carried, load, at)
             at = at._replace(load=load)
-        xp, forward = namespace(self._coulomb), self._level(at)
+        forward = _not_below_zero(self._level(at))
         if not self._directed:
-            return xp.maximum(forward, 0.0), 0.0
-        backward = xp.maximum(self._level(at._replace(direction=-1.0)), 0.0)
-        forward = xp.maximum(forward, 0.0)
-        mean, offset = 0.5 * (forward + backward), 0.5 * (forward - backward)
+            return forward, self._none
+        backward = _not_below_zero(self._level(at._replace(direction=-1.0)))
+        mean, offset = 0.5 * (forward + backward), 0.5 * (backward - forward)
         if self._bristled is not None:  # bristles bend to the level of their direction, and no torque acts with them
+            xp = namespace(at.velocity)
             mean = xp.where(self._bristled, xp.where(at.velocity > 0.0, forward, backward), mean)
             offset = xp.where(self._bristled, self._none, offset)
         return mean, offset
@@ -202,19 +195,8 @@ class SteppedEffects:
         """Level of dry friction in one direction."""
         level = self._coulomb
         for some in self._frictions:
-            these, state = some.of(level), some.state(at)
-            if some.effect.scales_friction:
-                state = state._replace(friction=these)
-            level = some.with_these(level, these + some.effect.friction(some.values, some.axis, state))
+            level = some.changed(_rubbed, level, at)
         return level
-
-
-def _less(effort: Number, effects: Sequence[EffectOnAxes[Torque]], at: AxisState) -> Number:
-    """Effort that remains of one after what each of some effects takes."""
-    for some in effects:
-        reached = some.of(effort)
-        effort = some.with_these(effort, reached - some.torque(at._replace(effort=effort)))
-    return effort
 
 
 @dataclass(frozen=True)
@@ -237,13 +219,11 @@ class EffectOnAxes(Generic[Kind_co]):
     values: dict[str, Number]
     axis: Axis
 
-    def state(self, at: AxisState) -> AxisState:
-        """State of these axes."""
-        return at if self.index is None else AxisState(*(self.of(each) for each in at))
-
-    def torque(self: EffectOnAxes[Torque], at: AxisState) -> Number:
-        """Its torque on these axes, in a state of all."""
-        return self.effect.torque(self.values, self.axis, self.state(at))
+    def changed(self, change: Change[Kind_co], values: Number, at: AxisState) -> Number:
+        """Values of all axes, changed by the effect on those that have it, in a state of all."""
+        if self.index is None:
+            return change(self, values, at)
+        return self.with_these(values, change(self, self.of(values), AxisState(*(self.of(each) for each in at))))
 
     def of(self, values: Number) -> Number:
         """Of values of all axes, or one for all, those of these axes."""
@@ -258,6 +238,40 @@ class EffectOnAxes(Generic[Kind_co]):
         xp, lead = namespace(these), np.broadcast_shapes(values.shape[:-1], these.shape[:-1])
         both = [xp.broadcast_to(each, (*lead, each.shape[-1])) for each in (values, these)]
         return xp.take(xp.concat(both, axis=-1), self.places, axis=-1)
+
+
+#: What an effect on some axes makes of values of these, in their state.
+Change: TypeAlias = Callable[[EffectOnAxes[Kind], Number, AxisState], Number]
+
+
+def _resisted(some: EffectOnAxes[Torque], applied: Number, at: AxisState) -> Number:
+    """Applied torque less the effect's."""
+    return applied - some.effect.torque(some.values, some.axis, at)
+
+
+def _lost(some: EffectOnAxes[Torque], effort: Number, at: AxisState) -> Number:
+    """Effort that reaches the effect, less what it takes of that."""
+    return effort - some.effect.torque(some.values, some.axis, at._replace(effort=effort))
+
+
+def _carried(some: EffectOnAxes[Torque], load: Number, at: AxisState) -> Number:
+    """Torque of the load with the effect's."""
+    return load + some.effect.torque(some.values, some.axis, at)
+
+
+def _laden(some: EffectOnAxes[Inertia], inertia: Number, at: AxisState) -> Number:
+    """Inertia with the effect's."""
+    return inertia + some.effect.inertia(some.values, some.axis, at.position)[0]
+
+
+def _rubbed(some: EffectOnAxes[Friction], level: Number, at: AxisState) -> Number:
+    """Level of dry friction with the effect's."""
+    at = at._replace(friction=level) if some.effect.scales_friction else at
+    return level + some.effect.friction(some.values, some.axis, at)
+
+
+def _not_below_zero(level: Number) -> Number:
+    return namespace(level).maximum(level, 0.0)
 
 
 def on_axes(
@@ -317,69 +331,3 @@ def per_axis(values: Sequence[float] | Array) -> Number:
     NumPy's, which overflows to infinity as arrays do, where one of Python's raises an error.
     """
     return np.float64(values[0]) if len(values) == 1 else np.array(values, dtype=np.float64)
-
-
-class Joints:
-    """Joints of simulations side by side, to which what effects make of a step is written, in the joints' own units.
-
-    Args:
-        model: of all simulations.
-        field: gives a field of the model that each simulation may have for itself, to be written - (simulations, ...).
-        applied: torques that are applied beside those of actuators, to be written - (simulations, nv).
-        joints: of each simulation, by name.
-        bristles: of each joint the actuator whose bristles are its friction, if the model has one of this name.
-    """
-
-    def __init__(
-        self,
-        model: mujoco.MjModel,
-        field: Callable[[str], Number],
-        applied: Number,
-        joints: Sequence[str] = (AXIS,),
-        bristles: Sequence[str] = (BRISTLES,),
-    ) -> None:
-        dofs = [int(model.joint(name).dofadr[0]) for name in joints]
-        self._columns = slice(dofs[0], dofs[0] + 1) if len(dofs) == 1 else dofs
-        self._field, self._applied, self._count = field, applied, len(dofs)
-        kind = mujoco.mjtObj.mjOBJ_ACTUATOR
-        self._bristles = [mujoco.mj_name2id(model, kind, name) for name in bristles]
-        self.bristled: NDArray[np.bool_] = np.array(self._bristles) >= 0
-        self._dry, self._bending = not self.bristled.all(), [int(k) for k in np.flatnonzero(self.bristled)]
-
-    @classmethod
-    def of(cls, batch: Batch) -> Joints:
-        """The axis of each simulation of a batch."""
-        return cls(batch.model, batch.expand, batch.bind("qfrc_applied"))
-
-    def take(self, acts: Acts) -> None:
-        """What acts in the next step: values (simulations, joints), or (simulations*joints,), or for all."""
-        self.apply(self._on_rows(acts.torque))
-        if acts.inertia is not None:
-            armature, bare = self._armatures
-            armature[:, self._columns] = bare + self._on_rows(acts.inertia)
-        if acts.friction is not None:
-            level = self._on_rows(acts.friction)
-            if self._dry:
-                self._field("dof_frictionloss")[:, self._columns] = level
-            for k in self._bending:
-                own = level[:, k : k + 1] if np.ndim(level) else level
-                self._field("actuator_biasprm")[:, self._bristles[k], BRISTLE_LEVELS] = own
-
-    def apply(self, torque: Number) -> None:
-        """Apply a torque beside those of actuators - N*m (N)."""
-        self._applied[:, self._columns] = torque
-
-    def restore_inertia(self) -> None:
-        """Take what effects added to the joints' inertia off again."""
-        if "_armatures" in self.__dict__:
-            armature, bare = self._armatures
-            armature[:, self._columns] = bare
-
-    def _on_rows(self, values: Number) -> Number:
-        return values.reshape(-1, self._count) if np.ndim(values) else values
-
-    @cached_property
-    def _armatures(self) -> tuple[Number, Number]:
-        """Of all joints of the model, and what it has at these."""
-        armature = self._field("dof_armature")
-        return armature, armature[:, self._columns] + 0.0

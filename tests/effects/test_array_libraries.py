@@ -9,7 +9,7 @@ import array_api_strict as strict
 import numpy as np
 import pytest
 
-from bench.arrays import namespace
+from bench.arrays import NUMBERS, namespace
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import DriveLimit, EncoderFault, Lag
 from bench.effects.signals import Axis, AxisState, Winding
@@ -87,7 +87,8 @@ def test_every_method_of_a_step_is_asked(kind):
 
 
 def test_what_is_no_array_has_no_functions():
-    assert namespace(np.float64(1.0)) is np
+    assert namespace(np.float64(1.0)) is NUMBERS
+    assert namespace(1.0) is NUMBERS
     assert namespace(np.ones(2)) is np
     with pytest.raises(TypeError):
         namespace(AxisParameters)

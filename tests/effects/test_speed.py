@@ -1,5 +1,6 @@
 """What effects cost: counted in steps that Python takes part in, and measured with `-m '' --benchmark-only -s`."""
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -25,7 +26,7 @@ MANY_TICKED = (
 
 @pytest.fixture
 def steps(monkeypatch):
-    """One entry for each call by which Python steps a batch."""
+    """One entry for each call by which Python steps an axis, or several side by side."""
     calls = []
 
     class Counted(runners.Batch):
@@ -33,7 +34,12 @@ def steps(monkeypatch):
             calls.append(self)
             return super().step(*args, **kwargs)
 
+    def counted(model, data, mj_step=mujoco.mj_step):
+        calls.append(model)
+        return mj_step(model, data)
+
     monkeypatch.setattr(runners, "Batch", Counted)
+    monkeypatch.setattr(mujoco, "mj_step", counted)
     return calls
 
 
