@@ -1,6 +1,6 @@
 """Other people's axes: what a diagnosis names on them, against what their owners published.
 
-`pytest -m slow tests/diagnosis/test_public_axes.py -s` prints every figure; docs/public_axes.md explains them.
+`pytest -m slow tests/diagnosis/test_public_axes.py -s` prints every figure; docs/validation.md has them.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Links lead somewhere, sources of the theory are cited in the code, and generated pages say what objects say."""
+"""Links lead somewhere, sources of the method are cited in the code, and generated pages say what objects say."""
 
 import re
 import sys
@@ -36,12 +36,37 @@ def test_links_lead_to_files():
     assert [(name, link) for name, link in leading if not ((ROOT / name).parent / link).exists()] == []
 
 
-def test_the_index_leads_to_every_page():
-    index, measured = PAGES["docs/index.md"], PAGES["docs/measured.md"]
-    for path in DOCS.rglob("*.md"):
-        name = str(path.relative_to(DOCS))
-        if name != "index.md" and not name.startswith(("reference/", "_build/", "jupyter_execute/")):
-            assert f"({name})" in index + measured or name in ("contributing.md", "security.md", "changelog.md"), name
+#: Folders of pages that are made while the site is built, and pages that include a file beside the folder.
+MADE = tuple(f"docs/{folder}/" for folder in ("reference", "_build", "jupyter_execute"))
+INCLUDED = {f"docs/{name}.md": f"{name.upper()}.md" for name in ("contributing", "security", "changelog")}
+#: A table of a page whose first cell links the table that a study wrote: the link, and the rows.
+QUOTED = re.compile(r"^\| \[[^]]+\]\(([^)]+)\)[^\n]*\n\|[-|]+\n((?:\|.*\n)+)", re.MULTILINE)
+
+
+def linked(name):
+    """Paths from the root that a page of the docs links to, by its path from the root."""
+    path = ROOT / name
+    text = path.read_text(encoding="utf-8") if path.suffix == ".md" else ""
+    return {str((path.parent / link).resolve().relative_to(ROOT)) for link in links(text)}
+
+
+def test_the_index_leads_to_every_page_in_two_clicks():
+    once = linked("docs/index.md")
+    reached = once.union(*map(linked, once))
+    pages = {str(path.relative_to(ROOT)) for path in DOCS.rglob("*.md")}
+    written = {INCLUDED.get(name, name) for name in pages if not name.startswith(MADE)}
+    assert written - reached == {"docs/index.md"} - reached
+
+
+def test_figures_of_the_validation_are_in_the_tables_that_it_links():
+    quoted = QUOTED.findall(PAGES["docs/validation.md"])
+    assert len(quoted) >= 6
+    for target, rows in quoted:
+        table = (DOCS / target).read_text(encoding="utf-8")
+        for some, of in re.findall(r"(\d+) of (\d+)", rows):
+            assert f"{some} of {of}" in table or f"{some}/{of}" in table, f"{target}: {some} of {of}"
+        for share in re.findall(r"\| ([\d.]+) % \|", rows):
+            assert f"| {share} |" in table, f"{target}: {share} %"
 
 
 def test_the_readme_leads_to_the_index():
@@ -49,7 +74,7 @@ def test_the_readme_leads_to_the_index():
 
 
 #: A year in brackets or behind a name, as the text cites it, and the first author of each source of the list.
-THEORY, _, LISTED = PAGES["docs/theory.md"].partition("## Sources\n")
+METHOD, _, LISTED = PAGES["docs/method.md"].partition("## Sources\n")
 
 
 def first_author(source):
@@ -65,7 +90,7 @@ def plainly(text):
 def uncited(source):
     """What is missing of a source's citations, in the text or in the code."""
     author = first_author(source)
-    if author not in THEORY:
+    if author not in METHOD:
         return f"{author} is listed and not cited"
     blocks = [part for part in re.split(r"\n\s*\n|\"\"\"", plainly(TEXT)) if plainly(author) in part]
     years = re.findall(r"(?<!\d)(?:19|20)\d\d(?!\d)", source.split("-")[0] if "arXiv" in source else source)[:1]
@@ -73,7 +98,7 @@ def uncited(source):
     return f"no module cites {author} {' '.join(missing)}" if missing or not blocks else ""
 
 
-def test_every_source_of_the_theory_is_one_that_the_code_cites():
+def test_every_source_of_the_method_is_one_that_the_code_cites():
     sources = LISTED.strip().replace("\n  ", " ").splitlines()
     assert len(sources) > 20
     assert [missing for source in sources if (missing := uncited(source))] == []

@@ -19,6 +19,8 @@ from tests.export.two_links import MJCF, log, write_log
 #: Pages that are run here, and those of them that take longer.
 RUN_HERE = (
     "README.md",
+    "docs/tutorial.md",
+    "docs/identify.md",
     "docs/diagnose.md",
     "docs/effects.md",
     "docs/notebooks/first_model.md",

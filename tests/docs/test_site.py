@@ -9,7 +9,7 @@ import pytest
 
 from tests.docs.pages import DOCS, ROOT
 
-READ = ("index", "reference/effects/backlash", "notebooks/hidden_effect", "theory", "python", "commands", "diagnose")
+READ = ("index", "reference/effects/backlash", "notebooks/hidden_effect", "method", "python", "commands", "diagnose")
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def test_a_notebook_that_ran_does_not_run_again(site):
 @pytest.mark.slow
 def test_every_page_is_there_and_fetches_nothing(site):
     pages = {str(path.relative_to(site).with_suffix("")) for path in site.rglob("*.html")}
-    assert {*READ, "reference/commands/identify", "contributing", "measured"} <= pages
+    assert {*READ, "reference/commands/identify", "contributing", "validation"} <= pages
     for path in site.rglob("*.html"):
         text = path.read_text(encoding="utf-8")
         assert not re.search(r'src="(?:https?:)?//|<link[^>]+href="(?:https?:)?//', text), path

@@ -1,4 +1,4 @@
-"""Friction over speed of published screw drives; `-s` prints the figures, docs/public_axes.md explains them."""
+"""Friction over speed of published screw drives; `-s` prints the figures, docs/validation.md has them."""
 
 import pytest
 

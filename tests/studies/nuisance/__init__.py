@@ -1,4 +1,4 @@
 """The nuisance set: sound recordings of an independent integrator, damaged as the world damages recordings.
 
-`python -m tests.studies.nuisance --help`; what it measures and last measured: docs/nuisance.md.
+`python -m tests.studies.nuisance --help`; what it measures and last measured: docs/validation.md.
 """
