@@ -130,7 +130,7 @@ def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, N
     lines = [
         "# Thresholds",
         "",
-        f"Each off, halved and doubled by itself over {len(truths)} cases of the [blind set](validation.md). `{command}`",
+        f"Each alone off, halved and doubled over {len(truths)} cases of the [blind set](validation.md). `{command}`",
         "",
         "Counts: singles, pairs, nulls and cases outside the catalogue that are right,",
         f"of {', '.join(map(str, cases))}; then cases with a wrong name. Names before held-out motion judges them.",
