@@ -6,13 +6,14 @@ leaves beyond noise, on the rows whose torque every hypothesis determines, or on
     E = max(v - f**2, 0) + BESIDE_NOISE*f**2
 
 v - mean squared residual; f - noise floor, its colour that of the hypothesis that leaves least, as each one's own would
-turn a difference below the noise into evidence. A holdout adds what a hypothesis, of the strengths that the recording
+turn a difference in colour into evidence. A holdout adds what a hypothesis, of the strengths that the recording
 gave, leaves of it beyond twice what the best one does. Then
 
-    ln P = -left*max(U, LEAST) - over*min(V, MUCH) - number*numbers + constant
+    ln P = -left*(max(U, LEAST) + B) - over*min(V, MUCH) - number*numbers + constant
 
 U, V - logarithms of E over that of the bare axis and over that of noise alone, V on all rows for a hypothesis that
-determines all: who claims no gap has to explain what is beside impacts, too; numbers - fitted. What holds an effect
+determines all: who claims no gap has to explain what is beside impacts, too; B - logarithm of v/f**2 where that is
+negative, else 0: the noise is then weaker than it was taken for; numbers - fitted. What holds an effect
 from outside the catalogue weighs `outside` less and, together with a constant weight for what was not tried, makes up
 "none of the catalogue"; a name beside such an effect is there if without it at least twice as much is left, as that
 makes up for what is small. The weights, of `bench.diagnosis.policy`, are those under which recordings whose truth is
@@ -168,6 +169,8 @@ class Contender:
         fitted: to the recording.
         left: logarithm of what it leaves beyond noise over what the bare axis leaves.
         over: the same over BESIDE_NOISE of the noise.
+        below: logarithm of what it leaves over the noise where that is less, else 0: the noise is then less, too, and
+            the other that leaves as much as was thought is not as likely.
         numbers: fitted beyond those of the bare axis, and RESCALED for a scale of the torque.
         outside: whether it has an effect that no catalogue holds.
     """
@@ -175,12 +178,13 @@ class Contender:
     fitted: Fit
     left: float
     over: float
+    below: float
     numbers: float
     outside: bool
 
     def score(self, policy: Policy) -> float:
         """ln P, up to a constant."""
-        distance = policy.left * max(self.left, LEAST) + policy.over * min(self.over, MUCH)
+        distance = policy.left * (max(self.left, LEAST) + self.below) + policy.over * min(self.over, MUCH)
         return -distance - policy.number * self.numbers - policy.outside * self.outside
 
 
@@ -210,8 +214,8 @@ def weighed(visited: Sequence[Fit], holdout: Rows | None, policy: Policy) -> lis
     white = np.array([each.noise.white**2 for each in physical])
     outside = np.array([any(term.effect.decoy for term in each.terms) for each in physical])
     white[outside] = np.minimum(white[outside], white[~outside].max())  # its inertia may be any, and noise with that
-    nearest = physical[int(np.argmin(power / white))]
-    floor = white * (nearest.floor / nearest.noise.white) ** 2
+    best = int(np.argmin(power / white))
+    floor = white * (physical[best].floor / physical[best].noise.white) ** 2
     if visited[0].depends is not None:  # the fit that explains the dependence bounds the noise
         floor = np.minimum(floor, power.min())
     elif len(physical) == 1 and not policy.remains(visited[0]):  # noise, whose level is known no better
@@ -222,7 +226,9 @@ def weighed(visited: Sequence[Fit], holdout: Rows | None, policy: Policy) -> lis
     over = np.log1p(claimed / (BESIDE_NOISE * floor))
     rescaled = [RESCALED * each.layout.rescaling.size for each in physical]
     numbers = [freedom(each) - freedom(visited[0]) + more for each, more in zip(physical, rescaled, strict=True)]
-    columns = (left - left[0]).tolist(), over.tolist(), numbers, outside.tolist()
+    least = np.minimum(floor, floor[best])  # neither who damps noise gains by it, nor who raises it
+    below = np.minimum(np.log(power / least), 0.0)
+    columns = (left - left[0]).tolist(), over.tolist(), below.tolist(), numbers, outside.tolist()
     return [Contender(*each) for each in zip(physical, *columns, strict=True)]
 
 

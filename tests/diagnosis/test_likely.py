@@ -7,7 +7,7 @@ import pytest
 
 from bench.diagnosis import probability
 from bench.diagnosis.policy import POLICY
-from bench.diagnosis.probability import DETECTED, Contender, NameSet, Probabilities, probabilities
+from bench.diagnosis.probability import DETECTED, Contender, NameSet, Probabilities, probabilities, weighed
 from bench.effects.rivals import RIVALS
 from bench.fit.hypothesis import Term
 from tests.diagnosis.hand_made import level, made, term
@@ -66,7 +66,7 @@ def test_what_signals_show_is_known_from_them():
 
 
 def contender(left, over, *terms, numbers=0, outside=False):
-    return Contender(made(level(1.0), *terms), left, over, numbers, outside)
+    return Contender(made(level(1.0), *terms), left, over, 0.0, numbers, outside)
 
 
 def test_the_logarithm_is_the_sum_of_what_speaks_for_and_against():
@@ -113,3 +113,10 @@ def test_sets_that_a_recording_cannot_tell_apart_count_as_one():
     found = probabilities(every, frozenset(), POLICY)
     assert len(found.names) == 1
     assert found.chosen.probability > 0.99
+
+
+def test_of_two_that_leave_less_than_was_taken_for_noise_the_one_that_leaves_less_is_likelier():
+    """By half of `left` rows: (v2/v1)**left."""
+    every = [made(level(9e3)), made(level(54.0), SPRING, floor=1.0), made(level(94.0), COGGING, floor=1.0)]
+    found = probabilities(weighed(every, None, POLICY), frozenset(), POLICY)
+    assert found.names["torsion_spring"] / found.names["cogging_torque"] == pytest.approx((94.0 / 54.0) ** POLICY.left)

@@ -62,7 +62,7 @@ class Table:
     def shares(self, weights: Mapping[str, float]) -> Array:
         """Probabilities (c, h + 1), the last one of what was not tried."""
         logs = (
-            -weights["left"] * np.maximum(self.of["left"], LEAST)
+            -weights["left"] * (np.maximum(self.of["left"], LEAST) + self.of["below"])
             - weights["over"] * np.minimum(self.of["over"], MUCH)
             - weights["number"] * self.of["numbers"]
             - weights["outside"] * self.of["outside"]
@@ -140,7 +140,7 @@ def by_group(cases: Sequence[Known], shares: Array, right: Array) -> list[str]:
         for k in own:
             case, likely = cases[k], names_of(cases[k], shares[k])
             named = [name for name, share in likely.items() if share > 0.5]
-            exact += case.right(Hypothesis(tuple(named), 0.0, 0.0, 0, False)) or (case.truth is None and not named)
+            exact += case.right(Hypothesis(tuple(named), 0.0, 0.0, 0.0, 0, False)) or (case.truth is None and not named)
             wrong += any(not case.true(name) for name in named)
             outside = sum(p for p, one in zip(shares[k], case.hypotheses, strict=False) if one.outside)
             none += shares[k, -1] + outside > 0.5

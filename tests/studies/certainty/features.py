@@ -30,6 +30,7 @@ class Hypothesis:
     names: tuple[str, ...]
     left: float
     over: float
+    below: float
     numbers: int
     outside: bool
     standing: tuple[str, ...] = ()
@@ -97,6 +98,7 @@ def known(folder: Path, withheld: bool) -> Known | None:
             one.fitted.hypothesis.names,
             one.left,
             one.over,
+            one.below,
             one.numbers,
             one.outside,
             tuple(effect.name for effect in standing(one.fitted, POLICY)) if one.outside else (),
