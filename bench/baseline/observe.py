@@ -64,11 +64,11 @@ class Observed:
             if mine is not None:
                 terms.append(own.terms[shaped_here.index(mine)])
             else:
-                terms.append(Term(effect.effect, effect.shape or (), load=() if effect.on_load else None))
-        fitted = fit(own.rows, own.hypothesis.with_terms(terms))
+                terms.append(Term(effect.effect, effect.shape or (), effect.on_load))
+        fitted = fit(own.rows, own.hypothesis.with_terms(terms), own)
         for index, (_, mine) in enumerate(held):
             if mine is None:
-                fitted = shaped(fitted.rows, fitted.hypothesis, index)
+                fitted = shaped(fitted, fitted.hypothesis, index)
         base = uncertain(fitted).base(self.state.kind.base_parameters(unit))
         effects = [replace(effect, torque=_torque(fitted, index, unit)) for index, (effect, _) in enumerate(held)]
         quantities = _measured(base) | {TORQUE_GAP: _torque_gap(fitted, unit)}
@@ -164,7 +164,7 @@ def _named(found: NamedEffect, fitted: Fit, index: int, unit: str) -> AxisEffect
         effect=found.effect,
         quantities=_measured(found.parameters),
         shape=term.shape,
-        on_load=term.load is not None,
+        on_load=term.on_load,
         torque=torque,
         ambiguous_with=found.ambiguous_with,
         gain=(torque.value / torque.std_error) ** 2,
@@ -177,7 +177,7 @@ def _torque(fitted: Fit, index: int, unit: str) -> Measured:
     Its square is the reduction of the mean squared residual by the term; its error is that of one amplitude fitted to
     the rows, of which the filter leaves only some independent.
     """
-    less = fit(fitted.rows, fitted.hypothesis.without(index))
+    less = fit(fitted.rows, fitted.hypothesis.without(index), fitted)
     saved = max(less.squares - fitted.squares, 0.0) / fitted.count
     error = fitted.floor * np.sqrt(fitted.rows.correlation / fitted.count)
     return Measured(float(np.sqrt(saved)), unit, float(error))

@@ -112,7 +112,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
     held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
-    extension = Extension(recordings.rows, found.hypothesis, suspects.detected, recordings.rig)
+    extension = Extension(recordings.rows, found.hypothesis, suspects.detected, recordings.rig, found)
     recorded, closed_loop = recordings_to_track(recordings, repeats), closed_loop_gap(recordings, extension)
     rejected = [*suspects.unsized.items()]
     while True:

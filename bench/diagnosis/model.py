@@ -126,6 +126,7 @@ class Extension:
         hypothesis: effects of the torque balance.
         outside: the others, as the signals show them.
         rig: of the axis.
+        start: a fit of these effects, from whose strengths that of the balance starts.
         refused: why its inertia is not determined, so that it has no model; empty if it is.
     """
 
@@ -133,6 +134,7 @@ class Extension:
     hypothesis: Hypothesis
     outside: Mapping[Effect, Detected]
     rig: Rig
+    start: Fit | None = None
     refused: str = ""
 
     @property
@@ -143,7 +145,7 @@ class Extension:
     @cached_property
     def fitted(self) -> Fit:
         """Its torque balance."""
-        return fit(self.recording, self.hypothesis)
+        return fit(self.recording, self.hypothesis, self.start)
 
     @cached_property
     def _simulated(self) -> tuple[StoredModel | None, str]:
@@ -314,7 +316,7 @@ class HeldOut:
         lacked = [k for k in events_of if plain.lacks(whole, k)]
         if not lacked:
             return plain
-        acts = np.abs(lay_out(rows, whole.hypothesis).columns[:, np.isin(whole.owners, lacked)])
+        acts = np.abs(lay_out(rows, whole.hypothesis, whole.found).columns[:, np.isin(whole.owners, lacked)])
         return cls.third(recordings, np.any(acts > ACTS * acts.max(axis=0), axis=1))
 
     @classmethod
@@ -342,7 +344,7 @@ class HeldOut:
 
     def lacks(self, whole: Fit, index: int) -> bool:
         """Whether the fitted rows do not tell the strengths of a term of a fit to the recording."""
-        own, columns = whole.owners == index, lay_out(self.fitted, whole.hypothesis).columns
+        own, columns = whole.owners == index, lay_out(self.fitted, whole.hypothesis, whole.found).columns
         return not _information(columns, own) > INDEPENDENT_SHARE * _information(whole.columns, own)
 
     def determines(self, judged: Fit, whole: Fit, index: int) -> bool:
@@ -357,7 +359,7 @@ class HeldOut:
         if not own.any():
             return True
         least = INDEPENDENT_SHARE * _information(whole.columns, own)
-        parts = judged.columns, lay_out(self.judge, judged.hypothesis).columns
+        parts = judged.columns, lay_out(self.judge, judged.hypothesis, judged.found).columns
         return all(_information(columns, own) > least for columns in parts)
 
 

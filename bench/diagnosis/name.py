@@ -122,7 +122,7 @@ def delay(fitted: Fit, policy: Policy) -> float:
     if not free.delayed or free.held:
         return 0.0
     moved = replace(fitted.hypothesis, shift=fitted.hypothesis.shift + free.shift[0])
-    return 0.0 if policy.remains(fit(fitted.rows, moved)) else free.shift[0]
+    return 0.0 if policy.remains(fit(fitted.rows, moved, fitted)) else free.shift[0]
 
 
 def without_size(fitted: Fit, recordings: Recordings) -> dict[str, str]:
@@ -159,7 +159,7 @@ def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:
 def _with_event(fitted: Fit, effect: Occasional, apart: Standout, policy: Policy) -> Fit:
     """With an event that saves more than chance does, and beside whose torque little is left around it."""
     term = Term(effect, apart.shape, around=apart.around)
-    after = shaped(fitted.rows, fitted.hypothesis.plus(term), len(fitted.terms))
+    after = shaped(fitted, fitted.hypothesis.plus(term), len(fitted.terms))
     own = after.owners == len(fitted.terms)
     others = np.linalg.qr(after.columns[:, ~own])[0]
     alone = after.columns[:, own] - others @ (others.T @ after.columns[:, own])
@@ -185,7 +185,7 @@ def named(
     }
     effects = []
     for index, term in enumerate(fitted.terms):
-        less = fit(fitted.rows, fitted.hypothesis.without(index))
+        less = fit(fitted.rows, fitted.hypothesis.without(index), fitted)
         evidence = {"residual_without": less.rms, "residual_with": fitted.rms, "noise_floor": fitted.floor}
         reports = [term.effect.report(other.strengths(index), term.shape, other.base) for other in others]
         by_hint = term.effect.report(hinted.strengths(index), term.shape, hinted.base)
@@ -209,12 +209,12 @@ def alike(fitted: Fit, index: int, policy: Policy) -> tuple[str, ...]:
     for effect in (each for each in catalogue().values() if each.replaces):
         shape = effect.unlike(fitted) if term.effect.name in effect.replaces else None
         if shape is not None:
-            other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, shape)))
+            other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, shape)), fitted)
             if policy.replaceable(fitted, other):
                 found.append(effect.name)
     for effect in (catalogue()[name] for name in term.effect.looks_like):
         if effect.sought(fitted.scope) and fitted.hypothesis.without(index).admits(effect):
-            other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect)))
+            other = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect)), fitted)
             if policy.replaceable(fitted, other):
                 found.append(effect.name)
     return (*term.effect.ambiguous(fitted.scope), *found)

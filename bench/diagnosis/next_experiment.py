@@ -135,7 +135,7 @@ def nearly_as_good(added: Added, model: AxisModel) -> Iterator[Alternatives]:
         (rival,) = rivals
         if rival is named or rival.name in named.ambiguous(whole.scope):
             continue
-        other = fit(added.recordings.rows, visited.hypothesis)
+        other = fit(added.recordings.rows, visited.hypothesis, visited)
         if other.rms < NEARLY * whole.rms:
             reason = f"{rival.name} leaves but {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
             try:

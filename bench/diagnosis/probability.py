@@ -35,7 +35,6 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling, Effect, Occasional
 from bench.effects.signals import Scope
 from bench.fit.fit import Fit, fit
-from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 
@@ -262,7 +261,7 @@ def _blocks(fitted: Fit, holdout: Rows) -> Array:
         if len(alike) > 1:
             tried = [replace(balance, hypothesis=balance.hypothesis.reshaped(index, each)) for each in alike]
             balance = min(tried, key=lambda each: each.gap(holdout))
-    left, layout = balance.left(holdout), lay_out(holdout, balance.hypothesis)
+    left, layout = balance.left(holdout), balance.laid(holdout)
     for index, *_ in events:
         own = layout.owners == index
         without = left + layout.columns[:, own] @ balance.theta[own]
@@ -297,7 +296,7 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
 def standing(fitted: Fit, policy: Policy) -> list[Effect]:
     """Effects beside one from outside the catalogue that it cannot make up for."""
     own = [(index, term.effect) for index, term in enumerate(fitted.terms) if not term.effect.decoy]
-    less = (fit(fitted.rows, fitted.hypothesis.without(index)) for index, _ in own)
+    less = (fit(fitted.rows, fitted.hypothesis.without(index), fitted) for index, _ in own)
     return [effect for (_, effect), without in zip(own, less, strict=True) if fitted.chi < policy.beside * without.chi]
 
 

@@ -100,7 +100,8 @@ class Recordings:
             return []
         same, near = self.rows.conditioning, self.rows.near
         rigs = self.rig.within_tolerance()
-        return [fit(Rows.of(self.corrected, rig, conditioning=same, near=near), fitted.hypothesis) for rig in rigs]
+        rows = (Rows.of(self.corrected, rig, conditioning=same, near=near) for rig in rigs)
+        return [fit(each, fitted.hypothesis, fitted) for each in rows]
 
     def like(self, rows: Rows) -> Recordings:
         """The same with other rows of the recording, and those of the holdout through the same filter."""

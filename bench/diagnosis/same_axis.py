@@ -61,7 +61,7 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
     if other is None:
         return SameAxis(None)
     lasting = fitted.hypothesis.with_terms(term for term in fitted.terms if not isinstance(term.effect, Occasional))
-    here, there = fit(fitted.rows, lasting), fit(other, lasting)
+    here, there = fit(fitted.rows, lasting, fitted), fit(other, lasting, fitted)
     own, others = uncertain(here).base(units), uncertain(there).base(units)
     differs, apart, vague = dict[str, tuple[Parameter, Parameter]](), list[str](), True
     for k, (name, label) in enumerate(zip(units, ("inertia", "viscous friction", "Coulomb friction"), strict=True)):
@@ -146,7 +146,7 @@ def _each(recordings: Recordings, whole: Fit) -> tuple[Alone, ...]:
             require_determined(equations, kind)
         except UndeterminedError as refusal:
             reason = str(refusal)
-        found_alone = uncertain(fit(rows, whole.hypothesis)).base(recordings.base_units)
+        found_alone = uncertain(fit(rows, whole.hypothesis, whole)).base(recordings.base_units)
         unknown = {kind.parameter(term) for term in left_open(equations, kind)}
         found.append(Alone(origin, {name: one for name, one in found_alone.items() if name not in unknown}, reason))
     return tuple(found)

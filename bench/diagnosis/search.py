@@ -95,7 +95,7 @@ class Searched:
 
     def through(self, rows: Rows) -> Searched:
         """The same with the result fitted to rows through another filter."""
-        last = Round(fit(rows, self.last.hypothesis), self.rounds[-1].candidates)
+        last = Round(fit(rows, self.last.hypothesis, self.last), self.rounds[-1].candidates)
         return replace(self, rounds=(*self.rounds[:-1], last))
 
 
@@ -174,12 +174,12 @@ class Visited:
             self.grow(self.without(current, [index]))
             for form in simpler_forms(term.effect, current.scope):
                 if form in self.effects and current.hypothesis.without(index).admits(form):
-                    self.add(fit(current.rows, current.hypothesis.with_term(index, Term(form))))
+                    self.add(fit(current.rows, current.hypothesis.with_term(index, Term(form)), current))
 
     def without(self, current: Fit, indices: Sequence[int]) -> Fit:
         """The fit without some terms, the shapes of the others settled."""
         kept = [term for index, term in enumerate(current.terms) if index not in indices]
-        less = fit(current.rows, current.hypothesis.with_terms(kept))
+        less = fit(current.rows, current.hypothesis.with_terms(kept), current)
         return self.fits[key_of(less)] if key_of(less) in self.fits else self.add(settled(less, self.policy))
 
     def candidates(self, fitted: Fit) -> tuple[Candidate, ...]:
@@ -220,7 +220,7 @@ class Visited:
         known = self.fits.get(key_of(fitted, effect))
         if known is not None and not effect.repeatable:
             return known
-        after = shaped(fitted.rows, fitted.hypothesis.plus(candidate.term), len(fitted.terms))
+        after = shaped(fitted, fitted.hypothesis.plus(candidate.term), len(fitted.terms))
         after = physical_form(after, self.effects, self.policy)
         if not self.policy.physical(after):
             self.refused[effect.name] = "it fits only with values that are physically impossible"
@@ -254,8 +254,8 @@ class Visited:
         shape = effect.in_place_of(less, lambda gain: gain > self.part(less))
         if shape is None:
             return
-        first = fit(less.rows, less.hypothesis.plus(Term(effect, shape)))
-        after = shaped(less.rows, first.hypothesis, len(less.terms))  # from where levels and loads have settled
+        first = fit(less.rows, less.hypothesis.plus(Term(effect, shape)), less)
+        after = shaped(first, first.hypothesis, len(less.terms))  # from where levels and loads have settled
         after = physical_form(after, self.effects, self.policy)
         if self.policy.only_damps(less, after) or not self.policy.physical(after):
             return
@@ -291,7 +291,7 @@ class Visited:
             alike = [index for index, own in numbers.items() if own == number]
             kept = best.hypothesis.with_terms(term for k, term in enumerate(best.terms) if k not in alike)
             for decoy in WAVES if len(alike) > 1 else WAVES[:1] if self.policy.remains(best) else ():
-                self.add(fit(best.rows, kept.plus(Term(decoy, (number,)))))
+                self.add(fit(best.rows, kept.plus(Term(decoy, (number,))), best))
 
     def result(self, best: Fit, stopped: str | None) -> Searched:
         """What is possible of it."""
@@ -325,7 +325,7 @@ def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit
     for index, term in enumerate(fitted.terms[:-1]):
         alike = term.effect.ambiguous(fitted.scope)
         for effect in (each for each in effects if each.name in alike and len(each.shapes) == len(term.shape)):
-            tried = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, term.shape)))
+            tried = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, term.shape)), fitted)
             if policy.physical(tried):
                 return tried
     return fitted
@@ -335,7 +335,7 @@ def on_its_side(fitted: Fit, policy: Policy) -> Fit:
     """With outer loads on the side of a coupling, motor or load, on which they explain more, if a residual remains."""
     if not policy.remains(fitted) or not outer_loads(fitted.hypothesis) or fitted.hypothesis.coupling is None:
         return fitted
-    moved = shaped(fitted.rows, on_other_side(fitted.hypothesis), fitted.hypothesis.coupling)
+    moved = shaped(fitted, on_other_side(fitted.hypothesis), fitted.hypothesis.coupling)
     return min(fitted, moved, key=lambda found: found.squares)
 
 

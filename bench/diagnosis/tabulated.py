@@ -27,7 +27,7 @@ from bench.effects.signals import Base
 from bench.effects.tabulated import NAMES, NODES, TABLES, Tabulated, TabulatedFriction, TorqueOverPosition
 from bench.errors import SimulationError
 from bench.fit.fit import Fit
-from bench.fit.hypothesis import delays, lay_out, seen_beside
+from bench.fit.hypothesis import delays, seen_beside
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.plant.model_file import StoredModel
@@ -128,8 +128,7 @@ def remaining(balance: Balance, rows: Rows, effects: Iterable[Present]) -> Array
     tables = [one for one in effects if one.name in TABLES]
     if not tables:
         return residual
-    owners = lay_out(rows, hypothesis).owners
-    seen = seen_beside(rows, hypothesis, residual, lambda index: balance.theta[owners == index].tolist())
+    seen = seen_beside(rows, hypothesis, residual, balance.laid(rows).by_name(balance.theta))
     for one in tables:
         values = dict(one.values)
         columns = partial(TABLES[one.name].columns, shape=[values[name] for name in ("low", "high", "turns")])

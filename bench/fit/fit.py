@@ -5,7 +5,7 @@ The shape of an effect - a Stribeck speed, a lag, a pitch - is searched for the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from itertools import chain
@@ -13,7 +13,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array, symmetric_inverse
+from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import (
@@ -30,15 +30,20 @@ from bench.effects.signals import Base, Scope, Signals
 from bench.effects.torque import Friction
 from bench.fit.dependence import Dependence, dependence
 from bench.fit.hypothesis import (
+    BASE,
+    NOTHING,
+    Found,
     Hypothesis,
     Layout,
+    Name,
     Term,
     delays,
+    depended_on,
+    in_line,
     lay_out,
     not_reaching,
     seen_beside,
     seen_by,
-    updated,
 )
 from bench.fit.rows import Rows
 from bench.fit.solution import NOISE_ALONE, Floor, bounded, solved
@@ -47,6 +52,8 @@ from bench.trace.filter import Column
 
 #: Rounds in which levels of dry friction that multiply, and torque that is copied, are brought in line.
 ROUNDS = 4
+#: Change of what copies of torque miss, as share of it, at which they are in line with what is found.
+IN_LINE = 0.01
 #: Share of the noise floor by which a row's torque may hang on what the recording does not tell, an impact's instant.
 OPEN_SHARE = 0.3
 #: Standard errors from which a strength is no longer chance: 3 of 1000 by a normal distribution.
@@ -91,6 +98,17 @@ class Fit:
     def left(self) -> Array:
         """Measured less modelled torque at all rows (m,) - N*m (N)."""
         return self.layout.left(self.theta)
+
+    @cached_property
+    def found(self) -> dict[Name, list[float]]:
+        """Coefficients by the names of their columns."""
+        return self.layout.by_name(self.theta)
+
+    def found_for(self, hypothesis: Hypothesis) -> Found:
+        """Coefficients of the axis, and of those effects of a hypothesis that are here too, by their places in it."""
+        own = {each: self.found[index] for index, each in enumerate(_counted(self.terms)) if index in self.found}
+        base: dict[Name, list[float]] = {name: self.found[name] for name in BASE}
+        return base | {index: own[each] for index, each in enumerate(_counted(hypothesis.terms)) if each in own}
 
     @cached_property
     def missing(self) -> dict[int, Array]:
@@ -212,7 +230,7 @@ class Fit:
     @cached_property
     def beside(self) -> Rows:
         """The recording as one term more would see it."""
-        return seen_beside(self.rows, self.hypothesis, self.residual, self.strengths)
+        return seen_beside(self.rows, self.hypothesis, self.residual, self.found)
 
     @property
     def stretches(self) -> list[Signals]:
@@ -247,10 +265,8 @@ class Fit:
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
         """Shapes of an effect with what each would take: by its columns, or fitted anew where it has none."""
         if not isinstance(effect, Columns):
-            return [
-                Proposal(shape, self.squares - fit(self.rows, self.hypothesis.plus(Term(effect, shape))).squares)
-                for shape in shapes
-            ]
+            tried = [fit(self.rows, self.hypothesis.plus(Term(effect, shape)), self) for shape in shapes]
+            return [Proposal(shape, self.squares - one.squares) for shape, one in zip(shapes, tried, strict=True)]
         few = max(1, TOGETHER // (8 * self.time.size))
         parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
         return [proposal for part in parts for proposal in self._by_columns(effect, part)]
@@ -289,24 +305,47 @@ class Fit:
         return self.beside.against(self._targets, delays(self.rows, self.hypothesis)[1])
 
 
-def fit(rows: Rows, hypothesis: Hypothesis) -> Fit:
-    """Least squares of a hypothesis; the levels that scaled frictions see are brought in line with what is found."""
-    layout = lay_out(rows, hypothesis)
+def fit(rows: Rows, hypothesis: Hypothesis, start: Fit | None = None) -> Fit:
+    """Least squares of a hypothesis.
+
+    Columns that depend on the strengths of other terms, or on what their copies of torque miss, are made anew until
+    both are in line with what is found.
+
+    Args:
+        rows: the recording.
+        hypothesis: of it.
+        start: a fit of some of its effects, from whose strengths these start.
+    """
+    before = NOTHING if start is None else start.found_for(hypothesis)
+    layout = lay_out(rows, hypothesis, before)
     missing = _without_copies(layout, hypothesis)
     if missing:
-        layout = lay_out(rows, hypothesis, missing)
-    theta, held = _balanced(layout)
+        layout = lay_out(rows, hypothesis, before, missing)
+    every = np.ones(layout.effort.size, dtype=bool)
+    fitted = Fit(rows, hypothesis, layout, *_balanced(layout), every)
     for _ in range(ROUNDS):
-        hypothesis, missing, settled = updated(hypothesis, missing, layout, theta)
-        if settled:
+        depends = depended_on(hypothesis, fitted.found), depended_on(hypothesis, before)
+        if _misses_alike(fitted.missing, missing) and in_line(*depends):
             break
-        layout = lay_out(rows, hypothesis, missing)
-        theta, held = _balanced(layout)
-    fitted = Fit(rows, hypothesis, layout, theta, held, np.ones(layout.effort.size, dtype=bool))
+        before, missing = fitted.found, fitted.missing
+        layout = lay_out(rows, hypothesis, before, missing)
+        fitted = Fit(rows, hypothesis, layout, *_balanced(layout), every)
     determined = _determined(fitted)
     if determined.all():
         return fitted
     return Fit(rows, hypothesis, layout, *_balanced(layout, determined), determined)
+
+
+def _counted(terms: Sequence[Term]) -> list[tuple[Effect, int]]:
+    """Effects of terms, each with how many before it are the same."""
+    effects = [term.effect for term in terms]
+    return [(effect, effects[:index].count(effect)) for index, effect in enumerate(effects)]
+
+
+def _misses_alike(now: Mapping[int, Array], before: Mapping[int, Array]) -> bool:
+    """Whether what copies of torque miss changed by a small share of it only."""
+    least = IN_LINE * min(map(rms, now.values()), default=0.0)
+    return all(rms(missing - before[index]) <= least for index, missing in now.items())
 
 
 def _determined(fitted: Fit) -> NDArray[np.bool_]:
@@ -398,7 +437,7 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
         return None  # a floor in colour, which takes long, is no lower
     least = fitted.chance
     for effect in sorted((effect for effect in linear if gains[effect] > least), key=lambda effect: -gains[effect]):
-        beside = fit(fitted.rows, fitted.hypothesis.plus(Term(effect)))
+        beside = fit(fitted.rows, fitted.hypothesis.plus(Term(effect)), fitted)
         strengths = beside.strengths(len(fitted.terms))
         physical = effect.physical(strengths, (), beside.base) and effect.plausible([strengths], [()], fitted.scope)
         if physical and beside.base.inertia > 0.0 and explained(fitted, beside) > least:
@@ -419,18 +458,21 @@ def by_hint(rows: Rows, hypothesis: Hypothesis) -> tuple[str, dict[str, float]]:
     return f"{words(beside.terms[-1].effect.name)} would explain {share:.0%} of it" * (share > SUGGESTED), moves
 
 
-def shaped(rows: Rows, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:
-    """Search one term's shape for the least residual, the others held; `over_noise`: the least over its noise."""
-    return _projected(rows, hypothesis, [index], over_noise)
+def shaped(start: Fit, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:
+    """Search one term's shape for the least residual, the others held; `over_noise`: the least over its noise.
+
+    Strengths start from those of a fit of the same recording.
+    """
+    return _projected(start, hypothesis, [index], over_noise)
 
 
 def together(fitted: Fit) -> Fit:
     """Search the shapes of all terms at once: in a valley of two, a search of one makes no progress."""
-    found = _projected(fitted.rows, fitted.hypothesis, range(len(fitted.terms)))
+    found = _projected(fitted, fitted.hypothesis, range(len(fitted.terms)))
     return found if found.squares < fitted.squares else fitted
 
 
-def _projected(rows: Rows, hypothesis: Hypothesis, indices: Sequence[int], over_noise: bool = False) -> Fit:
+def _projected(start: Fit, hypothesis: Hypothesis, indices: Sequence[int], over_noise: bool = False) -> Fit:
     """Search shapes of terms, strengths solved for at each: Gauss and Newton's steps by variable projection.
 
     G. H. Golub, V. Pereyra, SIAM Journal on Numerical Analysis 10, 1973, 413-432. The shape of one term starts from the
@@ -439,11 +481,11 @@ def _projected(rows: Rows, hypothesis: Hypothesis, indices: Sequence[int], over_
     """
     from scipy.optimize import least_squares  # 0.2 s, which only a named effect has to pay
 
-    scope, terms = rows.scope, [hypothesis.terms[index] for index in indices]
+    rows, scope, terms = start.rows, start.scope, [hypothesis.terms[index] for index in indices]
     counts = [len(term.searched(scope)) for term in terms]
     if not any(counts):
-        return fit(rows, hypothesis)
-    rows_tried = _kept_behind(rows, hypothesis, terms)
+        return fit(rows, hypothesis, start)
+    rows_tried = _kept_behind(start, hypothesis, terms)
 
     def at(offset: Array) -> Hypothesis:
         moved = hypothesis
@@ -453,7 +495,7 @@ def _projected(rows: Rows, hypothesis: Hypothesis, indices: Sequence[int], over_
 
     @cache
     def residual_at(place: tuple[float, ...]) -> Array:
-        found = fit(rows_tried, at(np.array(place)))
+        found = fit(rows_tried, at(np.array(place)), start)
         return found.residual / (found.noise.white if over_noise else scale)
 
     def residual(offset: Array) -> Array:
@@ -463,7 +505,7 @@ def _projected(rows: Rows, hypothesis: Hypothesis, indices: Sequence[int], over_
         steps = SHAPE_STEP * np.eye(offset.size)
         return np.stack([(residual(offset + step) - residual(offset)) / SHAPE_STEP for step in steps], axis=1)
 
-    scale, starts = fit(rows_tried, hypothesis).rms or 1.0, np.zeros((1, sum(counts)))
+    scale, starts = fit(rows_tried, hypothesis, start).rms or 1.0, np.zeros((1, sum(counts)))
     if len(terms) == 1:
         starts = np.concatenate([starts, ASIDE * np.eye(counts[0]), -ASIDE * np.eye(counts[0])])
     begun = min(starts, key=lambda offset: float(np.sum(residual(offset) ** 2)))
@@ -477,15 +519,15 @@ def _projected(rows: Rows, hypothesis: Hypothesis, indices: Sequence[int], over_
         xtol=SHAPE_NEAR,
         max_nfev=MOST,
     )
-    return fit(rows, at(found.x))
+    return fit(rows, at(found.x), start)
 
 
-def _kept_behind(rows: Rows, hypothesis: Hypothesis, terms: Sequence[Term]) -> Rows:
+def _kept_behind(start: Fit, hypothesis: Hypothesis, terms: Sequence[Term]) -> Rows:
     """The recording in which terms are searched: what follows behind a coupling stays while they correct the motion."""
     if hypothesis.coupling is None or not any(isinstance(term.effect, Distortion) for term in terms):
-        return rows
-    held = rows.held
-    fit(held, hypothesis)  # which makes it
+        return start.rows
+    held = start.rows.held
+    fit(held, hypothesis, start)  # which makes it
     return held
 
 
@@ -498,5 +540,5 @@ def unbiased(fitted: Fit) -> Fit:
     """
     for index, term in enumerate(fitted.terms):
         if term.effect.filters_motion:
-            fitted = shaped(fitted.rows, fitted.hypothesis, index, over_noise=True)
+            fitted = shaped(fitted, fitted.hypothesis, index, over_noise=True)
     return fitted

@@ -20,6 +20,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +46,12 @@ from bench.trace.motion import SIGN_REACH, Conditioning
 
 #: Name of a column: a term of the equation of motion, what a recording has beside, or the index of an effect's term.
 Name = str | int
+#: Coefficients that a fit found, by the names of their columns.
+Found = Mapping[Name, Sequence[float]]
+#: Strengths by the places of their terms.
+Strengths = dict[int, tuple[float, ...]]
+#: Of no fit.
+NOTHING: Mapping[Any, Any] = MappingProxyType({})
 #: Names of columns that belong to no effect: of the axis and the shift of torque against speed, and what else a
 #: recording has - sines and cosines of the mains, what the last digit of the effort cuts off, what varies slowly around
 #: a short event. Those of an effect are named by the index of its term.
@@ -57,8 +65,6 @@ CLOSER = 20
 SERIES = 4
 #: Share of the filtered white noise below which half a step is not seen.
 UNSEEN = 0.1
-#: Change of what copies of torque miss, as share of it, at which they are in line with what is found.
-IN_LINE = 0.01
 
 
 @dataclass(frozen=True)
@@ -68,18 +74,13 @@ class Term:
     Attributes:
         effect: what it is.
         shape: its nonlinear quantities, in the effect's order.
-        level: strengths over K_0 that others see of it, if it is dry friction; () until a fit has found them.
-        load: strengths over load inertia by which it acts on the load behind a coupling, () until a fit has found them;
-            None where it acts on the motor.
-        pull: strengths by which it loads what transmits the torque, if others follow that and a fit has found them.
-        around: from when to when what else is left is taken for a parabola, a nuisance - s -; () for nowhere.
+        on_load: whether it acts on the load behind a coupling instead of on the motor.
+        around: from when to when the remaining residual is taken for a parabola, a nuisance - s -; () for nowhere.
     """
 
     effect: Effect
     shape: tuple[float, ...] = ()
-    level: tuple[float, ...] = ()
-    load: tuple[float, ...] | None = None
-    pull: tuple[float, ...] = ()
+    on_load: bool = False
     around: tuple[float, ...] = ()
 
     @property
@@ -205,6 +206,10 @@ class Layout:
     bounds: Mapping[int, tuple[float, float]]
     rescaling: NDArray[np.intp]
 
+    def by_name(self, theta: Array) -> dict[Name, list[float]]:
+        """Coefficients (p,) by the names of their columns."""
+        return {name: theta[self.owners == name].tolist() for name in dict.fromkeys(self.owners.tolist())}
+
     def acting(self, theta: Array) -> float:
         """Torque that acts per reported torque, by coefficients (p,): 1 unless a term rescales it."""
         return max(float(1.0 + theta[self.rescaling].sum()), 1e-9)
@@ -221,8 +226,17 @@ def plain(rows: Rows) -> Hypothesis:
     return Hypothesis(step=conditioning.effort_step if 0.5 * conditioning.effort_step > UNSEEN * noise else 0.0)
 
 
-def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | None = None) -> Layout:
-    """Columns of a hypothesis; `missing`: what each that copies torque is not made of, see `not_reaching`."""
+def lay_out(
+    rows: Rows, hypothesis: Hypothesis, found: Found = NOTHING, missing: Mapping[int, Array] = NOTHING
+) -> Layout:
+    """Columns of a hypothesis.
+
+    Args:
+        rows: the recording.
+        hypothesis: of it.
+        found: coefficients of a fit before, on some of which columns depend: see `depended_on`.
+        missing: what each term that copies torque is not made of, see `not_reaching`.
+    """
     seen, late = seen_by(rows, hypothesis), effort_lag(hypothesis)
     moving, resting = delays(rows, hypothesis)
     parts = [seen.kept(_axis, lag=(moving, moving, resting, resting + late))]
@@ -237,7 +251,7 @@ def lay_out(rows: Rows, hypothesis: Hypothesis, missing: Mapping[int, Array] | N
         owners += [HUM] * parts[-1].shape[1]
     for index, term in enumerate(hypothesis.terms):
         lag = moving if isinstance(term.effect, Coupling) else resting
-        parts.append(_of_term(seen, hypothesis, index, lag, (missing or {}).get(index)))
+        parts.append(_of_term(seen, hypothesis, index, lag, found, missing.get(index)))
         if isinstance(term.effect, Columns):
             bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
         owners += [index] * parts[-1].shape[1]
@@ -292,7 +306,7 @@ def _around(seen: Rows, around: tuple[float, ...]) -> Array:
     return np.where(np.abs(at) <= 1.0, at ** np.arange(3)[:, None], 0.0).T
 
 
-def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, missing: Array | None) -> Array:
+def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, found: Found, missing: Array | None) -> Array:
     """Columns (m, k) of one term; none of one that only changes how the recording is seen.
 
     What follows the motion behind a coupling is integrated at length, and only once where nothing but a lag differs.
@@ -301,17 +315,17 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, missing
     if not isinstance(effect, Columns):
         return np.empty((seen.effort.size, 0))
     if effect.scales_friction or isinstance(effect, Bristles):
-        seen = with_friction(seen, hypothesis, index)
+        seen = _with_friction(seen, hypothesis, index, found)
     if effect.follows_load:
-        seen = with_load(seen, ((other, other.pull) for other in hypothesis.terms))
+        seen = _with_load(seen, hypothesis, found)
     if missing is not None:
         return _copied(seen, effect, term.shape, lag, missing)
     if not isinstance(effect, Coupling):
         columns = seen.kept(effect.columns, term.shape, lag=lag)
         constant = effect.spring and hypothesis.having(lambda other: other.constant or other.directed)
         return columns * (1.0, 0.0) if constant else columns  # a balance has one constant
-    outer = [(each.effect, each.shape, each.load) for each in hypothesis.terms if each.load]
-    loads = [(other, shape, load) for other, shape, load in outer if isinstance(other, Columns) and other.external]
+    of_terms = [(hypothesis.terms[k], load) for k, load in _loads(hypothesis, found).items()]
+    loads = [(each.effect, each.shape, load) for each, load in of_terms if isinstance(each.effect, Columns)]
     if loads:
         return seen.table(lambda s: effect.columns_of(s, [term.shape], loads), lag)
 
@@ -427,17 +441,17 @@ def _lags(hypothesis: Hypothesis, source: str) -> tuple[float, float, float]:
     return moving, resting, late
 
 
-def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
+def _with_friction(seen: Rows, hypothesis: Hypothesis, index: int, found: Found) -> Rows:
     """The recording with the level of dry friction that the term at an index scales or carries, as share of K_0.
 
     sgn(omega) and what terms add to it, times what scales it: before the one at the index, or all where it carries it.
     """
     carries = index in hypothesis.of_kind(Bristles)
     acting = [
-        (term.effect, term.shape, term.level)
-        for k, term in enumerate(hypothesis.terms)
-        if isinstance(term.effect, Friction) and term.level and k != index
-        if k < index or carries or not term.effect.scales_friction
+        (effect, hypothesis.terms[k].shape, level)
+        for k, level in _levels(hypothesis, found).items()
+        if isinstance(effect := hypothesis.terms[k].effect, Friction) and k != index
+        if k < index or carries or not effect.scales_friction
     ]
     if not acting:
         return seen
@@ -451,13 +465,10 @@ def with_friction(seen: Rows, hypothesis: Hypothesis, index: int) -> Rows:
     return seen.with_signals(change)
 
 
-def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows:
-    """The recording with the torque that terms of some strengths make as a load; others are left out."""
-    known = [
-        (term.effect, term.shape, strengths)
-        for term, strengths in pulls
-        if strengths and isinstance(term.effect, Columns) and term.effect.transmitted
-    ]
+def _with_load(seen: Rows, hypothesis: Hypothesis, found: Found) -> Rows:
+    """The recording with the torque that terms make as a load of the transmission."""
+    terms = [(hypothesis.terms[k], pull) for k, pull in _pulls(hypothesis, found).items()]
+    known = [(term.effect, term.shape, pull) for term, pull in terms if isinstance(term.effect, Columns)]
     if not known:
         return seen
 
@@ -471,8 +482,8 @@ def with_load(seen: Rows, pulls: Iterable[tuple[Term, Sequence[float]]]) -> Rows
     return seen.with_signals(change)
 
 
-def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, strengths: Callable[[int], list[float]]) -> Rows:
-    """The recording as one term more would see it, by what is left (m,) - N*m (N) - and the strengths of each term.
+def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, found: Found) -> Rows:
+    """The recording as one term more would see it, by what is left (m,) - N*m (N) - and the fit's coefficients.
 
     It sees the modelled torque in the place of the measured. Columns made of the measured torque would hold what a
     model leaves of it, and so explain it by itself: errors in the variables, for which the modelled torque is the
@@ -482,8 +493,7 @@ def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, strengths: Call
     seen = seen_by(rows, hypothesis).with_signals(
         lambda s: replace(s, torque=s.torque - _acting(s, rows.time, left, lag))
     )
-    seen = with_friction(seen, hypothesis, len(hypothesis.terms))
-    return with_load(seen, ((term, strengths(index)) for index, term in enumerate(hypothesis.terms)))
+    return _with_load(_with_friction(seen, hypothesis, len(hypothesis.terms), found), hypothesis, found)
 
 
 def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[int, Array]:
@@ -502,52 +512,38 @@ def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[i
     return found
 
 
-def with_found_strengths(hypothesis: Hypothesis, theta: Array, owners: NDArray[np.object_]) -> Hypothesis:
-    """The hypothesis with what its terms see of each other's strengths, as fitted coefficients (p,) have them.
-
-    Levels of dry friction are strengths over K_0, what acts on the load behind a coupling over its inertia, where these
-    are positive; what loads the transmission is asked for where the friction of a term follows it.
-    """
-    coulomb, follows = float(theta[owners == COULOMB][0]), bool(hypothesis.having(lambda effect: effect.follows_load))
-    coupling = hypothesis.coupling
-    inertia = 0.0 if coupling is None else float(theta[owners == coupling][0])
-
-    def share(own: Array, whole: float) -> tuple[float, ...]:
-        return tuple((own / whole).tolist()) if whole > 0.0 else ()
-
-    def seen(term: Term, own: Array) -> Term:
-        level = share(own, coulomb) if isinstance(term.effect, Friction) else ()
-        load = None if term.load is None else share(own, inertia)
-        pull = term.pull
-        if follows:
-            pull = tuple(own.tolist()) if term.effect.transmitted else ()
-        return replace(term, level=level, load=load, pull=pull)
-
-    return hypothesis.with_terms(seen(term, theta[owners == index]) for index, term in enumerate(hypothesis.terms))
+def _shares(hypothesis: Hypothesis, found: Found, of: float, wanted: Callable[[Term], bool]) -> Strengths:
+    """Strengths of wanted terms over a number, by their places; none where that is not positive."""
+    places = [k for k, term in enumerate(hypothesis.terms) if of > 0.0 and k in found and wanted(term)]
+    return {k: tuple(strength / of for strength in found[k]) for k in places}
 
 
-def updated(
-    hypothesis: Hypothesis, missing: Mapping[int, Array], layout: Layout, theta: Array
-) -> tuple[Hypothesis, dict[int, Array], bool]:
-    """The hypothesis with the strengths that a fit found, what its copies of torque miss, and if both are as before."""
-    found, after = with_found_strengths(hypothesis, theta, layout.owners), not_reaching(hypothesis, layout, theta)
-    least = IN_LINE * min(map(rms, after.values()), default=0.0)
-    stays = all(rms(now - missing[index]) <= least for index, now in after.items())
-    return found, after, stays and _alike(found, hypothesis)
+def _levels(hypothesis: Hypothesis, found: Found) -> Strengths:
+    """Levels of dry friction that terms add, over K_0."""
+    return _shares(hypothesis, found, found.get(COULOMB, (0.0,))[0], lambda term: isinstance(term.effect, Friction))
 
 
-def _alike(found: Hypothesis, before: Hypothesis) -> bool:
-    """Whether no column depends on a strength of another term, by a load or friction that multiplies, that changed."""
-    levels = len(found.of_kind(Friction))
-    scaled = levels > 1 and found.having(lambda effect: effect.scales_friction)
-    carried = levels > 0 and found.of_kind(Bristles)
-    loaded = any(term.load is not None for term in found.terms) or found.having(lambda effect: effect.follows_load)
-    if not (scaled or carried or loaded):
-        return True
-    now, then = (
-        [value for term in each.terms for value in (*term.level, *(term.load or ()), *term.pull)]
-        for each in (found, before)
-    )
+def _loads(hypothesis: Hypothesis, found: Found) -> Strengths:
+    """Strengths of terms that act on the load behind a coupling, over its inertia."""
+    inertia = 0.0 if hypothesis.coupling is None else found.get(hypothesis.coupling, (0.0,))[0]
+    return _shares(hypothesis, found, inertia, lambda term: term.on_load)
+
+
+def _pulls(hypothesis: Hypothesis, found: Found) -> Strengths:
+    """Strengths of terms that load the transmission."""
+    return _shares(hypothesis, found, 1.0, lambda term: term.effect.transmitted)
+
+
+def depended_on(hypothesis: Hypothesis, found: Found) -> list[float]:
+    """The strengths on which columns of other terms depend: a load, or friction that multiplies."""
+    levels, follows = _levels(hypothesis, found), hypothesis.having(lambda effect: effect.follows_load)
+    scaled = hypothesis.having(lambda effect: effect.scales_friction) and len(hypothesis.of_kind(Friction)) > 1
+    used = levels if scaled or hypothesis.of_kind(Bristles) else {}, _pulls(hypothesis, found) if follows else {}
+    return [value for own in (*used, _loads(hypothesis, found)) for strengths in own.values() for value in strengths]
+
+
+def in_line(now: Sequence[float], then: Sequence[float]) -> bool:
+    """Whether strengths on which columns depend are as they were when these columns were made."""
     return len(now) == len(then) and np.allclose(now, then, rtol=1e-3, atol=1e-6)
 
 
@@ -559,7 +555,7 @@ def outer_loads(hypothesis: Hypothesis) -> list[int]:
 def on_other_side(hypothesis: Hypothesis) -> Hypothesis:
     """The hypothesis with its outer loads on the load instead of on the motor, or the other way round."""
     outer = outer_loads(hypothesis)
-    onto = None if any(hypothesis.terms[index].load is not None for index in outer) else ()
+    onto = not any(hypothesis.terms[index].on_load for index in outer)
     return hypothesis.with_terms(
-        replace(term, load=onto) if index in outer else term for index, term in enumerate(hypothesis.terms)
+        replace(term, on_load=onto) if index in outer else term for index, term in enumerate(hypothesis.terms)
     )

@@ -170,7 +170,7 @@ def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Ar
         term = fitted.terms[index]
         step = term.effect.shapes[k].step * max(abs(term.shape[k]), 1e-3)
         moved = tuple(value + step * (j == k) for j, value in enumerate(term.shape))
-        other = lay_out(rows, fitted.hypothesis.reshaped(index, moved), fitted.missing)
+        other = lay_out(rows, fitted.hypothesis.reshaped(index, moved), fitted.found, fitted.missing)
         modelled = (other.columns - fitted.columns) @ fitted.theta - (other.effort - fitted.effort)
         columns.append(modelled[:, None] / step)
     return np.concatenate(columns, axis=1)
@@ -187,7 +187,7 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
     scope = fitted.scope
 
     def refitted(change: Callable[[Signals], Signals]) -> Array:
-        layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis, fitted.missing)
+        layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis, fitted.found, fitted.missing)
         columns = np.where([isinstance(owner, int) for owner in layout.owners], layout.columns, fitted.columns)
         return least_squares(columns, fitted.effort, layout.noise) - plain
 
@@ -221,7 +221,7 @@ def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
         return replace(s, position=s.position + noise, velocity=s.velocity + np.gradient(noise, s.sample_period))
 
     loud = fitted.rows.with_signals(louder)
-    layout = lay_out(loud, fitted.hypothesis, fitted.missing)
+    layout = lay_out(loud, fitted.hypothesis, fitted.found, fitted.missing)
     jacobian = _jacobian(loud, replace(fitted, rows=loud, layout=layout), slots)
     left = layout.effort - layout.columns @ fitted.theta
     yield least_squares(jacobian, left, np.zeros((jacobian.shape[1],) * 2))

@@ -12,7 +12,7 @@ from bench.arrays import Array, rms
 from bench.effects.effect import Occasional
 from bench.effects.present import named
 from bench.fit.fit import ROUNDS, Fit
-from bench.fit.hypothesis import AROUND, HUM, Hypothesis, Term, lay_out, not_reaching
+from bench.fit.hypothesis import AROUND, HUM, Hypothesis, Layout, Term, depended_on, lay_out, not_reaching
 from bench.fit.rows import Rows
 
 #: Stands for a recording where an event comes at the same time of every one.
@@ -49,7 +49,7 @@ class Balance:
 
     def left(self, rows: Rows) -> Array:
         """Measured less modelled torque at the used rows of a recording - N*m (N) - (m,)."""
-        layout = lay_out(rows, self.hypothesis)
+        layout = self.laid(rows)
         theta = self.theta.copy()
         if self.recording != rows.origin:
             theta[np.isin(layout.owners, (AROUND, HUM))] = 0.0
@@ -58,8 +58,14 @@ class Balance:
         for _ in range(ROUNDS):
             if not (missing := not_reaching(self.hypothesis, layout, theta)):
                 break
-            layout = lay_out(rows, self.hypothesis, missing)
+            layout = lay_out(rows, self.hypothesis, layout.by_name(self.theta), missing)
         return layout.left(theta)
+
+    def laid(self, rows: Rows) -> Layout:
+        """Its columns in a recording."""
+        layout = lay_out(rows, self.hypothesis)
+        found = layout.by_name(self.theta)
+        return lay_out(rows, self.hypothesis, found) if depended_on(self.hypothesis, found) else layout
 
     def gap(self, rows: Rows) -> float:
         """RMS of measured less modelled torque along a recording - N*m (N)."""
@@ -68,9 +74,7 @@ class Balance:
     def table(self) -> dict[str, Any]:
         """The table `torque_balance` of a `model.toml`: the model as coefficients, for `bench replay`; SI."""
         effects = [
-            {"name": term.effect.name, "shape": list(term.shape), "level": list(term.level)}
-            | ({} if term.load is None else {"load": list(term.load)})
-            | {name: list(held) for name, held in (("pull", term.pull), ("around", term.around)) if held}
+            {"name": term.effect.name, "shape": list(term.shape), "on_load": term.on_load, "around": list(term.around)}
             for term in self.hypothesis.terms
         ]
         return {
@@ -95,10 +99,8 @@ class Balance:
             Term(
                 named(str(entry["name"]), f"{where}.effects"),
                 _floats(entry["shape"]),
-                _floats(entry["level"]),
-                _floats(entry["load"]) if "load" in entry else None,
-                _floats(entry.get("pull", [])),
-                _floats(entry.get("around", [])),
+                bool(entry["on_load"]),
+                _floats(entry["around"]),
             )
             for entry in table.get("effects", [])
         )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from bench.axis_kind import COULOMB, INERTIA, VISCOUS
+from bench.axis_kind import COULOMB
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import fit_bare
@@ -14,7 +14,7 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from bench.effects.shape import grid_of
 from bench.fit.fit import _balanced, _own, _taken, fit
-from bench.fit.hypothesis import Hypothesis, Term, with_found_strengths
+from bench.fit.hypothesis import Hypothesis, Term, depended_on
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace
@@ -137,12 +137,10 @@ def test_what_an_effect_would_take_is_what_it_takes_of_rows_that_are_determined(
     assert fitted.worth([drag]) == [pytest.approx(left(beside) - left(more), rel=1e-3)]
 
 
-def test_others_see_strengths_of_dry_friction_as_share_of_coulombs():
-    terms = [
-        Term(catalogue()[name], shape) for name, shape in (("stribeck_friction", (5.0,)), ("cogging_torque", (6.0,)))
-    ]
-    theta, owners = np.array([1e-3, 2e-4, 0.05, 0.02, 0.3, 0.4]), [INERTIA, VISCOUS, COULOMB, 0, 1, 1]
-    found = with_found_strengths(Hypothesis(tuple(terms)), theta, np.array(owners, dtype=object))
-    assert [term.level for term in found.terms] == [(pytest.approx(0.4),), ()]
-    theta[2] = 0.0
-    assert [term.level for term in with_found_strengths(found, theta, np.array(owners, dtype=object)).terms] == [(), ()]
+def test_columns_depend_on_levels_of_dry_friction_over_coulombs_where_an_effect_multiplies_them():
+    shapes = {"stribeck_friction": (5.0,), "position_dependent_friction": (6.0,)}
+    terms = Hypothesis(tuple(Term(catalogue()[name], shape) for name, shape in shapes.items()))
+    found = {COULOMB: [0.05], 0: [0.02], 1: [0.015, 0.02]}
+    assert depended_on(terms, found) == pytest.approx([0.4, 0.3, 0.4])
+    assert depended_on(terms.without(1), found) == []
+    assert depended_on(terms, {**found, COULOMB: [0.0]}) == []

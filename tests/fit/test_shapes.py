@@ -19,7 +19,7 @@ def stribeck(motion):
 
 def test_the_search_of_a_rigid_axis_for_a_coupling_stays_within_numbers():
     rows, term = Rows.of(recorded(moved()), RIG), Term(COUPLING, (100.0, 0.04))
-    (found,) = shaped(rows, Hypothesis((term,)), 0).hypothesis.terms
+    (found,) = shaped(fit(rows, Hypothesis()), Hypothesis((term,)), 0).hypothesis.terms
     for k, (value, start) in enumerate(zip(found.shape, term.shape, strict=True)):
         assert abs(np.log(value / start)) <= FURTHEST * COUPLING.reach(term.shape, k) * (1.0 + 1e-9)
 
@@ -27,7 +27,7 @@ def test_the_search_of_a_rigid_axis_for_a_coupling_stays_within_numbers():
 @pytest.mark.parametrize("start", [1.0, 2.5, 7.0])
 def test_one_shape_is_found_from_either_side(start):
     rows = Rows.of(recorded(moved(), stribeck), RIG)
-    found = shaped(rows, Hypothesis((Term(STRIBECK, (start,)),)), 0)
+    found = shaped(fit(rows, Hypothesis()), Hypothesis((Term(STRIBECK, (start,)),)), 0)
     assert found.hypothesis.terms[0].shape[0] == pytest.approx(4.0, rel=0.05)
     for beside in (0.98, 1.02):
         near = found.hypothesis.reshaped(0, (beside * found.hypothesis.terms[0].shape[0],))
@@ -38,7 +38,7 @@ def test_shapes_searched_together_end_no_higher_than_one_after_the_other():
     """From shapes off by a tenth: derivatives by steps that a fit resolves, not by those of rounding."""
     rows = Rows.of(recorded(moved(), stribeck, wave(0.05, 6.0, 0.3)), RIG)
     fitted = fit(rows, Hypothesis((Term(STRIBECK, (4.6,)), Term(COGGING, (6.0,)))))
-    once = shaped(rows, fitted.hypothesis, 0)
+    once = shaped(fit(rows, Hypothesis()), fitted.hypothesis, 0)
     both = together(fitted)
     assert both.squares <= once.squares * (1.0 + 1e-4)
     assert both.squares < fitted.squares

@@ -39,7 +39,7 @@ def test_a_weak_drift_is_hinted_at():
 def standard_errors(trace):
     """By how many of its own a drift beside the plain axis differs from zero, by plain least squares."""
     fitted = fit(Rows.of(trace, RIG), Hypothesis())
-    drift = lay_out(fitted.rows, Hypothesis((Term(catalogue()["torque_constant_drift"]),)), {0: fitted.left})
+    drift = lay_out(fitted.rows, Hypothesis((Term(catalogue()["torque_constant_drift"]),)), missing={0: fitted.left})
     theta, *_ = np.linalg.lstsq(drift.columns, drift.effort, rcond=None)
     variance = np.linalg.inv(drift.columns.T @ drift.columns)[-1, -1]
     return abs(theta[-1]) / (np.sqrt(variance * fitted.rows.correlation) * fitted.floor)

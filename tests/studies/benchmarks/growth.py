@@ -12,6 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from bench.axis_kind import COULOMB
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from bench.effects.torque import Friction
@@ -137,12 +138,14 @@ def columns(rows: Rows, names: Sequence[str]) -> Layout:
     """Columns of effects at the shapes that they are simulated with."""
     kinds = catalogue()
     terms = []
-    for name in names:
+    found: dict[str | int, list[float]] = {COULOMB: [1.0]}
+    for index, name in enumerate(names):
         effect = kinds[name]
         shape = tuple(shape.grid[len(shape.grid) // 2] if shape.grid else SHAPE for shape in effect.shapes)
         strengths = len(effect.columns(rows.stretches[0].signals, shape)) if isinstance(effect, Friction) else 0
-        terms.append(Term(effect, shape, level=(0.5,) * strengths))
-    return lay_out(replace(rows, memory=Memory()), Hypothesis(tuple(terms)))
+        found[index] = [0.5] * strengths
+        terms.append(Term(effect, shape))
+    return lay_out(replace(rows, memory=Memory()), Hypothesis(tuple(terms)), found)
 
 
 #: Of a shape that has no grid.
