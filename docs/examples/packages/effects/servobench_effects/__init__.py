@@ -1,0 +1,1 @@
+"""Three effects: a torque, a fault of a sensor, a coupling."""

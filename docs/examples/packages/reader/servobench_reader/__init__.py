@@ -1,0 +1,1 @@
+"""A reader of a drive's memory."""
