@@ -267,17 +267,30 @@ def friction(
 
 def limits(
     trace: Annotated[Path, Argument(help="Recording of any known format.")],
-    rig: common.RigOption,
+    rig: common.BesideRigOption = None,
     out: Annotated[Path, Option(help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
     axis_name: common.AxisOption = None,
+    json: common.JsonOption = None,
+    report: common.ReportOption = None,
+    draft: common.DraftOption = None,
 ) -> None:
-    """Draw a recording into its motor's speed-torque diagram; say how much reserve it leaves."""
-    from bench.report.drive import limits as document_of
+    """Draw torque over speed: reserve to the datasheet, or without one the limits that the log runs into."""
+    from bench.report.drive import limits as against_datasheet
+    from bench.report.envelope import envelope_document, envelope_json
+    from bench.rig.envelope import envelope_of
 
-    axis = bench.load_rig(rig).on_axis(axis_name)
-    document = document_of(bench.read(trace, axis.trace), axis)
+    of = common.subject(rig, axis_name, None, None, None, trace, draft)
+    axis, recording = of.rig, of.read(trace)
+    found = envelope_of(recording, axis)
+    if axis.motor.peak_curves:
+        document = against_datasheet(recording, axis)
+    else:
+        ratio = axis.load.gear_ratio if axis.load is not None else 1.0
+        document = envelope_document(found, readable(trace.name), axis.axis_kind, ratio)
     common.write_picture(out, document.pictures[0])
-    common.tell(document, [out])
+    common.write_page(report, document)
+    common.write_json(json, lambda: envelope_json(found, axis.axis_kind))
+    common.tell(document, [out, report, draft], json)
 
 
 def fleet(

@@ -119,9 +119,20 @@ def test_limits_draws_and_states_the_reserve(bench, tmp_path):
     assert ".png" in err
 
 
-def test_limits_names_what_the_rig_lacks(bench, tmp_path):
+def test_limits_without_a_datasheet_are_those_that_the_log_runs_into(bench, tmp_path):
     trace = asset("data", "traces", "JLoadAndFriction.trace")
     (tmp_path / "rig.toml").write_text('name = "a"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\n')
+    status, out, _ = bench("limits", trace, "--rig", "rig.toml")
+    assert status == 0
+    assert "Largest torque?" in out
+
+
+def test_limits_names_what_a_datasheet_lacks(bench, tmp_path):
+    trace = asset("data", "traces", "JLoadAndFriction.trace")
+    values = 'mains_voltage = "230 V"\ncorner_speed = "100 rad/s"\nno_load_speed = "300 rad/s"'
+    curve = f"[[motor.peak_curves]]\n{values}\n"
+    text = f'name = "a"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\n{curve}'
+    (tmp_path / "rig.toml").write_text(text)
     status, _, err = bench("limits", trace, "--rig", "rig.toml")
     assert (status, err.count("\n")) == (2, 1)
     assert "peak_torque" in err
