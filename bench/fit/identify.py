@@ -195,6 +195,8 @@ def _first_moving(
         except UndeterminedError as refusal:
             still.append(gate(part, rig, PARTS))
             refusals.append(refusal)
+    if not refusals:
+        raise InputError("parts of a recording", "found none", "allowed: an iterator over one Trace or more")
     raise refusals[0]
 
 

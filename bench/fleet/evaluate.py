@@ -72,7 +72,9 @@ def evaluate(job: Job) -> Plain:
             digest = sha256(path)
             recording = replace(read_recording(path), origin=CALLED)
             axis = job.axis if job.axis in axes_of(recording.channels) else None
-            found = _found(assemble(recording, job.rig.on_axis(axis).trace), job)
+            trace = assemble(recording, job.rig.on_axis(axis).trace)
+            found = _found(trace, job)
+            found["warnings"] = [*dict.fromkeys((*trace.notes, *found["warnings"]))]
         except RefusedEstimateError as refusal:
             found = {**_estimated(refusal.estimate), **refused(refusal, str(refusal))}
         except BenchError as error:

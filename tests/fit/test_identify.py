@@ -113,6 +113,11 @@ def test_a_recording_may_begin_with_a_part_that_stands_still():
         identify(iter([still, still]), RIG)
 
 
+def test_an_iterator_over_nothing_is_refused_in_one_line():
+    with pytest.raises(InputError, match="found none; allowed: an iterator over one Trace or more"):
+        identify(iter([]), RIG)
+
+
 def test_a_first_part_in_one_direction_leaves_the_offset_to_the_others():
     """What tolerances and cut-off say of the first part holds for the friction that it knows, offset included."""
     truth, rig = Truth(offset=0.02), RIG.model_copy(update={"offset": True})
