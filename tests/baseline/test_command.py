@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -11,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bench.assets import asset
 from bench.cli.common import WRITTEN
 from bench.names import plain
 from bench.report.continuous_integration import MOST, command, xml_text
@@ -245,3 +247,11 @@ def test_any_text_comes_back_from_an_annotation(said, file):
     unescaped = properties["file"].replace("%3A", ":").replace("%2C", ",")
     for coded, plainly in ((message, said), (unescaped, file)):
         assert coded.replace("%0D", "\r").replace("%0A", "\n").replace("%25", "%") == plain(plainly)
+
+
+@pytest.mark.slow
+def test_the_embedded_rig_is_what_it_was(bench):
+    shutil.copy(asset("data", "rigs", "sh30701p.toml"), "lab.toml")
+    baseline = asset("data", "baselines", "sh30701p.toml")
+    bench("simulate", "lab.toml", "--out", "run.csv", "--profile", "speed_staircase", "--seed", "6")
+    assert bench("check", "run.csv", "--rig", "lab.toml", "--baseline", baseline)[0] == 0

@@ -1,10 +1,13 @@
-"""The pages a reader meets, and the commands on them."""
+"""The pages a reader meets, and the commands and examples on them."""
 
 from __future__ import annotations
 
 import re
 import shlex
+from collections.abc import Callable
 from pathlib import Path
+
+from tests.command import Done, bench
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -37,3 +40,31 @@ def spoken(page: str) -> list[str]:
 def bench_commands(page: str) -> list[str]:
     """Those of its blocks that are the bench's own."""
     return [line for line in commands(page) if line.startswith("bench ")]
+
+
+def examples(name: str) -> list[str]:
+    """Blocks of Python on a page."""
+    return re.findall(r"^```python\n(.*?)^```", PAGES[name], re.MULTILINE | re.DOTALL)
+
+
+def run_commands(page: str, change: Callable[[str], str] = str) -> list[Done]:
+    """Run all commands of the bench on a page, in the working folder, which holds what the page supposes.
+
+    Args:
+        page: its text, or a part of it.
+        change: of a command, before it is run; an empty one is not.
+    """
+    done = []
+    for line in filter(None, map(change, bench_commands(page))):
+        done.append(bench(*shlex.split(line)[1:]))
+        assert done[-1].status == 0, f"{line}: {done[-1].err}"
+    assert done, "no command"
+    return done
+
+
+def run_examples(name: str) -> dict:
+    """Run the blocks of Python on a page, in the working folder, one after the other; the names that they make."""
+    names: dict = {}
+    for block in examples(name):
+        exec(compile(block, name, "exec"), names)
+    return names

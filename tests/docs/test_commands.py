@@ -6,14 +6,13 @@ import re
 import shlex
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 import typer
 
 from bench.cli import COMMANDS, app
 from tests.docs.pages import PAGES, ROOT, bench_commands, commands, spoken
-from tests.docs.test_run import RUN_HERE, SLOW
+from tests.docs.test_run import ELSEWHERE, HERE
 
 #: Words in a page's text that stand for what a reader puts in.
 STANDS_FOR = re.compile(r"[A-Z_]{2,}(\.\w+)?|\.\.\.|…")
@@ -89,12 +88,10 @@ def test_tests_that_pages_tell_to_run_are_there():
 
 
 def test_every_block_of_commands_is_run():
-    """Here, or by a test of the page's own, which has the folder and the recordings that the page speaks of."""
-    tests = [path for path in (ROOT / "tests").rglob("test_*.py") if path.parent.name != "docs"]
-    reading = "".join(path.read_text(encoding="utf-8") for path in tests)
-    for name, page in PAGES.items():
-        if bench_commands(page) and name not in {*RUN_HERE, *SLOW}:
-            assert f'"{Path(name).name}"' in reading, f"no test runs the commands of {name}: list it in RUN_HERE"
+    """In `HERE`, or by tests of the page's own, which have the folder and the recordings that the page supposes."""
+    assert {name for name, page in PAGES.items() if bench_commands(page)} == {*HERE, *ELSEWHERE}
+    for name, path in ELSEWHERE.items():
+        assert f'PAGES["{name}"]' in (ROOT / "tests" / path).read_text(encoding="utf-8")
 
 
 def test_the_readme_has_every_command_in_one_table():

@@ -1,34 +1,28 @@
-"""Commands of the pages that have no test of their own run as they stand, in a folder as the page supposes it."""
+"""Commands of the pages run as they stand, each page in a folder as it supposes it; a page has a row in the table."""
 
 import re
-import shlex
 import shutil
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
 import pytest
 
 from bench.assets import asset
 from bench.effects.present import parse_effect
 from bench.plant.simulate import simulate
+from bench.report.publish import read_document
 from bench.rig.rig import load_rig
 from bench.trace.write import write
-from tests.diagnosis.command import started
-from tests.docs.pages import PAGES, bench_commands
+from tests.baseline.test_command import again
+from tests.diagnosis.command import RIG as OWN_RIG
+from tests.docs.pages import PAGES, run_commands, run_examples
 from tests.export.two_links import MJCF, log, write_log
 
-#: Pages that are run here, and those of them that take longer.
-RUN_HERE = (
-    "README.md",
-    "docs/tutorial.md",
-    "docs/identify.md",
-    "docs/diagnose.md",
-    "docs/effects.md",
-    "docs/notebooks/first_model.md",
-    "docs/notebooks/fleet.md",
-)
-SLOW = ("docs/index.md", "docs/lab.md")
-RECORDINGS = ("recording.csv", "monday.csv", "tuesday.csv", "wednesday.csv", "run1.csv", "run2.csv")
 RIG = asset("data", "rigs", "sh30701p.toml")
+RECORDINGS = ("recording.csv", "monday.csv", "tuesday.csv", "wednesday.csv", "run1.csv", "run2.csv")
+DAYS = ("monday", "tuesday", "wednesday", "thursday", "friday", "saturday")
 
 
 @pytest.fixture(scope="module")
@@ -45,31 +39,107 @@ def supposed(tmp_path_factory):
     rows = ["file,rig,axis,time", "run1.csv,rig.toml,press,1", "run2.csv,rig.toml,press,2"]
     (folder / "fleet.csv").write_text("\n".join(rows), encoding="utf-8")
     shutil.copytree(asset("data", "rigs"), folder / "data" / "rigs")
+    shutil.copy(RIG, folder / "rig.toml")
     return folder
 
 
-@pytest.mark.parametrize("page", [*RUN_HERE, pytest.param("docs/index.md", marks=pytest.mark.slow)])
-def test_the_commands_of_a_page_run(page, supposed, tmp_path, monkeypatch):
-    """Monte Carlo with two recordings in the place of many; a draft of a rig is completed by its reader."""
-    folder = tmp_path / "here"
-    shutil.copytree(supposed, folder)
-    monkeypatch.chdir(folder)
-    bench = started(folder)
+def rig_alone():
     shutil.copy(RIG, "rig.toml")
-    for line in bench_commands(PAGES[page]):
-        assert bench(*shlex.split(re.sub(r"--rigs \d+", "--rigs 2", line))[1:]) == 0, line
-        if "--draft" in line:
-            shutil.copy(RIG, "rig.toml")
 
 
-@pytest.mark.slow
-def test_the_commands_of_the_course_run(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    bench = started(tmp_path)
-    axis = load_rig(asset("data", "rigs", "lab.toml"))
-    shutil.copy(RIG, "rig.toml")
+def days():
+    """An axis of one's own, recorded on six days."""
+    Path("rig.toml").write_text(OWN_RIG, encoding="utf-8")
+    for seed, day in enumerate(DAYS):
+        write(again(seed), Path(f"{day}.csv"))
+
+
+def students():
+    rig_alone()
     Path("my_folder").mkdir()
     for name in ("recording.trace", "my_folder/JLoadAndFriction.trace"):
-        write(simulate(axis, "fast_reversals").trace, Path(name))
-    for line in bench_commands(PAGES["docs/lab.md"]):
-        assert bench(*shlex.split(line)[1:]) == 0, line
+        write(simulate(load_rig(asset("data", "rigs", "lab.toml")), "fast_reversals").trace, Path(name))
+
+
+def checked():
+    assert Path("check.json").exists()
+    assert Path("check.xml").exists()
+
+
+def reported():
+    page = read_document(Path("found") / "report.json")
+    assert page.verdict.startswith("Cogging torque was missing")
+    assert "amplitude 0.05" in page.answers["What was missing?"]
+    assert page.tone == "sure"
+    written = ("found/report.html", "result/identification.pdf", "replay.html", "simulated.html", "inspected.html")
+    for path in (*written, "pages.js"):
+        assert Path(path).stat().st_size > 1000
+
+
+def driven():
+    cogging = np.genfromtxt(Path("tables") / "cogging.csv", delimiter=",", names=True)
+    assert np.abs(cogging["torque_Nm"]).max() == pytest.approx(0.05, rel=0.02)
+    motion = np.genfromtxt("motion.csv", delimiter=",", names=True)
+    assert motion["time_s"][-1] > 4.0
+    assert np.diff(motion["time_s"]) == pytest.approx(1e-3)
+    travelled = np.cumsum(motion["velocity_rads"]) * 1e-3
+    np.testing.assert_allclose(motion["position_rad"], travelled, atol=0.1)
+
+
+class Page(NamedTuple):
+    """What a page supposes, None for all that is supposed, and what is there when its commands have run."""
+
+    before: Callable[[], None] | None = None
+    after: Callable[[], None] = lambda: None
+    slow: bool = False
+
+
+HERE = {
+    "README.md": Page(),
+    "docs/check.md": Page(days, checked),
+    "docs/diagnose.md": Page(),
+    "docs/drive.md": Page(rig_alone, driven),
+    "docs/effects.md": Page(),
+    "docs/identify.md": Page(),
+    "docs/index.md": Page(slow=True),
+    "docs/lab.md": Page(students, slow=True),
+    "docs/notebooks/first_model.md": Page(),
+    "docs/notebooks/fleet.md": Page(),
+    "docs/report.md": Page(rig_alone, reported),
+    "docs/tutorial.md": Page(),
+}
+#: Pages of which several tests check what came of the commands, and where those are.
+ELSEWHERE = {
+    "docs/engines.md": "export/test_engines.py",
+    "docs/export.md": "export/test_in_a_robot.py",
+    "docs/fleet.md": "fleet/test_fleet.py",
+    "docs/recordings.md": "test_recordings_manual.py",
+    "docs/robot.md": "joints/test_robot.py",
+    "docs/validate.md": "validation/test_command.py",
+    "docs/view.md": "view/test_manual.py",
+}
+
+
+def brief(line):
+    """Monte Carlo with two recordings in the place of many; a draft is not written over the rig of the next command."""
+    return re.sub(r"--rigs \d+", "--rigs 2", line).replace("--draft rig.toml", "--draft draft.toml")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if page.slow else []) for name, page in HERE.items()]
+)
+def test_the_commands_of_a_page_run(name, supposed, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = HERE[name]
+    if page.before is None:
+        shutil.copytree(supposed, tmp_path, dirs_exist_ok=True)
+    else:
+        page.before()
+    run_commands(PAGES[name], brief)
+    page.after()
+
+
+def test_the_example_of_the_manual_of_reports_writes_a_page(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run_examples("docs/report.md")
+    assert "Nothing has changed." in (tmp_path / "axis7" / "report.html").read_text(encoding="utf-8")

@@ -1,8 +1,6 @@
 """Tables for a drive: what they hold, against closed forms, and how much better an axis tracks that is a little off."""
 
-import shlex
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +12,6 @@ from bench.plant.drive import References
 from bench.plant.plant import Plant
 from bench.plant.profiles import MotionLimits, plan
 from bench.rig.rig import Rig, load_rig
-from tests.diagnosis.command import started
 from tests.effects.axes import PARAMETERS, VALUES, model
 
 RIG = load_rig(asset("data", "rigs", "sh30701p.toml"))
@@ -138,22 +135,3 @@ def test_a_table_is_in_the_units_of_the_drive():
     assert speed == "velocity [rpm],torque [N*m],current [mA]\n0,0,0\n30,0.25,500\n"
     place = units.table("position", units.position, TorqueTable(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
     assert place == "position [deg],torque [N*m],current [mA]\n-180,0.25,500\n-0,0,0\n"
-
-
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "drive.md").read_text(encoding="utf-8")
-
-
-def test_the_pages_commands_run(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    bench = started(tmp_path)
-    (tmp_path / "rig.toml").write_text(asset("data", "rigs", "sh30701p.toml").read_text(encoding="utf-8"))
-    commands = [line for block in PAGE.split("```sh\n")[1:] for line in block.split("```")[0].splitlines()]
-    for command in commands:
-        assert bench(*shlex.split(command)[1:]) == 0, command
-    cogging = np.genfromtxt(tmp_path / "tables" / "cogging.csv", delimiter=",", names=True)
-    assert np.abs(cogging["torque_Nm"]).max() == pytest.approx(0.05, rel=0.02)
-    motion = np.genfromtxt(tmp_path / "motion.csv", delimiter=",", names=True)
-    assert motion["time_s"][-1] > 4.0
-    assert np.diff(motion["time_s"]) == pytest.approx(1e-3)
-    travelled = np.cumsum(motion["velocity_rads"]) * 1e-3
-    np.testing.assert_allclose(motion["position_rad"], travelled, atol=0.1)

@@ -4,9 +4,7 @@ Engines that are not installed are skipped: `pip install mujoco-warp mujoco-mjx 
 tests/export/test_engines.py` (minutes for the first time, as kernels are compiled).
 """
 
-import shlex
 from dataclasses import replace
-from pathlib import Path
 from time import perf_counter
 
 import array_api_strict
@@ -20,8 +18,7 @@ from bench.errors import InputError
 from bench.export.mjcf import onto
 from bench.files import write_text
 from bench.plant.model_file import joints_toml
-from tests.diagnosis.command import started
-from tests.docs.pages import bench_commands
+from tests.docs.pages import PAGES, examples, run_commands
 from tests.effects.axes import VALUES, WINDING
 from tests.export.arms import stored
 from tests.export.two_links import MJCF
@@ -309,9 +306,6 @@ def test_an_export_in_contact_stays_finite_in_single_precision(engine):
     assert np.isfinite(ends).all()
 
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "engines.md").read_text(encoding="utf-8")
-
-
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """What the page supposes: an arm with models put onto it, without cogging, which MJX refuses."""
@@ -327,12 +321,10 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_the_pages_commands_run(folder):
-    run = started(folder)
-    for command in bench_commands(PAGE):
-        assert run(*shlex.split(command)[1:]) == 0, command
+    run_commands(PAGES["docs/engines.md"])
 
 
-BLOCKS = [block.split("```")[0] for block in PAGE.split("```python\n")[1:]]
+BLOCKS = examples("docs/engines.md")
 
 
 @pytest.mark.slow

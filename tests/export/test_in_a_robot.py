@@ -11,19 +11,16 @@ import pytest
 
 from bench.arrays import rms
 from tests.diagnosis.command import started
+from tests.docs.pages import PAGES, run_examples
 from tests.export.held import followed
 from tests.export.two_links import HIDDEN, log, motion, ran, write_log
 from tests.report.test_view_page import floats
-
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
-COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
-EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Where the page's commands have run."""
-    return ran(tmp_path_factory.mktemp("page"), COMMANDS)
+    return ran(tmp_path_factory.mktemp("page"), PAGES["docs/export.md"])
 
 
 def test_the_page_of_a_joint_shows_the_robot_moving(folder):
@@ -76,9 +73,7 @@ def test_the_replay_says_what_is_left(folder):
 
 def test_the_pages_examples_run(folder, monkeypatch):
     monkeypatch.chdir(folder)
-    names = {}
-    for block in EXAMPLES:
-        exec(compile(block, "docs/export.md", "exec"), names)
+    names = run_examples("docs/export.md")
     assert names["data"].qvel[1] != 0.0
     np.testing.assert_allclose(names["batch"].qvel[:, 1], names["batch"].qvel[0, 1])
 

@@ -6,14 +6,12 @@ and nothing of MuJoCo is in the log. Angles are zero where the arm hangs; the el
 
 from __future__ import annotations
 
-import os
-import shlex
+import contextlib
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from tests.diagnosis.command import started
+from tests.docs.pages import run_commands
 
 GRAVITY = 9.81
 #: Upper arm: mass, length, centre, inertia about it; forearm: the same without length.
@@ -109,15 +107,10 @@ def write_log(path, columns):
     return path
 
 
-def ran(folder, commands):
-    """A folder with the arm and its log, in which a page's commands have run."""
-    before = Path.cwd()
+def ran(folder, page):
+    """A folder with the arm and its log, in which the commands of a page have run."""
     (folder / "robot.xml").write_text(MJCF)
     write_log(folder / "log.csv", log())
-    bench = started(folder)
-    try:
-        for command in commands:
-            assert bench(*shlex.split(command)[1:]) == 0, command
-    finally:
-        os.chdir(before)
+    with contextlib.chdir(folder):
+        run_commands(page)
     return folder

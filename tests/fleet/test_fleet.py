@@ -3,10 +3,8 @@
 import json
 import logging
 import re
-import shlex
 import shutil
 from dataclasses import replace
-from pathlib import Path
 
 import fsspec
 import numpy as np
@@ -19,6 +17,7 @@ from bench.jobs.process import Limits
 from bench.trace.write import write
 from tests.command import bench
 from tests.diagnosis.command import RIG
+from tests.docs.pages import PAGES, run_commands
 from tests.fit.motions import NAMES, Truth, recording
 from tests.fleet.made import DAMAGES, fleet_of, missing
 from tests.fleet.storage import Deadly, Never, offer
@@ -215,19 +214,6 @@ def test_effects_are_named_where_that_is_asked_for(tmp_path):
     assert (named.name, named.recordings, named.of, named.since) == ("unbalance", 1, 2, "2026-01-02 06:00:00")
 
 
-def test_what_was_assumed_of_a_units_name_is_a_warning_of_the_row(tmp_path):
-    made = fleet_of(tmp_path / "fleet", axes=1, each=1)
-    trace = recording(np.random.default_rng(0), duration=3.0)
-    columns = trace.time, trace["velocity"], 1e3 * trace["current"]
-    header = "time [s],velocity [rad/s],current [MA]"
-    np.savetxt(made.folder / "press_0_0.csv", np.stack(columns, axis=1), delimiter=",", header=header, comments="")
-    made.rows = [made.rows[0].replace(".csv.gz", ".csv")]
-    fleet(made.write(), tmp_path / "out", workers=1)
-    (row,) = (tmp_path / "out" / "results").iterdir()
-    (told,) = json.loads(next(row.rglob("*.json") if row.is_dir() else iter([row])).read_text("utf-8"))["warnings"]
-    assert "MA taken as mA" in told
-
-
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
@@ -260,22 +246,16 @@ def test_an_output_is_never_an_input(output, tmp_path):
 
 
 def test_the_manuals_commands_run(tmp_path, cluster, monkeypatch):
-    manual = (Path(__file__).resolve().parents[2] / "docs" / "fleet.md").read_text()
-    commands = re.findall(r"^bench .*$", manual, re.MULTILINE)
-    assert len(commands) == 4
+    manual = PAGES["docs/fleet.md"]
     (example,) = re.findall(r"^```csv\n(.*?)^```", manual, re.MULTILINE | re.DOTALL)
     (tmp_path / "fleet.csv").write_text(example)
     (tmp_path / "rig.toml").write_text(RIG)
     for row, line in enumerate(example.splitlines()[1:]):
         write(recording(np.random.default_rng(row), duration=2.0, position=True), tmp_path / line.split(",")[0])
     monkeypatch.chdir(tmp_path)
-    printed = []
-    for command in commands:
-        _, *words = shlex.split(command.replace("tcp://scheduler:8786", cluster.scheduler_address))
-        status, out, _ = bench(*words)
-        assert status == 0
-        printed.append(out)
-    assert any("3 recordings of 2 axes" in out and "3 done" in out for out in printed)
+    done = run_commands(manual, lambda line: line.replace("tcp://scheduler:8786", cluster.scheduler_address))
+    assert len(done) == 4
+    assert any("3 recordings of 2 axes" in one.out and "3 done" in one.out for one in done)
     columns = pq.read_table("result/fleet.parquet").column_names
     for name in re.findall(r"`(\w+)`", manual.partition("fleet.parquet`:")[2].partition("- `results`")[0]):
         assert any(name in column for column in columns), name

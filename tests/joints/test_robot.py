@@ -1,8 +1,6 @@
 """docs/robot.md: every joint of an arm from its log, and what one that fails leaves of the others."""
 
 import json
-import re
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -14,18 +12,17 @@ from bench.errors import InputError
 from bench.joints.identified import JointLogs, identified
 from bench.plant.model_file import load_joints
 from tests.diagnosis.command import started
+from tests.docs.pages import PAGES
 from tests.export.two_links import HIDDEN, MJCF, log, motion, ran, write_log
 from tests.report.test_view_page import floats
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "robot.md").read_text(encoding="utf-8")
-COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
 HAND = '<body name="hand" pos="0 0 -.3"><joint name="wrist" axis="0 1 0"/><geom size=".01" mass="1e-6"/></body>'
 
 
 @pytest.fixture(scope="module")
 def arm(tmp_path_factory):
     """Where the page's commands have run: an arm, its log, and what came of them."""
-    return ran(tmp_path_factory.mktemp("robot.md"), COMMANDS)
+    return ran(tmp_path_factory.mktemp("robot"), PAGES["docs/robot.md"])
 
 
 def test_every_joint_has_its_physics(arm):

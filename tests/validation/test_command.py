@@ -1,37 +1,22 @@
 """The commands of docs/validate.md run as they stand there, and what they write is what the contract says."""
 
+import contextlib
 import json
-import re
-import shlex
-from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
 from pyarrow import csv
 
 from bench.cli import app
-
-MANUAL = (Path(__file__).resolve().parents[2] / "docs" / "validate.md").read_text(encoding="utf-8")
-COMMANDS = [
-    shlex.split(line)[1:]
-    for block in re.findall(r"^```sh\n(.*?)^```", MANUAL, re.MULTILINE | re.DOTALL)
-    for line in block.splitlines()
-]
+from tests.docs.pages import PAGES, run_commands
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     home = tmp_path_factory.mktemp("manual")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(home)
-        for command in COMMANDS:
-            app(command, standalone_mode=False)
+    with contextlib.chdir(home):
+        run_commands(PAGES["docs/validate.md"])
     return home
-
-
-def test_a_command_of_each_kind_is_shown():
-    expected = ["validate", "rigs", "validate", "validate", "simulate", "validate", "validate"]
-    assert [command[0] for command in COMMANDS] == expected
 
 
 def test_the_json_is_the_contracts(folder):
