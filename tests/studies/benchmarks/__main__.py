@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import date
+from functools import partial
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
@@ -81,16 +83,23 @@ def growing() -> list[Table]:
     return measured()
 
 
+def measured_by(module: str) -> list[Table]:
+    """Tables of a module of this package, which is loaded when it measures: `mujoco.sysid` is an extra."""
+    try:
+        return import_module(f"tests.studies.benchmarks.{module}").measured()
+    except ImportError as error:
+        raise typer.BadParameter(f"{error}; pip install -e '.[benchmarks]'") from error
+
+
+Benchmarks = Mapping[str, tuple[str, Callable[[], list[Table]]]]
 #: Headings of the page's sections in their order, and what measures them, by the names of the command line.
-BENCHMARKS: dict[str, tuple[str, Callable[[], list[Table]]]] = {
-    "sysid": ("Identification beside mujoco.sysid", sysid),
-    "lstsq": ("Least squares beside NumPy's", lstsq),
-    "before": ("CPU time of an identification against an earlier version", before),
-    "starting": ("CPU time of whole commands against an earlier version", starting),
-    "stepping": ("Simulation beside bare stepping", stepping),
-    "reading": ("Reading beside pyarrow", reading),
-    "diagnosing": ("CPU time of a diagnosis", diagnosing),
-    "growth": ("Growth with samples, axes and effects", growing),
+BENCHMARKS: Benchmarks = {
+    "sysid": ("Identification beside mujoco.sysid", partial(measured_by, "beside_sysid")),
+    "lstsq": ("Least squares beside NumPy's", partial(measured_by, "beside_lstsq")),
+    "stepping": ("Simulation beside bare stepping", partial(measured_by, "beside_stepping")),
+    "reading": ("Reading beside pyarrow", partial(measured_by, "beside_pyarrow")),
+    "diagnosing": ("CPU time of a diagnosis", partial(measured_by, "diagnosing")),
+    "growth": ("Growth with samples, axes and effects", partial(measured_by, "growth")),
 }
 
 
@@ -107,10 +116,26 @@ def sections(page: str) -> dict[str, str]:
     return {heading: text.strip() for heading, text in parts}
 
 
-def page(known: Mapping[str, str]) -> str:
+def page(known: Mapping[str, str], benchmarks: Benchmarks = BENCHMARKS) -> str:
     """The page of all sections that are known."""
-    headings = [heading for heading, _ in BENCHMARKS.values() if heading in known]
+    headings = [heading for heading, _ in benchmarks.values() if heading in known]
     return INTRODUCTION + "".join(f"\n## {heading}\n\n{known[heading]}\n" for heading in headings)
+
+
+def measure(names: Sequence[str], out: Path | None, benchmarks: Benchmarks = BENCHMARKS) -> None:
+    """Measure some benchmarks, all where none is named; print them, and write their sections of the page."""
+    unknown = sorted(set(names) - set(benchmarks))
+    if unknown:
+        raise typer.BadParameter(f"found {', '.join(unknown)}; allowed: {', '.join(benchmarks)}")
+    wanted = [name for name in benchmarks if name in (names or benchmarks)]
+    for name in track(wanted, console=Console(stderr=True)):
+        heading, measured = benchmarks[name]
+        text = section(measured())
+        typer.echo(f"## {heading}\n\n{text}\n")
+        if out is not None:  # what is measured is kept, whatever comes next
+            path = out / PAGE
+            known = sections(path.read_text(encoding="utf-8")) if path.exists() else {}
+            path.write_text(page({**known, heading: text}, benchmarks), encoding="utf-8")
 
 
 def main(
@@ -118,18 +143,7 @@ def main(
     out: Annotated[Path | None, typer.Option(help=f"Folder of {PAGE}; sections not measured stay.")] = None,
 ) -> None:
     """Measure the bench beside what it is made of and what does the same."""
-    unknown = sorted(set(names or []) - set(BENCHMARKS))
-    if unknown:
-        raise typer.BadParameter(f"found {', '.join(unknown)}; allowed: {', '.join(BENCHMARKS)}")
-    wanted = [name for name in BENCHMARKS if name in (names or BENCHMARKS)]
-    for name in track(wanted, console=Console(stderr=True)):
-        heading, measured = BENCHMARKS[name]
-        text = section(measured())
-        typer.echo(f"## {heading}\n\n{text}\n")
-        if out is not None:  # what is measured is kept, whatever comes next
-            path = out / PAGE
-            known = sections(path.read_text(encoding="utf-8")) if path.exists() else {}
-            path.write_text(page({**known, heading: text}), encoding="utf-8")
+    measure(names or [], out)
 
 
 if __name__ == "__main__":

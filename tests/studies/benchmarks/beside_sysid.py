@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 from mujoco import sysid
+from mujoco.sysid import optimize  # noqa: F401  # an extra of MuJoCo, which hides that it is not there
 
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS

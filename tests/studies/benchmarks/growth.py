@@ -142,8 +142,8 @@ def columns(rows: Rows, names: Sequence[str]) -> Layout:
     for index, name in enumerate(names):
         effect = kinds[name]
         shape = tuple(shape.grid[len(shape.grid) // 2] if shape.grid else SHAPE for shape in effect.shapes)
-        strengths = len(effect.columns(rows.stretches[0].signals, shape)) if isinstance(effect, Friction) else 0
-        found[index] = [0.5] * strengths
+        if isinstance(effect, Friction):
+            found[index] = [0.5] * len(effect.columns(rows.stretches[0].signals, shape))
         terms.append(Term(effect, shape))
     return lay_out(replace(rows, memory=Memory()), Hypothesis(tuple(terms)), found)
 

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+import typer
 
 import bench
 from bench.assets import asset
 from bench.trace.write import write
 from tests.hostile import ROOT
 from tests.studies.benchmarks import __main__ as command
-from tests.studies.benchmarks import beside_lstsq, beside_pyarrow, beside_stepping, diagnosing, growth, starting
+from tests.studies.benchmarks import beside_lstsq, beside_pyarrow, beside_stepping, diagnosing, growth
 from tests.studies.benchmarks.table import Table
 from tests.studies.benchmarks.table import growth as exponents
 from tests.studies.benchmarks.timing import Timed, in_turn
@@ -44,20 +44,6 @@ def test_a_diagnosis_is_timed(tmp_path):
 
 
 @pytest.mark.slow
-def test_beside_an_earlier_commit_both_identify():
-    from tests.studies.benchmarks import beside_before
-
-    (table,) = beside_before.measured(2.0, 1)
-    assert [row[0] for row in table.rows] == [beside_before.BEFORE, "today", "ratio"]
-
-
-@pytest.mark.slow
-def test_whole_commands_are_timed():
-    (table,) = starting.measured(3.0, 1, before=ROOT)
-    assert len(table.rows) == 4
-
-
-@pytest.mark.slow
 def test_beside_sysid_both_find_the_axis():
     pytest.importorskip("tabulate", reason="pip install -e '.[benchmarks]'")
     from tests.studies.benchmarks import beside_sysid
@@ -86,41 +72,28 @@ def test_exponent_of_a_square_is_two():
     assert exponents((1, 10, 1000), (1.0, 100.0, 1e6)) == ("", "2.00", "2.00")
 
 
-@pytest.fixture
-def one_row(monkeypatch):
-    """Two benchmarks that measure nothing; the second one's figure is what a test sets."""
-    figure = ["1.00"]
+def benchmarks(figure):
+    """Two that measure nothing."""
 
     def table():
-        return [Table("Told.", ("", "ratio"), (("a", figure[0]),))]
+        return [Table("Told.", ("", "ratio"), (("a", figure),))]
 
-    monkeypatch.setattr(command, "BENCHMARKS", {"first": ("First", table), "second": ("Second", table)})
-    return figure
-
-
-def run(*arguments):
-    import typer
-
-    app = typer.Typer()
-    app.command()(command.main)
-    return CliRunner().invoke(app, [str(each) for each in arguments])
+    return {"first": ("First", table), "second": ("Second", table)}
 
 
-def test_the_page_holds_what_was_measured_and_keeps_what_was_not(one_row, tmp_path):
-    assert run("--out", tmp_path).exit_code == 0
+def test_the_page_holds_what_was_measured_and_keeps_what_was_not(tmp_path):
+    command.measure([], tmp_path, benchmarks("1.00"))
     whole = (tmp_path / command.PAGE).read_text(encoding="utf-8")
     assert whole.index("## First") < whole.index("## Second")
-    one_row[0] = "2.00"
-    assert run("second", "--out", tmp_path).exit_code == 0
+    command.measure(["second"], tmp_path, benchmarks("2.00"))
     again = command.sections((tmp_path / command.PAGE).read_text(encoding="utf-8"))
     assert "1.00" in again["First"]
     assert "2.00" in again["Second"]
 
 
-def test_an_unknown_name_is_reported(one_row):
-    done = run("third")
-    assert done.exit_code == 2
-    assert "allowed: first, second" in " ".join(done.output.split())
+def test_an_unknown_name_is_reported():
+    with pytest.raises(typer.BadParameter, match="found third; allowed: first, second"):
+        command.measure(["third"], None, benchmarks(""))
 
 
 def test_the_committed_page_is_of_these_benchmarks():
