@@ -214,6 +214,19 @@ def test_effects_are_named_where_that_is_asked_for(tmp_path):
     assert (named.name, named.recordings, named.of, named.since) == ("unbalance", 1, 2, "2026-01-02 06:00:00")
 
 
+def test_what_was_assumed_of_a_units_name_is_a_warning_of_the_row(tmp_path):
+    made = fleet_of(tmp_path / "fleet", axes=1, each=1)
+    trace = recording(np.random.default_rng(0), duration=3.0)
+    columns = trace.time, trace["velocity"], 1e3 * trace["current"]
+    header = "time [s],velocity [rad/s],current [MA]"
+    np.savetxt(made.folder / "press_0_0.csv", np.stack(columns, axis=1), delimiter=",", header=header, comments="")
+    made.rows = [made.rows[0].replace(".csv.gz", ".csv")]
+    fleet(made.write(), tmp_path / "out", workers=1)
+    (row,) = (tmp_path / "out" / "results").iterdir()
+    (told,) = json.loads(next(row.rglob("*.json") if row.is_dir() else iter([row])).read_text("utf-8"))["warnings"]
+    assert "MA taken as mA" in told
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
