@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from bench.diagnosis.replay import replay
     from bench.export.effects import Effects
     from bench.fit.estimate import Estimate
+    from bench.fit.frequency_response import frequency_response
     from bench.fit.identify import identify
     from bench.joints.robot import IdentifiedRobot, robot
     from bench.plant.simulate import simulate
@@ -36,6 +37,7 @@ __all__ = [
     "__version__",
     "check",
     "diagnose",
+    "frequency_response",
     "identify",
     "load_rig",
     "read",
@@ -56,6 +58,7 @@ _MODULES = {
     "Trace": "bench.trace.trace",
     "check": "bench.baseline.check",
     "diagnose": "bench.diagnosis.diagnosis",
+    "frequency_response": "bench.fit.frequency_response",
     "identify": "bench.fit.identify",
     "load_rig": "bench.rig.rig",
     "read": "bench.trace.read",

@@ -166,7 +166,9 @@ def diagnose(
         recordings = [read(trace) for trace in traces]
         found = bench.diagnose(recordings, axis, other, excluded, done)
     basis = of.provenance(traces, {"without": sorted(excluded)}, holdout)
-    moving = [] if out is None else _moving(found, of, traces[0], recordings[0])
+    moving = (
+        [] if out is None else [*_frequency(found, recordings[0], axis), *_moving(found, of, traces[0], recordings[0])]
+    )
     document = diagnosis(found, f"{axis.name}: {names}", basis, moving)
     common.deliver(document, lambda: diagnosis_json(found, basis), json, out, f".{figures}", found)
 
@@ -226,6 +228,16 @@ def _carried(text: str | None) -> AddedBody | str | None:
     if len(centre) != 3:
         raise InputError(where, f"found {len(centre)} coordinates", "allowed: BODY=2.8kg@x,y,z, in m")
     return AddedBody(body, parse_value(mass, "kg", where), (centre[0], centre[1], centre[2]))
+
+
+def _frequency(found: bench.Diagnosis, trace: bench.Trace, rig: bench.Rig) -> list[Section]:
+    """The frequency response of the first recording; none where it excites too few frequencies."""
+    from bench.fit.frequency_response import frequency_response
+    from bench.report.frequency_response import frequency_section
+
+    response = frequency_response(trace, rig)
+    model = None if found.model is None else found.model.model
+    return [] if response is None else [frequency_section(response, model, rig.axis_kind)]
 
 
 def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) -> list[Section]:

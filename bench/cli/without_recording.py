@@ -75,6 +75,7 @@ def plan(
         str | None, Option("--for", help="NAME:key=value,... of an effect to determine; see bench effects.")
     ] = None,
     period: Annotated[float, Option(help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
+    profile: Annotated[str | None, common.profile_option("This one, not the best:")] = None,
 ) -> None:
     """Plan the motion to record inside the rig's limits: the one that tells best, and how well it will."""
     from bench.effects.present import parse_effect
@@ -89,7 +90,7 @@ def plan(
     units = DriveUnits.of(axis)
     effect = None if wanted is None else parse_effect(wanted, axis.axis_kind)
     with progress(f"planning for {axis.name}"):
-        found = motions(axis, effect)
+        found = motions(axis, effect, profile)
     best = found[0]
     counted = ((unit.text, unit.factor) for unit in (units.position, units.velocity))
     write_text(out, best.motion.csv(period * 1e-3, *counted))

@@ -54,15 +54,15 @@ class PlannedMotion:
         return max((share for share in shares if np.isfinite(share)), default=np.inf) if not self.reason else np.inf
 
 
-def motions(rig: Rig, wanted: Present | None = None) -> list[PlannedMotion]:
-    """Every profile that the rig can follow, the most accurate first.
+def motions(rig: Rig, wanted: Present | None = None, profile: str | None = None) -> list[PlannedMotion]:
+    """Every profile that the rig can follow, or one, the most accurate first.
 
     Args:
         rig: with `[drive]` and `[simulation]`, which is what is expected of axis and sensors.
         wanted: an effect that is to be determined, as strong as it may be; None: inertia and friction are.
 
     Raises:
-        InputError: the rig lacks what a simulation needs, or no torque balance tells the effect.
+        InputError: the rig lacks what a simulation needs, no such profile, or no torque balance tells the effect.
         UndeterminedError: no profile tells what is wanted.
     """
     effects = [] if wanted is None else [wanted]
@@ -72,7 +72,7 @@ def motions(rig: Rig, wanted: Present | None = None) -> list[PlannedMotion]:
     if effect is not None and not (isinstance(effect, Columns) or effect.shapes):
         raise InputError(f"--for {effect.name}", "is none of the torque balance", "allowed: an effect that has columns")
     found = []
-    for name in PLANNED:
+    for name in PLANNED if profile is None else [profile]:
         once = plan(name, limits)
         motion = once.repeated(math.ceil(LONG_ENOUGH / float(once.time[-1])))
         trace = simulate(rig, name, references=motion, effects=effects).trace

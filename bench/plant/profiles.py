@@ -39,7 +39,9 @@ OVERDEMAND_RAMP, AT_TOP = 8.0, 0.2
 SLOW_SPEED, SLOW_ACCELERATION = 0.04, 0.05
 #: Multisine: duration - s, harmonics of its inverse, and the power of frequency that amplitudes of angle fall with.
 MULTISINE_DURATION, HARMONICS, FALL = 1.5, (1, 2, 3, 5, 8, 12, 18, 27, 40), 1.5
-#: Share of the multisine over which it fades in, and out.
+#: Chirp: duration - s -, first and last frequency - Hz.
+CHIRP_DURATION, CHIRP = 5.0, (1.0, 120.0)
+#: Share of the multisine, or of the chirp, over which it fades in, and out.
 FADE = 0.15
 #: Ticks of a motion: 20 minutes of a drive that ticks every 250 us; all signals of one take 0.5 GB.
 MOST_TICKS = 5e6
@@ -137,10 +139,22 @@ def multisine(limits: MotionLimits) -> References:
     x = (amplitude * np.sin(phase)).sum(axis=0)
     v = (amplitude * frequency * np.cos(phase)).sum(axis=0)
     a = (-amplitude * frequency**2 * np.sin(phase)).sum(axis=0)
-    w, dw, ddw = _fade(time / time[-1], 1.0 / time[-1])
-    x, v, a = w * x, dw * x + w * v, ddw * x + 2.0 * dw * v + w * a
-    scale = min(limits.speed / np.abs(v).max(), limits.acceleration / np.abs(a).max())
-    return References(time, scale * x, scale * v, scale * a)
+    return _faded(limits, time, x, v, a)
+
+
+def chirp(limits: MotionLimits) -> References:
+    """A sine whose frequency rises, faded in and out: the frequency response of a flexible axis.
+
+    x = g*sin(p), g = f**-FALL, f = f1*(f2/f1)**(t/T), dp/dt = 2*pi*f.
+    """
+    time = limits.period * np.arange(round(CHIRP_DURATION / limits.period) + 1, dtype=np.float64)
+    rate = math.log(CHIRP[1] / CHIRP[0]) / CHIRP_DURATION
+    omega = 2.0 * np.pi * CHIRP[0] * np.exp(rate * time)
+    g, falls = omega**-FALL, -FALL * rate
+    sine, cosine = np.sin((omega - omega[0]) / rate), np.cos((omega - omega[0]) / rate)
+    v = g * (falls * sine + omega * cosine)
+    a = g * ((falls**2 - omega**2) * sine + (2.0 * falls + rate) * omega * cosine)
+    return _faded(limits, time, g * sine, v, a)
 
 
 def identification(limits: MotionLimits) -> References:
@@ -151,7 +165,7 @@ def identification(limits: MotionLimits) -> References:
 
 PROFILES: dict[str, Profile] = {
     profile.__name__: profile
-    for profile in (identification, fast_reversals, full_torque, speed_staircase, slow_reversals, multisine)
+    for profile in (identification, fast_reversals, full_torque, speed_staircase, slow_reversals, multisine, chirp)
 }
 
 
@@ -165,6 +179,14 @@ def plan(name: str, limits: MotionLimits) -> References:
         limits = replace(limits, speed=0.9 * limits.speed)
         references = PROFILES[name](limits)
     return references
+
+
+def _faded(limits: MotionLimits, time: np.ndarray, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> References:
+    """A motion faded in and out, as large as the limits allow."""
+    w, dw, ddw = _fade(time / time[-1], 1.0 / time[-1])
+    x, v, a = w * x, dw * x + w * v, ddw * x + 2.0 * dw * v + w * a
+    scale = min(limits.speed / np.abs(v).max(), limits.acceleration / np.abs(a).max())
+    return References(time, scale * x, scale * v, scale * a)
 
 
 def _fade(share: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
