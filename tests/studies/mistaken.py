@@ -27,6 +27,7 @@ from bench.course.catapult import fly
 from tests.command import bench
 from tests.course.conftest import SLOW
 from tests.course.mistakes import MISTAKES, Folder, done_by_the_command, recorded_in, wrong_numbers
+from tests.studies.frame import table
 
 #: Axes that mistakes are spread over.
 AXES = 10
@@ -89,19 +90,19 @@ def measured(count, pairs, seed, say=print):
     return rows
 
 
-def table(rows):
+def by_mistake(rows):
     """Markdown: of each mistake alone how many, how many with a wrong number, how many named; of pairs in all."""
     found = defaultdict(list)
     for names, wrong, named in rows:
         found[names[0] if len(names) == 1 else "two at random"].append((bool(wrong), all(named), any(named)))
-    lines = ["| mistake | recordings | wrong number done | named | one of them named |", "|---|---|---|---|---|"]
+    lines = []
     for name, results in sorted(found.items(), key=lambda item: (item[0] == "two at random", item[0])):
         wrong, every, one = (sum(column) for column in zip(*results, strict=True))
         last = one if name == "two at random" else ""
-        lines.append(f"| {name.replace('_', ' ')} | {len(results)} | {wrong} | {every} | {last} |")
+        lines.append((name.replace("_", " "), len(results), wrong, every, last))
     single = [(bool(wrong), all(named)) for names, wrong, named in rows if len(names) == 1]
-    lines.append(f"| **all single** | {len(single)} | {sum(w for w, _ in single)} | {sum(t for _, t in single)} | |")
-    return "\n".join(lines) + "\n"
+    lines.append(("**all single**", len(single), sum(w for w, _ in single), sum(t for _, t in single), ""))
+    return table(("mistake", "recordings", "wrong number done", "named", "one of them named"), lines) + "\n"
 
 
 def main():
@@ -112,7 +113,7 @@ def main():
     parser.add_argument("--seed", type=int, default=25, help="of axes, mistakes and strengths")
     parser.add_argument("--out", type=Path, help="file for the table")
     given = parser.parse_args()
-    text = table(measured(given.count, given.pairs, given.seed))
+    text = by_mistake(measured(given.count, given.pairs, given.seed))
     print(text)
     if given.out:
         command = f"python -m tests.studies.mistaken --count {given.count} --pairs {given.pairs} --seed {given.seed}"

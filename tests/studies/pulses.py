@@ -18,9 +18,9 @@ from scipy.ndimage import minimum_filter1d
 from scipy.signal import butter, sosfiltfilt
 
 import bench
-from bench.files import write_text
 from bench.plant.robot import Robot, joint_rig, read_log
 from tests.export.two_links import MJCF, Hidden, log, motion, write_log
+from tests.studies.frame import publish, table
 
 #: The elbow without cogging: what is left is the misfit alone.
 PLAIN = Hidden(cogging=0.0)
@@ -98,7 +98,7 @@ def reported_push(number: int, pushed: bool, folder: Path, floors: float = FLOOR
     return ReportedPush(true, reported, found.verdict, gap[1] / found.torque.noise_floor)
 
 
-def table(pushed: list[ReportedPush], twins: list[ReportedPush], command: str) -> str:
+def markdown(pushed: list[ReportedPush], twins: list[ReportedPush], command: str) -> str:
     """The page."""
     found, right = (sum(getattr(one, what) for one in pushed) for what in ("found", "right"))
     sizes, late = ([getattr(one, what) for one in pushed if one.found] for what in ("size", "late"))
@@ -116,8 +116,7 @@ def table(pushed: list[ReportedPush], twins: list[ReportedPush], command: str) -
     ]
     about = (__doc__ or "").partition("\n\n")[2].splitlines()
     lines = ["# Short pushes beside another misfit", "", f"`{command}`", "", *about]
-    lines += ["", "| | |", "|---|---|", *(f"| {what} | {value} |" for what, value in rows), ""]
-    return "\n".join(lines)
+    return "\n".join([*lines, "", table(("", ""), rows), ""])
 
 
 def main(
@@ -132,10 +131,9 @@ def main(
             pushed.append(reported_push(number, True, Path(folder), floors))
             twins.append(reported_push(number, False, Path(folder), floors))
             typer.echo(f"{number}: {pushed[-1]}\n    twin: {twins[-1]}")
-    text = table(pushed, twins, f"python -m tests.studies.pulses --logs {logs} --floors {floors:g}")
+    text = markdown(pushed, twins, f"python -m tests.studies.pulses --logs {logs} --floors {floors:g}")
     typer.echo(text)
-    if out is not None:
-        write_text(out / "pushes.md", text)
+    publish(out, {"pushes.md": text})
 
 
 if __name__ == "__main__":

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from fnmatch import fnmatch
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import Progress
 
 from bench.report.diagnosis import diagnosis
 from bench.report.terminal import show as show_document
@@ -23,38 +17,24 @@ from tests.studies.blind.record import home, recorded, truth_of
 from tests.studies.blind.run import diagnosis_of, outcome
 from tests.studies.blind.score import Score, score, twins
 from tests.studies.blind.table import cases_csv, headline, markdown, wrong
+from tests.studies.frame import publish, running
 
 Count = Annotated[int, typer.Option(min=0)]
-
-
-@contextmanager
-def workers(jobs: int) -> Iterator[Executor]:
-    """Processes with one numeric thread each; several would fight over the cores."""
-    os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
-    with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
-        yield pool
 
 
 def scored(
     folder: Path, drawn: list[Drawn], seed: int, jobs: int, without_truth: bool = False, show: bool = True
 ) -> list[Score]:
     """Record what is missing, diagnose all, judge them; in the order drawn."""
-    scores: dict[str, Score] = {}
-    with workers(jobs) as pool, Progress(console=Console(stderr=True), disable=not show) as progress:
-        bar = progress.add_task("recording", total=len(drawn))
-        for done in recorded(folder, drawn, seed, pool):
-            progress.advance(bar, done)
-        truths = {case.name: truth_of(folder, case.name) for case in drawn}
-        bar = progress.add_task("diagnosing", total=len(drawn))
-        tasks = {
-            pool.submit(outcome, folder / name, left_out(truth["effects"], without_truth)): name
-            for name, truth in truths.items()
-        }
-        for task in as_completed(tasks):
-            name = tasks[task]
-            scores[name] = score(name, truths[name], task.result(), without_truth)
-            progress.advance(bar)
-    return [scores[case.name] for case in drawn]
+    with running(jobs, show) as run:
+        run.counted("recording", len(drawn), recorded(folder, drawn, seed, run.pool))
+        truths = [truth_of(folder, case.name) for case in drawn]
+        asked = [
+            (folder / case.name, left_out(truth["effects"], without_truth))
+            for case, truth in zip(drawn, truths, strict=True)
+        ]
+        outcomes = run.each("diagnosing", outcome, asked)
+    return [score(case.name, *one, without_truth) for case, *one in zip(drawn, truths, outcomes, strict=True)]
 
 
 def left_out(effects: list[str], without_truth: bool) -> frozenset[str]:
@@ -126,8 +106,7 @@ def write(out: Path, scores: list[Score], command: str, seed: int, without_truth
     out.mkdir(parents=True, exist_ok=True)
     what = "with the hidden effect taken out of the catalogue" if without_truth else "all effects in the catalogue"
     save_confusion(out / "confusion.png", scores, f"Blind set, seed {seed}: {what}", without_truth)
-    (out / "table.md").write_text(markdown(scores, f"Blind set, {what}", command), encoding="utf-8")
-    (out / "cases.csv").write_text(cases_csv(scores), encoding="utf-8")
+    publish(out, {"table.md": markdown(scores, f"Blind set, {what}", command), "cases.csv": cases_csv(scores)})
 
 
 if __name__ == "__main__":

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Sequence
 from statistics import median
 
@@ -11,6 +9,7 @@ from bench.validation.independent.effects import CATALOGUE
 from tests.studies.blind.draw import STRENGTHS
 from tests.studies.blind.parameters import ANGLES, WHOLE, Compared
 from tests.studies.blind.score import Score, same, twins
+from tests.studies.frame import csv_of, table
 
 #: Truth's residual over what sensor noise makes of it, below which no noise floor could show the effect.
 VISIBLE = 1.12
@@ -46,7 +45,7 @@ def headline(scores: Sequence[Score]) -> str:
         ("refused", ratio(scores, lambda s: bool(s.outcome.refused))),
         ("seconds a case, median and most", seconds(scores)),
     ]
-    return "| what | |\n|---|---|\n" + "\n".join(f"| {name} | {value} |" for name, value in lines)
+    return table(("what", ""), lines)
 
 
 def abstention(scores: Sequence[Score]) -> list[tuple[str, str]]:
@@ -161,22 +160,23 @@ def by_strength(scores: Sequence[Score]) -> str:
     singles = [score for score in scores if score.group == "single"]
     if not singles:
         return ""
-    rows = ["| hidden | " + " | ".join(STRENGTHS) + " | above noise | J error % | gap closed |", "|---" * 7 + "|"]
+    rows = []
     for effect in CATALOGUE:
         those = [score for score in singles if score.hidden == effect]
         cells = [ratio([s for s in those if s.truth["strength"] == strength]) for strength in STRENGTHS]
         visible = [s for s in those if s.truth["residual_ratio"] > VISIBLE]
         error = middle([100.0 * abs(s.inertia_error) for s in those], ".3f")
         cells += [ratio(visible), error, middle([s.closed for s in those], ".2f")]
-        rows.append(f"| {effect} | " + " | ".join(cells) + " |")
+        rows.append((effect, *cells))
     totals = [ratio([s for s in singles if s.truth["strength"] == strength]) for strength in STRENGTHS]
     totals.append(ratio([s for s in singles if s.truth["residual_ratio"] > VISIBLE]))
-    rows.append("| **all** | " + " | ".join(totals) + " | | |")
+    rows.append(("**all**", *totals, "", ""))
     note = (
         f"Above noise: those whose truth leaves more than {VISIBLE} times of what the sensors' noise alone would leave "
         "in the torque balance of J, K_w, K_0. All cases count in the figures above."
     )
-    return "## By effect and strength\n\n" + "\n".join(rows) + "\n\n" + note
+    heads = ("hidden", *STRENGTHS, "above noise", "J error %", "gap closed")
+    return "## By effect and strength\n\n" + table(heads, rows) + "\n\n" + note
 
 
 def coverage(scores: Sequence[Score]) -> str:
@@ -188,15 +188,16 @@ def coverage(scores: Sequence[Score]) -> str:
                 found.setdefault((effect, key), []).append(one)
     if not found:
         return ""
-    rows = ["| hidden | quantity | truth within interval | error, median | furthest, half widths |", "|---" * 5 + "|"]
+    rows = []
     order = list(CATALOGUE)
     for (effect, key), those in sorted(found.items(), key=lambda item: order.index(item[0][0])):
         error = middle([one.error * (1.0 if key in ANGLES else 100.0) for one in those], ".2g")
         unit = "" if error == "-" else " rad" if key in ANGLES else " %"
         furthest = "" if key in WHOLE else f"{max(one.half_widths for one in those):.1f}"
         within = f"{sum(one.inside for one in those)}/{len(those)}"
-        rows.append(f"| {effect} | {key} | {within} | {error}{unit} | {furthest} |")
-    return "## Quantities\n\n" + "\n".join(rows)
+        rows.append((effect, key, within, f"{error}{unit}", furthest))
+    heads = ("hidden", "quantity", "truth within interval", "error, median", "furthest, half widths")
+    return "## Quantities\n\n" + table(heads, rows)
 
 
 def wrong(scores: Sequence[Score]) -> str:
@@ -204,7 +205,7 @@ def wrong(scores: Sequence[Score]) -> str:
     bad = [score for score in scores if not score.right]
     if not bad:
         return ""
-    rows = ["| case | hidden | severity | above noise | named | verdict | chi |", "|---" * 7 + "|"]
+    rows = []
     for score in bad:
         said = score.outcome.refused or score.outcome.verdict
         before, after = score.outcome.chi
@@ -217,19 +218,18 @@ def wrong(scores: Sequence[Score]) -> str:
             said,
             f"{before:.2f} -> {after:.2f}",
         )
-        rows.append("| " + " | ".join(cells) + " |")
-    return "## Not right\n\n" + "\n".join(rows)
+        rows.append(cells)
+    heads = ("case", "hidden", "severity", "above noise", "named", "verdict", "chi")
+    return "## Not right\n\n" + table(heads, rows)
 
 
 def cases_csv(scores: Sequence[Score]) -> str:
     """One line a case."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(HEADINGS)
+    rows = []
     for score in scores:
         truth, outcome = score.truth, score.outcome
         quantities = [(f"{e}.{key}", one) for e, those in score.quantities.items() for key, one in those.items()]
-        writer.writerow(
+        rows.append(
             (
                 score.name,
                 score.hidden,
@@ -251,4 +251,4 @@ def cases_csv(scores: Sequence[Score]) -> str:
                 outcome.refused,
             )
         )
-    return text.getvalue()
+    return csv_of(HEADINGS, rows)

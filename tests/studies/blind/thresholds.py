@@ -7,14 +7,11 @@ threshold of its own and is left out for its time.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.progress import Progress
 
 from bench.diagnosis.policy import POLICY, Policy
 from bench.diagnosis.probability import Contender, probabilities, weighed
@@ -26,11 +23,11 @@ from bench.fit.fit import Fit
 from bench.rig.rig import load_rig
 from bench.trace.read import read
 from bench.validation.independent.effects import CATALOGUE
-from tests.studies.blind.__main__ import workers
 from tests.studies.blind.draw import Drawn, draw
 from tests.studies.blind.record import home, recorded, truth_of
 from tests.studies.blind.score import same
 from tests.studies.blind.variants import FACTORS, Threshold, thresholds
+from tests.studies.frame import publish, running, table
 
 COUNTS = {"single": 252, "pair": 60, "null": 100, "outside": 32}
 AS_IS = "as is"
@@ -124,9 +121,9 @@ def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, N
     for each in thresholds():
         others = {factor: tally(key(each, factor)) for factor in each.factors}
         idle = " (changes nothing here)" if all(other == as_is for other in others.values()) else ""
-        cells = " | ".join(str(others.get(factor, "")) for factor in FACTORS)
+        cells = [others.get(factor, "") for factor in FACTORS]
         owner = each.owner.rpartition(".")[2].partition(":")[0]
-        rows.append(f"| {owner}.{each.name} | {each.value:g} | {each.decides}{idle} | {as_is} | {cells} |")
+        rows.append((f"{owner}.{each.name}", f"{each.value:g}", f"{each.decides}{idle}", as_is, *cells))
     lines = [
         "# Thresholds",
         "",
@@ -135,9 +132,7 @@ def markdown(truths: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, N
         "Counts: singles, pairs, nulls and cases outside the catalogue that are right,",
         f"of {', '.join(map(str, cases))}; then cases with a wrong name. Names before held-out motion judges them.",
         "",
-        "| threshold | value | what it decides | as is | off | half | double |",
-        "|---|---|---|---|---|---|---|",
-        *rows,
+        table(("threshold", "value", "what it decides", "as is", *FACTORS), rows),
     ]
     return "\n".join(lines) + "\n"
 
@@ -152,21 +147,14 @@ def main(
 ) -> None:
     """Halve and double each threshold that decides on names, and count what becomes of the blind set."""
     drawn, folder = sample(seed, duration, one_in)[:most], home(seed, duration, None)
-    with workers(jobs) as pool, Progress(console=Console(stderr=True)) as progress:
-        bar = progress.add_task("recording", total=len(drawn))
-        for done in recorded(folder, drawn, seed, pool):
-            progress.advance(bar, done)
-        bar = progress.add_task("naming", total=len(drawn))
-        tasks = {case.name: pool.submit(variants_of, folder / case.name) for case in drawn}
-        for _ in as_completed(tasks.values()):
-            progress.advance(bar)
+    with running(jobs) as run:
+        run.counted("recording", len(drawn), recorded(folder, drawn, seed, run.pool))
+        found = run.each("naming", variants_of, [(folder / case.name,) for case in drawn])
     truths = [truth_of(folder, case.name) for case in drawn]
     command = f"python -m tests.studies.blind.thresholds --one-in {one_in} --seed {seed} --duration {duration:g}"
-    text = markdown(truths, [tasks[case.name].result() for case in drawn], command)
+    text = markdown(truths, found, command)
     typer.echo(text)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "thresholds.md").write_text(text, encoding="utf-8")
+    publish(out, {"thresholds.md": text})
 
 
 if __name__ == "__main__":

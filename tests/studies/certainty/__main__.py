@@ -10,15 +10,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import as_completed
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
-from rich.console import Console
-from rich.progress import Progress
 from scipy.optimize import minimize
 
 from bench.arrays import Array
@@ -26,9 +23,9 @@ from bench.diagnosis.policy import POLICY
 from bench.diagnosis.probability import LEAST, MUCH
 from bench.effects.catalogue import catalogue
 from bench.files import write_text
-from tests.studies.blind.__main__ import workers
 from tests.studies.blind.score import same
 from tests.studies.certainty.features import Hypothesis, Known, folders, kept, known
+from tests.studies.frame import publish, running
 
 WEIGHTS = ("left", "over", "number", "outside", "none")
 #: Of the squares of weights in the loss: they stay finite where cases are separated without an error.
@@ -188,12 +185,8 @@ def main(
     if not features.exists():
         asked = [(case, False) for case in folders(sets)]
         asked += [(case, True) for home in sets for case in folders([home])[::2] if has_truth(case)]
-        with workers(jobs) as pool, Progress(console=Console(stderr=True)) as progress:
-            bar = progress.add_task("hypotheses", total=len(asked))
-            tasks = [pool.submit(known, *each) for each in asked]
-            for _ in as_completed(tasks):
-                progress.advance(bar)
-        found = [asdict(case) for task in tasks if (case := task.result()) is not None]
+        with running(jobs) as run:
+            found = [asdict(case) for case in run.each("hypotheses", known, asked) if case is not None]
         write_text(features, json.dumps(found))
     cases = kept(features)
     start = {name: getattr(POLICY, name) for name in WEIGHTS}
@@ -201,8 +194,7 @@ def main(
     command = f"python -m tests.studies.certainty {' '.join(home.name for home in sets)} --features {features.name}"
     text = markdown(cases, weights, command)
     typer.echo(text)
-    if out is not None:
-        write_text(out / "certainty.md", text)
+    publish(out, {"certainty.md": text})
 
 
 def has_truth(case: Path) -> bool:

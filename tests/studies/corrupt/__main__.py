@@ -17,6 +17,7 @@ from bench.gate.gate import warnings_of
 from bench.rig.rig import Rig
 from tests.fit.motions import Truth, recording
 from tests.studies.corrupt import files, signals
+from tests.studies.frame import table
 
 #: An inertia beyond this share of the true one is wrong.
 WRONG = 0.02
@@ -81,26 +82,24 @@ def main(
             found[kind][what] += 1
             if verbose:
                 typer.echo(f"{kind}: {what} {line[:200]}")
-    text = table(found, recordings)
+    text = markdown(found, recordings)
     typer.echo(text)
     if out is not None:
         out.write_text(text, encoding="utf-8")
 
 
-def table(found: dict[str, Counter[str]], recordings: int) -> str:
+def markdown(found: dict[str, Counter[str]], recordings: int) -> str:
     """Markdown of the outcomes."""
     every = sum(found.values(), Counter[str]())
     hidden = sum((found[kind] for kind in found if kind in signals.OF_ANOTHER_AXIS), Counter[str]())
     seen = recordings - hidden.total()
-    rows = [f"| {kind} | " + " | ".join(str(one[what]) for what in OUTCOMES) + " |" for kind, one in found.items()]
+    rows = [(kind, *(one[what] for what in OUTCOMES)) for kind, one in found.items()]
     lines = [
         f"{recordings} recordings, {len(found)} kinds: {', '.join(f'{every[what]} {what}' for what in OUTCOMES)}.",
         f"Wrong without a word: {every['wrong'] - hidden['wrong']} of {seen}, "
         f"and {hidden['wrong']} of {hidden.total()} that are what another axis would give.",
         "",
-        f"| kind | {' | '.join(OUTCOMES)} |",
-        "|---|---|---|---|---|",
-        *rows,
+        table(("kind", *OUTCOMES), rows),
     ]
     return "\n".join(lines) + "\n"
 

@@ -27,6 +27,7 @@ from tests.studies.false_alarms.draw import (
 )
 from tests.studies.false_alarms.run import SHOWN, Answers, allows, answer, observed
 from tests.studies.false_alarms.table import markdown
+from tests.studies.frame import publish
 
 #: Spread between recordings in their own errors.
 SPREADS = {"none": 0.0, "small": 1.0 / 3.0, "equal to within": 1.0}
@@ -101,9 +102,7 @@ def main(
 
     def table() -> str:
         text = markdown(parts, f"python -m tests.studies.false_alarms {counts}")
-        if out is not None:
-            out.mkdir(parents=True, exist_ok=True)
-            (out / "table.md").write_text(text, encoding="utf-8")
+        publish(out, {"table.md": text})
         return text
 
     for names, number, how in ((False, changed, "without names"), (True, named, "with names")):

@@ -17,9 +17,9 @@ from scipy.stats import binomtest
 
 from bench.baseline.check import Checked
 from bench.baseline.state import TORQUE_GAP
-from bench.files import write_text
 from tests.studies.false_alarms.draw import Again, Drawn, as_it_was, drawn, recorded, rigs, smaller, with_effect
 from tests.studies.false_alarms.run import answer, observed
+from tests.studies.frame import publish, table
 
 #: Shares by which one of the two motions is smaller.
 DIFFER = (0.0, 0.05, 0.15, 0.3)
@@ -31,6 +31,8 @@ RISES = 5.0
 BATCH = 125
 #: Whether the fault appears, and what that is called.
 SETS = ((True, "a weak fault appears"), (False, "a weak fault is there all along"))
+HEADS = ("what", "one motion smaller by", "checks", "refused", "same", "undecided", "changed", "share", "rises")
+HEADS += ("of these changed",)
 NOTE = f"""Recordings of the independent integrator, 4 s each, parameters and torque gap without names.
 `rises`: checks in which the torque gap is {RISES:g} times the baseline's or more. Bounds are Clopper and Pearson's
 at 95 %."""
@@ -77,19 +79,7 @@ def main(
     axes: int = 125, seed: int = 1, out: Annotated[Path | None, typer.Option(help="Folder for motion.md.")] = None
 ) -> None:
     """Check them all; print and write the table."""
-    heads = (
-        "what",
-        "one motion smaller by",
-        "checks",
-        "refused",
-        "same",
-        "undecided",
-        "changed",
-        "share",
-        "rises",
-        "of these changed",
-    )
-    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    lines: list[list[object]] = []
     command = f"python -m tests.studies.false_alarms.motion --axes {axes} --seed {seed}"
     called: Counter[str] = Counter()
     for appears, what in SETS:
@@ -100,14 +90,12 @@ def main(
             answered = sum(found[result] for result in ("same", "undecided", "changed"))
             counts = [found[result] for result in ("refused", "same", "undecided", "changed")]
             rises = [found["rises"], share(found["rises, changed"], found["rises"]) if found["rises"] else "-"]
-            cells = [what, f"{by:.0%}", answered + counts[0], *counts, share(found["changed"], answered), *rises]
-            lines.append(f"| {' | '.join(map(str, cells))} |")
-            typer.echo(lines[-1])
+            lines.append([what, f"{by:.0%}", answered + counts[0], *counts, share(found["changed"], answered), *rises])
+            typer.echo(" | ".join(map(str, lines[-1])))
             called.update({name: count for name, count in found.items() if name.startswith("in ")})
-            text = ["# Faults and motions that differ", "", f"`{command}`", "", NOTE, "", *lines, ""]
+            text = ["# Faults and motions that differ", "", f"`{command}`", "", NOTE, "", table(HEADS, lines), ""]
             text += [f"Unchanged axes are called changed {name}: {count}." for name, count in called.most_common()]
-            if out is not None:
-                write_text(out / "motion.md", "\n".join(text).rstrip() + "\n")
+            publish(out, {"motion.md": "\n".join(text).rstrip() + "\n"})
 
 
 if __name__ == "__main__":

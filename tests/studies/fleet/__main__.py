@@ -27,6 +27,7 @@ from bench.jobs.process import Limits
 from bench.rig.rig import load_rig
 from tests.fleet.made import DAMAGES, Made, fleet_of
 from tests.fleet.storage import offer
+from tests.studies.frame import table
 
 ROOT = Path(__file__).resolve().parents[2]
 CHANGED = frozenset({7, 23, 40, 58, 91})
@@ -57,18 +58,14 @@ def main(
         lines += _speed(folder / "timed", timed, duration) if timed else []
     options = f"--recordings {recordings} --hostile {hostile:g} --timed {timed} --duration {duration:g}"
     command = f"python -m tests.studies.fleet {options}"
-    text = "\n".join(["# A fleet, measured", "", f"`{command}`", "", "| what | found |", "|---|---|", *lines]) + "\n"
+    text = "\n\n".join(["# A fleet, measured", f"`{command}`", table(("what", "found"), lines)]) + "\n"
     typer.echo(text)
     if out is not None:
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(text, encoding="utf-8")
 
 
-def _row(what: str, found: object) -> str:
-    return f"| {what} | {found} |"
-
-
-def _endured(folder: Path, recordings: int, deadline: float, hostile: float) -> list[str]:
+def _endured(folder: Path, recordings: int, deadline: float, hostile: float) -> list[tuple[str, object]]:
     """A fleet with a share damaged, some that hang and some that end their process: run, killed, run again."""
     made = fleet_of(folder / "fleet", axes=recordings // EACH, each=EACH, changed=CHANGED)
     wrong = _spoilt(made, recordings, hostile)
@@ -92,20 +89,20 @@ def _endured(folder: Path, recordings: int, deadline: float, hostile: float) -> 
     counts = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()))
     distinct = len({row["result"] for row in rows} - {None})  # empty files are one, what cannot be begun is none
     return [
-        _row(f"{recordings} recordings, {len(wrong)} of them damaged, hanging or deadly", counts),
-        _row("sound ones done", f"{sum(row['status'] == 'done' for row in sound)} of {len(sound)}"),
-        _row(
+        (f"{recordings} recordings, {len(wrong)} of them damaged, hanging or deadly", counts),
+        ("sound ones done", f"{sum(row['status'] == 'done' for row in sound)} of {len(sound)}"),
+        (
             "rows without a result that give no reason",
             sum(row["status"] != "done" and not row["reason"] for row in rows),
         ),
-        _row("reasons", "; ".join(_reasons(rows))),
-        _row(
+        ("reasons", "; ".join(_reasons(rows))),
+        (
             "axes whose friction rose by 15 %",
             f"{named} named of {risen}; of others {len(called) - named}",
         ),
-        _row("whole run, two workers", f"{seconds:.0f} s; {most:.0f} MB its largest process"),
-        _row("killed half-way (SIGKILL to all its processes)", f"{kept} results kept, {left} processes left"),
-        _row("run again", f"{evaluated} evaluated, {distinct - kept} were missing; same table: {same}"),
+        ("whole run, two workers", f"{seconds:.0f} s; {most:.0f} MB its largest process"),
+        ("killed half-way (SIGKILL to all its processes)", f"{kept} results kept, {left} processes left"),
+        ("run again", f"{evaluated} evaluated, {distinct - kept} were missing; same table: {same}"),
     ]
 
 
@@ -165,7 +162,7 @@ def _called_changed(out: Path) -> list[int]:
     return sorted({int(one["axis"].removeprefix("press ")) for one in changed})
 
 
-def _speed(folder: Path, recordings: int, duration: float) -> list[str]:
+def _speed(folder: Path, recordings: int, duration: float) -> list[tuple[str, object]]:
     """Recordings a second by one worker and by two, once all of them have begun to work."""
     manifest = read_manifest(fleet_of(folder, axes=recordings // 10, each=10, duration=duration).write())
     rig, rates, starts = load_rig(folder / "rig.toml"), {}, {}
@@ -178,15 +175,15 @@ def _speed(folder: Path, recordings: int, duration: float) -> list[str]:
         rates[workers] = (len(ended) - 1 - warm) / (ended[-1] - ended[warm])
     load, cores = os.getloadavg()[0], os.cpu_count()
     return [
-        _row(
+        (
             f"{recordings} recordings of {duration:g} s at 1 kHz: first result after",
             f"{starts[1]:.1f} s, {starts[2]:.1f} s",
         ),
-        _row(
+        (
             "recordings a second, one worker and two",
             f"{rates[1]:.2f}, {rates[2]:.2f}: {rates[2] / rates[1]:.2f} times",
         ),
-        _row("cores, load at the end", f"{cores}, {load:.1f}"),
+        ("cores, load at the end", f"{cores}, {load:.1f}"),
     ]
 
 

@@ -10,9 +10,9 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from bench.files import write_text
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
+from tests.studies.frame import publish
 from tests.studies.injected import stability
 from tests.studies.injected.cases import (
     FAILED,
@@ -147,7 +147,8 @@ def main(
     command += "".join(f" --effect {name}" for name in effect or ()) + (f" --cases {cases}" if cases else "")
     if stable:
         told = stability.markdown(sources, answers_of(sources, seed, jobs), f"{command} --stability")
-        publish(told, out, "names.md")
+        typer.echo(told)
+        publish(out, {"names.md": told})
         return
     owns, refused = owns_of(sources, jobs)
     chosen = draw(list(owns), effect or (), seed)
@@ -156,14 +157,9 @@ def main(
         return
     items = [(case, by_name[case.source], owns[case.source]) for case in chosen]
     rows = first(items, cases or len(items), kept_in(seed), jobs)
-    publish(markdown(rows, by_name, owns, refused, command), out, "table.md")
-
-
-def publish(told: str, out: Path | None, name: str) -> None:
-    """On the terminal, and into a folder."""
+    told = markdown(rows, by_name, owns, refused, command)
     typer.echo(told)
-    if out is not None:
-        write_text(out / name, told)
+    publish(out, {"table.md": told})
 
 
 if __name__ == "__main__":

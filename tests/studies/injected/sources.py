@@ -17,8 +17,8 @@ from bench.validation.independent.effects import Effect
 from bench.validation.injection import Host, injected
 from tests.cases import record
 from tests.shared import SHARED
-from tests.studies.blind.__main__ import workers
 from tests.studies.blind.draw import Drawn
+from tests.studies.frame import workers
 from tests.studies.nuisance import realistic
 from tests.studies.nuisance.record import home
 

@@ -13,6 +13,7 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.errors import BenchError
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
+from tests.studies.frame import table
 from tests.studies.injected.sources import Source
 
 #: Signals that carry noise of their own.
@@ -95,14 +96,15 @@ def markdown(sources: Sequence[Source], said: Mapping[str, Mapping[str, Answer |
     """How often names agree, and each comparison in which they do not."""
     found = [(_fate(one, other), what, which, one, other) for what, which, one, other in compared(sources, said)]
     counted = Counter((what, fate) for fate, what, *_ in found)
-    lines = ["# Whether names stay", "", f"`{command}`", "", f"| what | {' | '.join(FATES)} |", "|---" * 5 + "|"]
-    for what in (NOISE, *HALVES, "rounds"):
-        lines += [f"| {what} | {' | '.join(str(counted[what, fate]) for fate in FATES)} |"]
-    lines += ["", "| fate | what | recordings | names and probabilities | there |", "|---|---|---|---|---|"]
-    for fate, *cells in sorted(found, key=lambda each: (-FATES.index(each[0]), *each[1:3])):
-        if fate != AGREE:
-            lines += [f"| {fate} | {' | '.join(REFUSED if cell is None else str(cell) for cell in cells)} |"]
-    return "\n".join(lines) + "\n"
+    totals = [(what, *(counted[what, fate] for fate in FATES)) for what in (NOISE, *HALVES, "rounds")]
+    differing = [
+        (fate, *(REFUSED if cell is None else cell for cell in cells))
+        for fate, *cells in sorted(found, key=lambda each: (-FATES.index(each[0]), *each[1:3]))
+        if fate != AGREE
+    ]
+    heads = ("fate", "what", "recordings", "names and probabilities", "there")
+    parts = ["# Whether names stay", f"`{command}`", table(("what", *FATES), totals), table(heads, differing)]
+    return "\n\n".join(parts) + "\n"
 
 
 def _fate(one: Answer | None, other: Answer | None) -> str:

@@ -12,6 +12,7 @@ from bench.effects.catalogue import catalogue
 from bench.validation.coverage import UNEXPLAINED
 from bench.validation.into import FATES, PART, RIGHT, WRONG, Own
 from tests.studies.blind.score import same, twins
+from tests.studies.frame import table
 from tests.studies.injected.cases import FAILED, NONE, UNABLE, Row
 from tests.studies.injected.sources import Source
 
@@ -69,7 +70,7 @@ def headline(rows: Sequence[Row], remaining: Collection[str]) -> str:
         ("quantities within their interval of 95 %", _share(inside)),
         ("seconds of CPU of all diagnoses", f"{sum(row.seconds for row in rows):.0f}"),
     ]
-    return _table(("what", "measured"), found)
+    return table(("what", "measured"), found)
 
 
 def holds(row: Row) -> bool:
@@ -94,7 +95,7 @@ def grouped(rows: Sequence[Row], group: Callable[[Row], tuple[str, str]]) -> str
     for one in groups:
         counted = Counter(row.fate for row in rows if group(row) == one)
         lines.append((" ".join(one).strip(), str(counted.total()), *(str(counted[fate]) for fate in FATES)))
-    return _table(("of", "cases", *FATES), lines)
+    return table(("of", "cases", *FATES), lines)
 
 
 def pairs(rows: Iterable[Row], hidden: bool = True, every: bool = False) -> list[tuple[float, bool]]:
@@ -137,24 +138,19 @@ def reliability(rows: Sequence[Row]) -> str:
         for (low, high), those in zip(pairwise(BINS), _binned(pairs(rows)), strict=True)
         if those
     ]
-    return _table(("probability of a name", "names", "mean probability", "share that is there"), named)
+    return table(("probability of a name", "names", "mean probability", "share that is there"), named)
 
 
 def recordings(owns: Mapping[str, Own], refused: Mapping[str, str]) -> str:
     """What the recordings say of themselves."""
     lines = [(name, own.verdict, ", ".join(own.names), f"{own.left:.3g} {own.unit}") for name, own in owns.items()]
     lines += [(name, "refused", reason, "") for name, reason in refused.items()]
-    return _table(("recording", "its own diagnosis", "names", "left"), lines)
+    return table(("recording", "its own diagnosis", "names", "left"), lines)
 
 
 def cases(rows: Sequence[Row]) -> str:
     """Case by case."""
-    head = "| recording | effect | strength | fate | names | verdict | quantities |\n" + "|---" * 7 + "|"
+    head = table(("recording", "effect", "strength", "fate", "names", "verdict", "quantities"), ())
     order = {fate: place for place, fate in enumerate((WRONG, FAILED, PART))}
     ordered = sorted(rows, key=lambda row: (order.get(row.fate, len(order)), row.case.name))
     return "\n".join([head, *(row.line for row in ordered)])
-
-
-def _table(headings: Sequence[str], lines: Iterable[Sequence[str]]) -> str:
-    head = f"| {' | '.join(headings)} |\n{'|---' * len(headings)}|"
-    return "\n".join([head, *(f"| {' | '.join(line)} |" for line in lines)])

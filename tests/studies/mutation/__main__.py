@@ -22,6 +22,7 @@ import typer
 from rich.console import Console
 from rich.progress import track
 
+from tests.studies.frame import table
 from tests.studies.mutation.mutants import DECIDING, ROOT, Mutant, drawn
 from tests.studies.mutation.reach import REACH
 
@@ -155,10 +156,9 @@ def markdown(fates: Sequence[Fate], command: str, equivalent: Mapping[str, str])
     killed, counted = len(fates) - len(survived), len(fates) - len(told)
     lines = ["# Mutants", "", f"`{command}`", ""]
     lines += [f"{len(fates)} mutants, {len(told)} of them equivalent; {killed} of {counted} killed.", ""]
-    lines += ["| survived | tests that ran it | equivalent, as |", "|---|---|---|"]
-    lines += [f"| `{each.mutant}` | {each.tests} | {equivalent.get(str(each.mutant), '')} |" for each in survived]
-    lines += ["", "| killed | by |", "|---|---|"]
-    lines += [f"| `{each.mutant}` | `{each.killed_by}` |" for each in fates if each.killed_by]
+    rows = [(f"`{each.mutant}`", each.tests, equivalent.get(str(each.mutant), "")) for each in survived]
+    lines += [table(("survived", "tests that ran it", "equivalent, as"), rows), ""]
+    lines += [table(("killed", "by"), [(f"`{one.mutant}`", f"`{one.killed_by}`") for one in fates if one.killed_by])]
     return "\n".join(line.replace("||", "\\|\\|") for line in lines) + "\n"
 
 

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from tests.studies.frame import publish
 from tests.studies.nuisance import realistic as many
 from tests.studies.nuisance.draw import draw
 from tests.studies.nuisance.kinds import NUISANCES
@@ -45,7 +46,7 @@ def of_nuisances(seed: int, each: int, jobs: int, only: str, one_in: int, out: P
     typer.echo(headline(scores) + "\n\n" + not_right(scores))
     typer.echo(f"files: {home() / 'cases'}", err=True)
     command = _command(f"--each {each} --seed {seed}", only, one_in)
-    _write(out, markdown(scores, "Nuisance set", command), cases_csv(scores))
+    publish(out, {"table.md": markdown(scores, "Nuisance set", command), "cases.csv": cases_csv(scores)})
 
 
 def of_realistic(seed: int, count: int, jobs: int, only: str, one_in: int, out: Path | None) -> None:
@@ -56,7 +57,7 @@ def of_realistic(seed: int, count: int, jobs: int, only: str, one_in: int, out: 
     typer.echo(many.headline(scores) + "\n\n" + many.not_right(scores))
     typer.echo(f"files: {folder}", err=True)
     command = _command(f"--realistic {count} --seed {seed}", only, one_in)
-    _write(out, many.markdown(scores, command), many.cases_csv(scores))
+    publish(out, {"table.md": many.markdown(scores, command), "cases.csv": many.cases_csv(scores)})
 
 
 def _some(cases: list, only: str, one_in: int) -> list:
@@ -68,13 +69,6 @@ def _some(cases: list, only: str, one_in: int) -> list:
 def _command(options: str, only: str, one_in: int) -> str:
     more = f" --only '{only}'" * (only != "*") + f" --one-in {one_in}" * (one_in > 1)
     return f"python -m tests.studies.nuisance {options}{more}"
-
-
-def _write(out: Path | None, table: str, cases: str) -> None:
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "table.md").write_text(table, encoding="utf-8")
-        (out / "cases.csv").write_text(cases, encoding="utf-8")
 
 
 if __name__ == "__main__":

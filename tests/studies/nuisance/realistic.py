@@ -6,8 +6,6 @@ interval in nine tenths of the cases.
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, as_completed
@@ -16,16 +14,15 @@ from pathlib import Path
 from statistics import median
 
 import numpy as np
-from rich.console import Console
-from rich.progress import Progress
 
 from bench.validation.independent.effects import CATALOGUE, any_effects
 from bench.validation.independent.rig import random_rig
 from bench.validation.independent.sensors import random_sensors
 from tests.cases import Hidden, record, write_case
-from tests.studies.blind.__main__ import workers
 from tests.studies.blind.draw import Drawn
+from tests.studies.blind.record import truth_of
 from tests.studies.blind.score import same, twins
+from tests.studies.frame import csv_of, running, table
 from tests.studies.nuisance.answer import Answer, ask
 from tests.studies.nuisance.record import TOGETHER
 
@@ -80,20 +77,14 @@ def one(seed: int, place: int) -> Drawn:
 
 def scored(folder: Path, drawn: Sequence[Drawn], seed: int, jobs: int, show: bool = True) -> list[Realistic]:
     """Record what is missing, diagnose all, judge them; in the order drawn."""
-    scores: dict[str, Realistic] = {}
-    with workers(jobs) as pool, Progress(console=Console(stderr=True), disable=not show) as progress:
-        bar = progress.add_task("recording", total=len(drawn))
-        for done in recorded(folder, drawn, seed, pool):
-            progress.advance(bar, done)
-        bar = progress.add_task("diagnosing", total=len(drawn))
-        tasks = {pool.submit(answered, folder / case.name): case for case in drawn}
-        for task in as_completed(tasks):
-            case = tasks[task]
-            severities = severities_of(seed, case.number, len(case.hidden.effects))
-            truth = json.loads((folder / case.name / "truth.json").read_text(encoding="utf-8"))
-            scores[case.name] = judged(case.name, truth, tuple(severities), task.result())
-            progress.advance(bar)
-    return [scores[case.name] for case in drawn]
+    with running(jobs, show) as run:
+        run.counted("recording", len(drawn), recorded(folder, drawn, seed, run.pool))
+        answers = run.each("diagnosing", answered, [(folder / case.name,) for case in drawn])
+    scores = []
+    for case, answer in zip(drawn, answers, strict=True):
+        severities = severities_of(seed, case.number, len(case.hidden.effects))
+        scores.append(judged(case.name, truth_of(folder, case.name), tuple(severities), answer))
+    return scores
 
 
 def recorded(folder: Path, drawn: Sequence[Drawn], seed: int, pool: Executor) -> Iterator[int]:
@@ -157,39 +148,37 @@ def headline(scores: Sequence[Realistic]) -> str:
         ("no diagnosis", f"{sum(s.answer.status != 0 for s in scores)} of {len(scores)}", ""),
         ("seconds a case, median", f"{median(s.answer.seconds for s in scores):.1f}", ""),
     ]
-    return "| what | measured | asked |\n|---|---|---|\n" + "\n".join(f"| {a} | {b} | {c} |" for a, b, c in rows)
+    return table(("what", "measured", "asked"), rows)
 
 
 def by_effect(scores: Sequence[Realistic]) -> str:
     """How often each effect is hidden, named, and falsely named."""
-    rows = ["| effect | named | hidden | falsely named |", "|---|---|---|---|"]
+    rows = []
     for effect in CATALOGUE:
         hidden = sum(effect in score.hidden for score in scores)
         missed = sum(effect in score.missed for score in scores)
         false = sum(effect in score.false for score in scores)
-        rows.append(f"| {effect} | {hidden - missed} | {hidden} | {false} |")
-    return "## By effect\n\n" + "\n".join(rows)
+        rows.append((effect, hidden - missed, hidden, false))
+    return "## By effect\n\n" + table(("effect", "named", "hidden", "falsely named"), rows)
 
 
 def not_right(scores: Sequence[Realistic]) -> str:
     """Cases with something missed or false, or J outside."""
-    rows = ["| case | hidden | missed | false | verdict | J, half widths |", "|---" * 6 + "|"]
+    rows = []
     for s in scores:
         if s.missed or s.false or not s.half_widths <= 1.0:
             said = s.answer.verdict or s.answer.said
             names = (", ".join(those) for those in (s.hidden, s.missed, s.false))
-            rows.append("| " + " | ".join((s.name, *names, said, f"{s.half_widths:.2f}")) + " |")
-    return "## Not right\n\n" + "\n".join(rows)
+            rows.append((s.name, *names, said, f"{s.half_widths:.2f}"))
+    return "## Not right\n\n" + table(("case", "hidden", "missed", "false", "verdict", "J, half widths"), rows)
 
 
 def cases_csv(scores: Sequence[Realistic]) -> str:
     """One line a case."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(HEADINGS)
+    rows = []
     for s in scores:
         strong = " ".join(f"{severity:.2f}" for severity in s.severities)
         names = ("+".join(those) for those in (s.missed, s.false))
         cells = (f"{s.half_widths:.2f}", f"{s.answer.seconds:.1f}", s.answer.said)
-        writer.writerow((s.name, "+".join(s.hidden), strong, *names, s.answer.verdict, *cells))
-    return text.getvalue()
+        rows.append((s.name, "+".join(s.hidden), strong, *names, s.answer.verdict, *cells))
+    return csv_of(HEADINGS, rows)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Sequence
 from statistics import median
 
+from tests.studies.frame import csv_of, table
 from tests.studies.nuisance.nuisance import Nuisance, named
 from tests.studies.nuisance.score import NEITHER, RIGHT, WRONG, Score, inertia_off
 
@@ -48,7 +47,7 @@ def headline(scores: Sequence[Score]) -> str:
         ("nuisances, strengths", f"{len({s.case.nuisance for s in damaged})}, {len(_strengths(damaged))}", "25, 50"),
         ("seconds a case, median and most", _seconds(scores), ""),
     ]
-    return "| what | measured | asked |\n|---|---|---|\n" + "\n".join(f"| {a} | {b} | {c} |" for a, b, c in lines)
+    return table(("what", "measured", "asked"), lines)
 
 
 def _identified_off(score: Score) -> bool:
@@ -69,33 +68,32 @@ def by_nuisance(scores: Sequence[Score]) -> str:
     groups: dict[tuple[str, str], list[Score]] = {}
     for score in scores:
         groups.setdefault((score.case.nuisance, score.case.strength_label), []).append(score)
-    rows = ["| nuisance | strength | right | neither | wrong |", "|---|---|---|---|---|"]
+    rows = []
     for (nuisance, strength), those in groups.items():
         count = Counter(score.judgement for score in those)
-        rows.append(f"| {nuisance} | {strength} | {count[RIGHT]} | {count[NEITHER]} | {count[WRONG]} |")
-    return "## By nuisance\n\n" + "\n".join(rows)
+        rows.append((nuisance, strength, count[RIGHT], count[NEITHER], count[WRONG]))
+    return "## By nuisance\n\n" + table(("nuisance", "strength", "right", "neither", "wrong"), rows)
 
 
 def not_right(scores: Sequence[Score]) -> str:
     """Cases that are not right, the wrong ones first."""
     bad = sorted((s for s in scores if s.judgement != RIGHT), key=lambda score: score.judgement != WRONG)
-    rows = ["| case | strength | hidden | judgement | why | verdict | named |", "|---" * 7 + "|"]
+    rows = []
     for score in bad:
         case, said = score.case, score.diagnosed
         why = "; ".join(score.reasons)
         cells = (case.name, case.strength_label, case.hidden, score.judgement, why, said.verdict, ", ".join(said.named))
-        rows.append("| " + " | ".join(cells) + " |")
-    return "## Not right\n\n" + ("\n".join(rows) if bad else "None.")
+        rows.append(cells)
+    heads = ("case", "strength", "hidden", "judgement", "why", "verdict", "named")
+    return "## Not right\n\n" + (table(heads, rows) if bad else "None.")
 
 
 def cases_csv(scores: Sequence[Score]) -> str:
     """One line a case."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(HEADINGS)
+    rows = []
     for score in scores:
         case, identified, diagnosed = score.case, score.identified, score.diagnosed
-        writer.writerow(
+        rows.append(
             (
                 *(case.name, case.nuisance, case.strength_label, case.hidden, int(case.references)),
                 *(score.judgement, "; ".join(score.reasons), identified.status, _error(score, identified)),
@@ -104,7 +102,7 @@ def cases_csv(scores: Sequence[Score]) -> str:
                 diagnosed.said,
             )
         )
-    return text.getvalue()
+    return csv_of(HEADINGS, rows)
 
 
 def _error(score: Score, answer) -> str:
