@@ -93,7 +93,7 @@ def coasting():
     """Speed at every tick of an axis with each friction, left alone at either speed; all run together."""
     friction = replace(FREE, coulomb_friction=AXIS.coulomb, viscous_friction_coefficient=AXIS.viscous)
     cases = list(product(DISSIPATIVE, (40.0, -40.0)))
-    axes = [pushed([present(name)], 2.0, velocity=velocity, parameters=friction) for name, velocity in cases]
+    axes = [pushed([present(name)], 1.0, velocity=velocity, parameters=friction) for name, velocity in cases]
     states = run(*zip(*axes, strict=True))
     return dict(zip(cases, states.velocity.T, strict=True))
 

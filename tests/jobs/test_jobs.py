@@ -2,7 +2,6 @@
 
 import os
 import socket
-import time
 
 import pytest
 
@@ -134,6 +133,5 @@ def test_a_scheduler_that_accepts_and_says_nothing_is_named(monkeypatch):
 
 
 def test_no_item_is_no_work():
-    began = time.monotonic()
-    assert list(each(work, [])) == []
-    assert time.monotonic() - began < 1.0
+    """No process is started: it could not be sent this work."""
+    assert list(each(lambda item: item, [])) == []
