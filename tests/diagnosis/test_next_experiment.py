@@ -20,6 +20,7 @@ from bench.validation.independent.references import Motion, Ramps, random_motion
 from bench.validation.independent.rig import Axis, write_rig
 from bench.validation.independent.sensors import Noise, Sensors
 from bench.validation.independent.simulate import simulate
+from tests.kept import kept
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
@@ -71,7 +72,7 @@ def recordings():
     cases = {name: (effects, one_way()) for name, effects in HIDDEN.items()}
     cases["reversals, an offset"] = offset(5.0), random_motion(AXIS, np.random.default_rng(2), 5.0)
     cases["reversals, nothing"] = (), random_motion(AXIS, np.random.default_rng(3), 5.0)
-    return recorded(cases, seed=4)
+    return kept(lambda: recorded(cases, seed=4), __file__)
 
 
 @pytest.fixture(scope="module")

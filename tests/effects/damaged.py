@@ -16,6 +16,7 @@ from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis
 from bench.validation.independent.sensors import Noise, Sensors
 from bench.validation.independent.simulate import simulate
+from tests.kept import kept
 
 AXIS = Axis(
     "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
@@ -53,8 +54,9 @@ def recordings() -> dict[str, Trace]:
     """One without an effect, under the name `null`, and one of each single."""
     cases = {"null": (), **{name: (KINDS[name](*values),) for name, values in SINGLES.items()}}
     count, motion = len(cases), random_motion(AXIS, np.random.default_rng(11), SECONDS)
-    runs = simulate([AXIS] * count, [motion] * count, list(cases.values()), [SENSORS] * count, 11)
-    return dict(zip(cases, (run.trace for run in runs), strict=True))
+    together = [AXIS] * count, [motion] * count, list(cases.values()), [SENSORS] * count
+    runs = kept(lambda: [run.trace for run in simulate(*together, 11)], __file__)
+    return dict(zip(cases, runs, strict=True))
 
 
 def filtered(current: np.ndarray, time: np.ndarray, lag: float = 1e-3) -> np.ndarray:
