@@ -1,5 +1,6 @@
 """A class: every student's own axis, forms filled in right and wrong, and the command that grades them."""
 
+import contextlib
 import csv
 import hashlib
 import json
@@ -184,19 +185,20 @@ class Class:
 SALT = 0x5EA1_0FA_C1A55
 
 
-def recorded(folder, count, salt=SALT):
+def recorded(folder, count, salt=SALT, into=None):
     """A class that the command recorded; all of one seed, so that the first students are the same of any count.
 
     Args:
         folder: of the class and its truth.
         count: of students.
         salt: in the place of a random one; the command's own without.
+        into: the folder of the class as the command is given it.
     """
     start = process_time()
     with pytest.MonkeyPatch.context() as patch:
         if salt is not None:
             patch.setattr(record.secrets, "randbits", lambda bits: salt)
-        status, out, _ = bench("lab", "--record", folder / "class", "--students", count, "--seed", 7)
+        status, out, _ = bench("lab", "--record", into or folder / "class", "--students", count, "--seed", 7)
     took = process_time() - start
     assert status == 0
     assert out.count("wrote") == count + 2
@@ -270,8 +272,11 @@ def four(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def salted(tmp_path_factory):
-    """A class of one, of the same seed, with the salt that the command draws."""
-    return recorded(tmp_path_factory.mktemp("salted"), 1, salt=None)
+    """A class of one, of the same seed, with the salt that the command draws, recorded into the folder one is in."""
+    folder = tmp_path_factory.mktemp("salted")
+    (folder / "class").mkdir()
+    with contextlib.chdir(folder / "class"):
+        return recorded(folder, 1, salt=None, into=".")
 
 
 def test_every_mistake_is_named_and_no_right_one_marked_down(four, tmp_path):
@@ -487,11 +492,8 @@ def test_students_folders_hold_no_truth(four, salted):
     assert "not empty" in err
 
 
-def test_the_folder_one_stands_in_has_its_truth_beside_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(record, "_record_student", lambda folder, name, rng: {})
-    (tmp_path / "class").mkdir()
-    monkeypatch.chdir(tmp_path / "class")
-    assert record.record_class(Path(), 1, 0)[-1] == tmp_path / "class.truth.json"
+def test_the_folder_one_is_in_has_its_truth_beside_it(salted):
+    assert {path.name for path in salted.folder.iterdir()} >= {"class", "class.truth.json", "class.truth.key"}
 
 
 def test_a_negative_seed_is_refused_in_one_line(tmp_path):
@@ -655,10 +657,8 @@ def test_a_class_of_before_is_graded_with_a_warning_unless_it_has_a_key(tmp_path
     assert "its seal does not fit" in err
 
 
-def test_truth_and_key_of_a_class_are_for_their_owner_alone(tmp_path, monkeypatch):
-    monkeypatch.setattr("bench.course.record._record_student", lambda folder, name, random: folder.mkdir(parents=True))
-    *_, key, truth = record.record_class(tmp_path / "class", 1, 0)
-    assert (truth.name, key.name) == ("class.truth.json", "class.truth.key")
+def test_truth_and_key_of_a_class_are_for_their_owner_alone(four):
+    truth, key = four.folder / "class.truth.json", four.folder / "class.truth.key"
     assert [stat.S_IMODE(path.stat().st_mode) for path in (truth, key)] == [0o600, 0o600]
     assert len(bytes.fromhex(key.read_text().strip())) == 32
     assert key.read_text().strip() not in truth.read_text()
