@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.command import Done
+
 ROOT = Path(__file__).resolve().parents[1]
 RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nrotor_inertia = "2 kg*cm**2"\n'
 #: A run ends within this, on a machine that does much else - s; what hangs does not end at all.
@@ -56,11 +58,12 @@ def run(*arguments, cwd, deadline=DEADLINE, under=(), **environment):
 
 
 def assert_one_line(done, *words, status=2):
-    """It refused, in one line that has these words."""
-    assert (done.returncode, done.stderr.count("\n")) == (status, 1), done.stderr
-    assert done.stderr.startswith("bench: ")
+    """It refused, in one line that has these words; run in this process, or in one of its own."""
+    ended, err = (done.status, done.err) if isinstance(done, Done) else (done.returncode, done.stderr)
+    assert (ended, err.count("\n")) == (status, 1), err
+    assert err.startswith("bench: ")
     for word in words:
-        assert word in done.stderr
+        assert word in err
 
 
 @contextmanager

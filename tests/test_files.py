@@ -24,12 +24,14 @@ from bench.files import held, keeping, read_bytes, sha256, whole, write_text
 from bench.plant.mjcf_file import read_mjcf
 from bench.plant.robot import Robot
 from tests.command import bench
-from tests.hostile import RIG, ROOT, assert_one_line, columns, csv_of, run
+from tests.hostile import RIG, ROOT, assert_one_line, columns, csv_of
 from tests.sources import SOURCES, nodes
 
 
 @pytest.fixture
-def folder(tmp_path):
+def folder(tmp_path, monkeypatch):
+    """One that commands run in."""
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "rig.toml").write_text(RIG)
     (tmp_path / "run.csv").write_text(csv_of(*columns()))
     (tmp_path / "simulated.toml").write_bytes(asset("data", "rigs", "sh30701p.toml").read_bytes())
@@ -60,8 +62,7 @@ def folder(tmp_path):
 )
 def test_an_output_is_never_an_input(folder, line):
     before = {path: path.read_bytes() for path in folder.iterdir() if path.is_file()}
-    done = run(*line.split(), cwd=folder)
-    assert_one_line(done, line.split()[-1], "an input of this command")
+    assert_one_line(bench(*line.split()), line.split()[-1], "an input of this command")
     assert {path: path.read_bytes() for path in folder.iterdir() if path.is_file()} == before
 
 
@@ -69,16 +70,15 @@ def test_a_file_beside_an_output_is_no_input_either(folder):
     """The truth of `x.csv` is `x.csv.truth.json`: a rig of that name is seen when it would be replaced."""
     rig = (folder / "simulated.toml").rename(folder / "x.csv.truth.json")
     before = rig.read_bytes()
-    assert_one_line(run("simulate", rig.name, "--out", "x.csv", cwd=folder), "x.csv.truth.json", "an input")
+    assert_one_line(bench("simulate", rig.name, "--out", "x.csv"), "x.csv.truth.json", "an input")
     assert rig.read_bytes() == before
 
 
 ARM = '<mujoco><worldbody><body><joint name="el" type="hinge"/><geom size="0.1" mass="1"/></body></worldbody></mujoco>'
 
 
-def test_what_another_file_leads_to_is_an_input_too(folder, monkeypatch):
+def test_what_another_file_leads_to_is_an_input_too(folder):
     """An MJCF's include, a fleet's row, a class' form: nobody gave them, and each was overwritten."""
-    monkeypatch.chdir(folder)
     (folder / "arm.xml").write_text(ARM)
     (folder / "robot.xml").write_text("<mujoco><include file='&#97;rm.xml'/></mujoco>")
     (folder / "so").mkdir()
@@ -119,9 +119,8 @@ def test_the_table_of_grades_of_an_earlier_run_is_no_form_and_what_cannot_be_rea
             read_submission(path)
 
 
-def test_what_mujoco_warns_of_leaves_no_log_behind(folder, monkeypatch, capfd):
+def test_what_mujoco_warns_of_leaves_no_log_behind(folder, capfd):
     """Two hinges about one axis: their inertia matrix is singular, in any pose."""
-    monkeypatch.chdir(folder)
     two = '<joint name="el" type="hinge"/><joint name="again" type="hinge"/>'
     (folder / "arm.xml").write_text(ARM.replace('<joint name="el" type="hinge"/>', two))
     before = set(folder.iterdir())
@@ -181,11 +180,11 @@ def test_every_path_of_every_command_is_known_as_read_or_written():
 
 
 def test_json_goes_to_a_folder_that_is_there_or_that_out_makes(folder):
-    refused = run("identify", "run.csv", "--rig", "rig.toml", "--json", "new/found.json", cwd=folder)
+    refused = bench("identify", "run.csv", "--rig", "rig.toml", "--json", "new/found.json")
     assert_one_line(refused, "new/found.json", "no folder 'new'")
     assert not (folder / "new").exists()
     line = ("identify", "run.csv", "--rig", "rig.toml", "--json", "new/found.json", "--out", "new")
-    assert run(*line, cwd=folder).returncode == 0
+    assert bench(*line).status == 0
     written = {"identify.json", "identification.png", "report.html", "report.json"}
     assert {path.name for path in (folder / "new").iterdir()} == {"found.json", *written}
 

@@ -29,6 +29,7 @@ from bench.trace.read import read
 from bench.trace.stream import stream
 from bench.trace.trace import Trace
 from bench.trace.write import write
+from tests.command import bench
 from tests.hostile import RIG, TABLE, assert_one_line, columns, run
 
 NAMES = [
@@ -113,15 +114,16 @@ def test_names_are_text_in_html():
 
 
 @pytest.mark.parametrize("name", ["axis [/b]", "a$x^$b\r\x01\x1b[31m"])
-def test_a_run_with_such_names_ends_well(tmp_path, name):
+def test_a_run_with_such_names_ends_well(tmp_path, monkeypatch, name):
     """Rig and recording both have it; before, the traceback came after all the work."""
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "rig.toml").write_text(RIG.replace('"axis"', json.dumps(name)))
     file = name.replace("/", "")
     (tmp_path / f"{file}.csv").write_text(TABLE)
-    done = run("identify", f"{file}.csv", "--rig", "rig.toml", "--out", "found", "--json", "-", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "\x1b" not in run("inspect", f"{file}.csv", cwd=tmp_path).stdout
-    assert_one_line(run("identify", f"{file}.none", "--rig", "rig.toml", cwd=tmp_path), "no such file")
+    done = bench("identify", f"{file}.csv", "--rig", "rig.toml", "--out", "found", "--json", "-")
+    assert (done.status, done.err) == (0, "")
+    assert "\x1b" not in bench("inspect", f"{file}.csv").out
+    assert_one_line(bench("identify", f"{file}.none", "--rig", "rig.toml"), "no such file")
 
 
 def test_a_text_is_cut_between_words():
@@ -138,26 +140,27 @@ BROKEN = "now\n::error::evil ##[error]x\t\x1b]0;y\x07.csv"
 ON_ONE_LINE = r"now\n::error::evil ## [error]x\t\x1b]0;y\x07.csv"
 
 
-def test_a_file_name_of_two_lines_is_one_line_wherever_it_is_printed(tmp_path):
+def test_a_file_name_of_two_lines_is_one_line_wherever_it_is_printed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
     (tmp_path / BROKEN).write_text(TABLE)
     (tmp_path / "rig.toml").write_text(RIG)
-    here = {"cwd": tmp_path, "GITHUB_ACTIONS": "true"}
     base = ("--rig", "rig.toml", "--baseline", f"{BROKEN}.toml")
-    done = run("check", BROKEN, *base, "--update", "--without-names", **here)
-    assert (done.returncode, done.stdout.splitlines()) == (0, [f"wrote {ON_ONE_LINE}.toml"])
+    done = bench("check", BROKEN, *base, "--update", "--without-names")
+    assert (done.status, done.out.splitlines()) == (0, [f"wrote {ON_ONE_LINE}.toml"])
     for form in ("github", "gitlab", "text"):
-        done = run("check", BROKEN, *base, "--format", form, "--junit", f"{form}.xml", "--json", f"{form}.json", **here)
-        assert done.returncode == 0, done.stderr
-        said = done.stdout + done.stderr
+        done = bench("check", BROKEN, *base, "--format", form, "--junit", f"{form}.xml", "--json", f"{form}.json")
+        assert done.status == 0, done.err
+        said = done.out + done.err
         assert not any(line.startswith(("::error", "::warning")) for line in said.splitlines())
         assert "##[" not in said and "\x1b" not in said
         (suite,) = ElementTree.parse(tmp_path / f"{form}.xml").getroot()
         assert suite.get("name") == f"{ON_ONE_LINE} against {ON_ONE_LINE}.toml"
-    done = run("identify", BROKEN, "--draft", "drafted.toml", "--out", "found", **here)
-    assert done.returncode == 0
-    assert all(line.startswith("warning: ") for line in done.stderr.splitlines())
+    done = bench("identify", BROKEN, "--draft", "drafted.toml", "--out", "found")
+    assert done.status == 0
+    assert all(line.startswith("warning: ") for line in done.err.splitlines())
     assert tomllib.loads((tmp_path / "drafted.toml").read_text())["kind"] == "rotary"
-    assert_one_line(run("identify", f"{BROKEN}.none", "--rig", "rig.toml", **here), f"{ON_ONE_LINE}.none: no such file")
+    assert_one_line(bench("identify", f"{BROKEN}.none", "--rig", "rig.toml"), f"{ON_ONE_LINE}.none: no such file")
 
 
 def test_an_error_is_one_line_in_python_too():
