@@ -1,4 +1,4 @@
-"""A hundred copies of a diagnosed joint, stepped together with the effects that MuJoCo has not natively."""
+"""A hundred copies of a diagnosed joint, stepped together with effects that MuJoCo does not have."""
 
 import mujoco
 import numpy as np

@@ -1,4 +1,4 @@
-"""Has an axis changed? A baseline of what it was, and a recording of today held against it, as `bench check` does."""
+"""Has an axis changed? A baseline, and a recording of today compared with it, as `bench check` does."""
 
 import bench
 from bench.assets import asset

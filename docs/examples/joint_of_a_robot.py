@@ -1,4 +1,4 @@
-"""A joint among the links of an MJCF, which tells gravity and the links' inertia: its armature and friction."""
+"""A joint among the links of an MJCF, which gives gravity and the links' inertia: its armature and friction."""
 
 from pathlib import Path
 

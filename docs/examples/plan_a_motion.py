@@ -1,4 +1,4 @@
-"""The motion to record: of all that the rig can follow, the one that tells best, with the errors to expect."""
+"""The motion to record: of all that the rig can follow, the most informative one, with its expected errors."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Several recordings of one axis, fitted together: what one lacks the others give, and what the next will say."""
+"""Several recordings of one axis, fitted together, and the interval in which the next one is expected."""
 
 import bench
 from bench.assets import asset

@@ -1,4 +1,4 @@
-"""A diagnosed joint in a simulation loop of your own: what MuJoCo has not natively is stepped beside it."""
+"""A diagnosed joint in a simulation loop of your own: effects that MuJoCo does not have are stepped with it."""
 
 import mujoco
 
