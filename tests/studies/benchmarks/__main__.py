@@ -31,58 +31,6 @@ another, a ratio more.
 """
 
 
-def sysid() -> list[Table]:
-    try:  # an extra of MuJoCo, which hides that it is not there
-        from mujoco.sysid import optimize as _  # noqa: F401
-    except ImportError as error:
-        raise typer.BadParameter("mujoco.sysid is not complete; pip install -e '.[benchmarks]'") from error
-    from tests.studies.benchmarks.beside_sysid import measured
-
-    return measured()
-
-
-def lstsq() -> list[Table]:
-    from tests.studies.benchmarks.beside_lstsq import measured
-
-    return measured()
-
-
-def before() -> list[Table]:
-    from tests.studies.benchmarks.beside_before import measured
-
-    return measured()
-
-
-def starting() -> list[Table]:
-    from tests.studies.benchmarks.starting import measured
-
-    return measured()
-
-
-def stepping() -> list[Table]:
-    from tests.studies.benchmarks.beside_stepping import measured
-
-    return measured()
-
-
-def reading() -> list[Table]:
-    from tests.studies.benchmarks.beside_pyarrow import measured
-
-    return measured()
-
-
-def diagnosing() -> list[Table]:
-    from tests.studies.benchmarks.diagnosing import measured
-
-    return measured()
-
-
-def growing() -> list[Table]:
-    from tests.studies.benchmarks.growth import measured
-
-    return measured()
-
-
 def measured_by(module: str) -> list[Table]:
     """Tables of a module of this package, which is loaded when it measures: `mujoco.sysid` is an extra."""
     try:
@@ -96,6 +44,8 @@ Benchmarks = Mapping[str, tuple[str, Callable[[], list[Table]]]]
 BENCHMARKS: Benchmarks = {
     "sysid": ("Identification beside mujoco.sysid", partial(measured_by, "beside_sysid")),
     "lstsq": ("Least squares beside NumPy's", partial(measured_by, "beside_lstsq")),
+    "before": ("CPU time of an identification against an earlier version", partial(measured_by, "beside_before")),
+    "starting": ("CPU time of whole commands against an earlier version", partial(measured_by, "starting")),
     "stepping": ("Simulation beside bare stepping", partial(measured_by, "beside_stepping")),
     "reading": ("Reading beside pyarrow", partial(measured_by, "beside_pyarrow")),
     "diagnosing": ("CPU time of a diagnosis", partial(measured_by, "diagnosing")),
