@@ -70,7 +70,11 @@ def test_names_are_text_in_terminal_and_figures(identified, tmp_path, capsys, na
         assert character not in shown
     for word in re.findall(r"[\[\]$:<>=/a-z]+", name.split("\x1b")[0]):
         assert word in shown
-    figure = drawn(document.pictures[0])
+    picture = document.pictures[0]
+    assert readable(name) in picture.title
+    figure = drawn(
+        picture.model_copy(update={"rows": picture.rows[-1:]})
+    )  # the name is its title, whatever rows it has
     for ending in ("png", "svg", "pdf"):
         save(figure, tmp_path / f"x.{ending}")
 
