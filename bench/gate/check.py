@@ -1,6 +1,6 @@
 """A recording as the checks see it - what several of them ask for is computed once -, and the result of a check.
 
-A coarse torque balance over windows of a recording, to decide whether effort and motion belong together.
+A coarse torque balance over windows of a recording decides whether effort and motion belong together.
 
     mean effort = J*(change of speed)/(window) + K_w*mean speed + K_0*mean sgn(speed) + M_0 (+ terms of position)
 
@@ -18,7 +18,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import Array, symmetric_inverse
 from bench.rig.rig import Rig
 from bench.trace.motion import integrated, raw_speed
 from bench.trace.noise import white_noise
@@ -28,6 +28,21 @@ from bench.trace.trace import Trace, less_known
 Status = Literal["pass", "warn", "fail", "not_applicable"]
 #: From worst to best.
 STATUSES: tuple[Status, ...] = ("fail", "warn", "pass", "not_applicable")
+
+#: Deviation of a step from whole sample periods, as share of one, that is reported; more looks like a loss.
+JITTER = 0.05
+#: Least number of windows.
+LEAST = 60
+#: Number of columns of motion; those of position follow.
+MOTION = 4
+#: Share of the power of the strongest combination of scaled columns below which one counts as dependent.
+DEPENDENT = 1e-14
+#: Samples of a stretch, and stretches of a recording, evenly spaced where there are more: they stand for all of it, so
+#: that a check costs the same for an hour as for a minute.
+LONGEST, MOST = 2**13, 4
+#: Lengths of windows of a torque balance - samples -; the one that explains most is taken.
+LENGTHS = (4, 16, 64, 256)
+EFFORTS = ("torque", "force", "current", "voltage")
 
 
 @dataclass(frozen=True)
@@ -47,83 +62,6 @@ def absent(name: str, found: str, allowed: str) -> Check:
     return Check(name, "not_applicable", found, allowed)
 
 
-#: Deviation of a step from whole sample periods, as share of one, that is reported; more looks like a loss.
-JITTER = 0.05
-#: Least number of windows.
-LEAST = 60
-#: Number of columns of motion; those of position follow.
-MOTION = 4
-#: Share of the largest singular value below which columns count as dependent.
-DEPENDENT = 1e-8
-
-
-@dataclass(frozen=True, eq=False)
-class Balanced:
-    """Least squares over windows of one length.
-
-    Attributes:
-        sums: of the stretches.
-        length: samples a window.
-        by_motion, by_position: share of the effort's variance that motion explains, and motion with position.
-        inertia, coulomb: J - kg*m**2 (kg), or what the effort's unit makes of it - and K_0 of the motion with position.
-        power: mean of effort times speed.
-        columns: (windows, 7).
-        effort: mean over each window (windows,).
-        starts: first sample of each window (windows,).
-    """
-
-    sums: Sequence[Sums]
-    length: int
-    by_motion: float
-    by_position: float
-    inertia: float
-    coulomb: float
-    power: float
-    columns: Array
-    effort: Array
-    starts: NDArray[np.intp]
-
-    @cached_property
-    def effort_over_noise(self) -> float:
-        """Standard deviation of the windows' effort over that of its white noise."""
-        return self._over_noise(self.effort, lambda part: part.effort)
-
-    @cached_property
-    def speed_over_noise(self) -> float:
-        """The same of the windows' speed."""
-        return self._over_noise(self.columns[:, 1], lambda part: np.diff(part.gone))
-
-    def _over_noise(self, means: Array, signal: Callable[[Sums], Array]) -> float:
-        noises = [white_noise(signal(part)) for part in self.sums if part.windows_of(self.length).size]
-        noise = float(np.median(noises)) / np.sqrt(self.length)
-        return float(np.std(means)) / noise if noise > 0.0 else np.inf
-
-
-def balanced(sums: Sequence[Sums], length: int) -> Balanced | None:
-    """The balance over windows of one length - samples; None if the recording is too short.
-
-    Motion alone and motion with position are solved from one triangle of their columns.
-    """
-    if not sums:
-        return None
-    windows = zip(*(part.windows(length) for part in sums), strict=True)
-    columns, mean, starts = (np.concatenate(column) for column in windows)
-    varies = float(np.var(mean)) if mean.size >= LEAST else 0.0
-    if varies == 0.0:
-        return None
-    scale = np.linalg.norm(columns, axis=0)
-    scale[scale == 0.0] = 1.0
-    triangle = np.asarray(np.linalg.qr(np.column_stack([columns / scale, mean]), mode="r"))
-    shares, theta = list[float](), np.zeros(MOTION)
-    for count in (MOTION, columns.shape[1]):
-        theta = np.linalg.lstsq(triangle[:, :count], triangle[:, -1], rcond=DEPENDENT)[0]
-        left = triangle[:, -1] - triangle[:, :count] @ theta
-        shares.append(1.0 - float(left @ left) / mean.size / varies)
-    inertia, _, coulomb = (theta / scale)[:3].tolist()
-    power = float(np.mean(mean * columns[:, 1]))
-    return Balanced(sums, length, shares[0], shares[1], inertia, coulomb, power, columns, mean, starts)
-
-
 @dataclass(frozen=True, eq=False)
 class Sums:
     """Running sums over a stretch, whose differences give means over windows of any length.
@@ -131,13 +69,14 @@ class Sums:
     Attributes:
         start: its first sample.
         period: of the samples - s.
-        effort: (n,).
+        speed, effort: (n,).
         gone: sum of the speed before each sample, and of all (n + 1,).
         sums: by the trapezoidal rule: speed, its sign, position and its sine and cosine, effort (6, n).
     """
 
     start: int
     period: float
+    speed: Array
     effort: Array
     gone: Array
     sums: Array
@@ -151,35 +90,108 @@ class Sums:
         signals = np.stack(known)
         sums = np.zeros_like(signals)
         np.cumsum((signals[:, 1:] + signals[:, :-1]) / 2.0, axis=1, out=sums[:, 1:])
-        gone = np.concatenate([[0.0], np.cumsum(speed)])
-        return cls(part.start, period, effort[part], gone, sums)
+        return cls(part.start, period, speed, effort[part], np.concatenate([[0.0], np.cumsum(speed)]), sums)
 
-    def windows_of(self, length: int) -> NDArray[np.intp]:
+    def places(self, length: int) -> range:
         """First samples of half-overlapping windows, none in a stretch of less than three."""
-        size, reach = self.sums.shape[1], length // 4
+        size, reach = self.effort.size, length // 4
         last = size - length - reach if size >= 3 * length else 0
-        return np.arange(reach, last, max(length // 2, 1))
+        return range(reach, max(last, reach), max(length // 2, 1))
 
-    def windows(self, length: int) -> tuple[Array, Array, NDArray[np.intp]]:
-        """Columns (windows, 7), mean effort and first samples (windows,)."""
-        at, reach = self.windows_of(length), length // 4
-        change = (_smooth(self.gone, at + length, reach) - _smooth(self.gone, at, reach)) / (length * self.period)
-        v, sign, place, sine, cosine, torque = (self.sums[:, at + length] - self.sums[:, at]) / length
-        columns = np.column_stack([change, v, sign, np.ones(at.size), place, sine, cosine])
-        return columns, torque, at + self.start
+    def windows(self, length: int) -> Array:
+        """Seven columns over each window, and its mean effort (windows, 8)."""
+        at, reach = self.places(length), length // 4
+
+        def smooth(ahead: int) -> Array:
+            """Mean speed around the samples some way ahead."""
+            first, last = (slice(at.start + ahead + to, at.stop + ahead + to, at.step) for to in (-reach, reach + 1))
+            return (self.gone[last] - self.gone[first]) / (2 * reach + 1)
+
+        change = (smooth(length) - smooth(0)) / (length * self.period)
+        first, last = (slice(at.start + to, at.stop + to, at.step) for to in (0, length))
+        speed, sign, place, sine, cosine, effort = (self.sums[:, last] - self.sums[:, first]) / length
+        return np.column_stack([change, speed, sign, np.ones(len(at)), place, sine, cosine, effort])
 
 
-def _smooth(gone: Array, at: NDArray[np.intp], reach: int) -> Array:
-    """Mean of a signal over `reach` samples to each side, from its running sum."""
-    return (gone[at + reach + 1] - gone[at - reach]) / (2 * reach + 1)
+@dataclass(frozen=True, eq=False)
+class Balanced:
+    """Least squares over windows of one length.
+
+    Attributes:
+        sums: of the stretches.
+        length: samples a window.
+        by_motion, by_position: share of the effort's variance that motion explains, and motion with position.
+        inertia, coulomb: J - kg*m**2 (kg), or what the effort's unit makes of it - and K_0 of the motion with position.
+        columns, effort: (windows, 7) and means over each window (windows,).
+        starts: first sample of each window (windows,).
+    """
+
+    sums: Sequence[Sums]
+    length: int
+    by_motion: float
+    by_position: float
+    inertia: float
+    coulomb: float
+    columns: Array
+    effort: Array
+    starts: NDArray[np.intp]
+
+    @cached_property
+    def effort_over_noise(self) -> float:
+        """Standard deviation of the windows' effort over that of its white noise."""
+        return self._over_noise(self.effort, [part.effort for part in self.sums])
+
+    @cached_property
+    def speed_over_noise(self) -> float:
+        """The same of the windows' speed."""
+        return self._over_noise(self.columns[:, 1], [part.speed for part in self.sums])
+
+    def _over_noise(self, means: Array, signals: Sequence[Array]) -> float:
+        noises = [white_noise(signal) for signal in signals if signal.size >= 3 * self.length]
+        noise = float(np.median(noises)) / np.sqrt(self.length)
+        return float(np.std(means)) / noise if noise > 0.0 else np.inf
 
 
-#: Samples of a stretch, and stretches of a recording, evenly spaced where there are more: they stand for all of it, so
-#: that a check costs the same for an hour as for a minute.
-LONGEST, MOST = 2**13, 4
-#: Lengths of windows of a torque balance - samples -; the one that explains most is taken.
-LENGTHS = (4, 16, 64, 256)
-EFFORTS = ("torque", "force", "current", "voltage")
+def balanced(sums: Sequence[Sums], length: int) -> Balanced | None:
+    """The balance over windows of one length - samples; None if the recording is too short."""
+    if not sums:
+        return None
+    table = np.concatenate([part.windows(length) for part in sums])
+    columns, effort = table[:, :-1], table[:, -1]
+    if effort.size < LEAST or not np.ptp(effort):
+        return None
+    changes = effort - effort.mean()  # a constant is among the columns
+    scale = scales(columns)
+    scaled = columns / scale
+    gram, moment = scaled.T @ scaled, scaled.T @ changes
+    shares, theta = list[float](), np.zeros(MOTION)
+    for count in (MOTION, columns.shape[1]):
+        theta = symmetric_inverse(gram[:count, :count], DEPENDENT) @ moment[:count]
+        shares.append(float(theta @ moment[:count]) / float(changes @ changes))
+    inertia, _, coulomb = (theta[:3] / scale[:3]).tolist()
+    starts = np.concatenate([np.array(part.places(length), dtype=np.intp) + part.start for part in sums])
+    return Balanced(sums, length, shares[0], shares[1], inertia, coulomb, columns, effort, starts)
+
+
+def scales(columns: Array) -> Array:
+    """Norms of columns (n, c), 1 for one of zeros (c,)."""
+    norms = np.sqrt(np.einsum("nc,nc->c", columns, columns))
+    return np.where(norms > 0.0, norms, 1.0)
+
+
+def least_squares(columns: Array, values: Array) -> Array:
+    """Coefficients (c,) of columns (n, c) by which they explain values (n,) best, in the values' unit per column's."""
+    scale = scales(columns)
+    scaled = columns / scale
+    return symmetric_inverse(scaled.T @ scaled, DEPENDENT) @ (scaled.T @ values) / scale
+
+
+def basis_of(columns: Array) -> Array:
+    """Orthonormal columns (n, r) that span others (n, c)."""
+    columns = columns / scales(columns)
+    power, ways = np.linalg.eigh(columns.T @ columns)
+    kept = power > DEPENDENT * power[-1]
+    return columns @ (ways[:, kept] / np.sqrt(power[kept]))
 
 
 @dataclass(frozen=True, eq=False)

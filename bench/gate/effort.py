@@ -81,7 +81,8 @@ def judged(fitted: Balanced, name: str) -> Check:
         found = f"the speed hardly changes, by {fitted.speed_over_noise:.1f} times its noise; {explained}"
         advice = "a motion that accelerates, better in both directions"
         return Check(FOLLOWS, "fail", found, ALLOWED, advice, unanswerable=True)
-    if by_position > WARNED and fitted.inertia < 0.0 and fitted.coulomb < 0.0 and fitted.power < 0.0:
+    power = float(fitted.effort @ fitted.columns[:, 1])
+    if by_position > WARNED and max(fitted.inertia, fitted.coulomb, power) < 0.0:
         found = f"{explained}, yet inertia and friction are negative: torque and motion have opposite signs"
         advice = "count both the same way (a leading - in the rig's [trace.columns] turns one)"
         return Check(FOLLOWS, "fail", found, ALLOWED, advice)

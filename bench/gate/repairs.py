@@ -13,7 +13,7 @@ any other, a single missing sample interpolated, a longer loss a hole.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,30 +49,6 @@ ALLOWED = f"every sample once; up to {MOST:.0%} are put right"
 ADVICE = "record with a buffer that loses none, or with time stamps of the drive itself"
 
 
-@dataclass(frozen=True)
-class Damage:
-    """What happened between the samples of a recording.
-
-    Attributes:
-        missing: samples lost in each step; -1 where the next sample repeats this one - (n - 1,).
-        again: which samples say again what the one before said, in their position or in every signal - (n,).
-    """
-
-    missing: NDArray[np.int64]
-    again: NDArray[np.bool_]
-
-    @property
-    def stale(self) -> int:
-        """Samples that do."""
-        return int(self.again.sum())
-
-    @property
-    def lost(self) -> int:
-        """Samples that are nowhere in the recording, those aside that a repeated one stands for."""
-        in_time = (self.missing[:-1] < 0) & (self.missing[1:] > 0)
-        return int(np.maximum(self.missing, 0).sum() - in_time.sum())
-
-
 def none_lost(seen: Seen) -> Check | Repaired:
     """The recording with lost and repeated samples put right."""
     trace = seen.trace
@@ -83,11 +59,13 @@ def none_lost(seen: Seen) -> Check | Repaired:
     right, lost, stale = trace, 0, 0
     most = (MOST if "velocity" in trace else MOST_BLIND) * len(trace)
     for _ in range(PASSES):
-        damage = damage_of(right)
-        lost, stale = lost + damage.lost, stale + damage.stale
-        if lost + stale > most or (not damage.lost and not damage.stale):
+        missing, again = damage_of(right)
+        in_time = (missing[:-1] < 0) & (missing[1:] > 0)  # a repeated sample stands for the one that is missing
+        found_lost, found_stale = int(np.maximum(missing, 0).sum() - in_time.sum()), int(again.sum())
+        lost, stale = lost + found_lost, stale + found_stale
+        if lost + stale > most or not (found_lost or found_stale):
             break
-        right = repaired(right, damage)
+        right = repaired(right, missing, again)
     if not lost and not stale:
         return Check(NAME, "pass", "none found", ALLOWED)
     found = f"{counted(lost, 'sample')} lost, {stale} repeated of {len(trace)}, though the time runs on evenly"
@@ -96,36 +74,36 @@ def none_lost(seen: Seen) -> Check | Repaired:
     return Check(NAME, "warn", f"{found}; put right", ALLOWED, ADVICE), right
 
 
-def damage_of(trace: Trace) -> Damage:
-    """Lost and repeated samples of a recording."""
+def damage_of(trace: Trace) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Samples lost in each step, -1 where the next sample repeats this one (n - 1,); and which samples say again what
+    the one before said, in their position or in every signal (n,).
+    """
     missing = np.zeros(len(trace) - 1, dtype=np.int64)
-    if "position" in trace:
-        parts = [part for part in trace.segments if part.stop - part.start >= SHORTEST]
-        steps_of_parts = [_beyond_motion(trace, part) for part in parts]
-        if steps_of_parts:
-            limit = max(
-                STANDS_OUT * float(np.percentile(np.concatenate([np.abs(jump) for jump, _ in steps_of_parts]), 95.0)),
-                STEPS * resolution_of(trace["position"]),
-            )
-            least = SLOW * rms(np.concatenate([step for _, step in steps_of_parts]))
-            for part, (jump, step) in zip(parts, steps_of_parts, strict=True):
+    parts = [part for part in trace.segments if part.stop - part.start >= SHORTEST] if "position" in trace else []
+    jumps = [_beyond_motion(trace, part) for part in parts]
+    if jumps:
+        sizes = np.abs(np.concatenate([jump for jump, _ in jumps]))
+        limit = max(STANDS_OUT * float(np.percentile(sizes, 95.0)), STEPS * resolution_of(trace["position"]))
+        if sizes.max() > limit:
+            usual = [_median(step) for _, step in jumps]
+            least = SLOW * rms(np.concatenate(usual))
+            for part, (jump, _), step in zip(parts, jumps, usual, strict=True):
                 alone = _alone(jump) if "velocity" not in trace else True
                 missing[part.start : part.stop - 1] = _whole_steps(jump, step, limit, least) * alone
     again = _repeated(trace)
     again[1:] |= missing < 0
-    return Damage(missing, again)
+    return missing, again
 
 
 def _beyond_motion(trace: Trace, part: slice) -> tuple[Array, Array]:
-    """What each step of the position has beyond the motion's, and the motion's step - rad (m) - (n - 1,) each."""
+    """What each step of the position has beyond the usual, and the motion's step - rad (m) - (n - 1,) each."""
     steps = np.diff(trace["position"][part])
     if "velocity" not in trace:
-        usual = _median(steps)
-        return steps - usual, usual
+        return steps - _median(steps), steps
     velocity = trace["velocity"][part]
     travelled = (velocity[1:] + velocity[:-1]) / 2.0 * trace.sample_period
     beyond = steps - travelled
-    return beyond - _median(beyond), _median(travelled)
+    return beyond - _median(beyond), travelled
 
 
 def _median(values: Array) -> Array:
@@ -165,11 +143,11 @@ def _repeated(trace: Trace) -> NDArray[np.bool_]:
     return found
 
 
-def repaired(trace: Trace, damage: Damage) -> Trace:
+def repaired(trace: Trace, missing: NDArray[np.int64], again: NDArray[np.bool_]) -> Trace:
     """The recording with the times that its samples must have had, without repetitions, short gaps interpolated."""
     period = trace.sample_period
-    step = np.diff(trace.time) + damage.missing * period
-    kept = ~damage.again
+    step = np.diff(trace.time) + missing * period
+    kept = ~again
     time = trace.time[0] + np.concatenate([[0.0], np.cumsum(step)])[kept]
     gap = np.diff(time) / period
     filled = np.flatnonzero((gap > HOLE) & (np.rint(gap) == 2.0))

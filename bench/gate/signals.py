@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.gate.check import EFFORTS, Check, Seen, absent, resolution_of
+from bench.gate.check import EFFORTS, Check, Seen, absent, least_squares, resolution_of
 from bench.rig.rig import Rig
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
@@ -187,9 +187,7 @@ def _more_demanded(seen: Seen, name: str, standing: NDArray[np.bool_], side: flo
     clear, full = inside == 0.0, inside > 0.9
     if full.sum() < WINDOWS or clear.sum() < WINDOWS * fitted.columns.shape[1]:
         return False
-    scale = np.maximum(np.linalg.norm(fitted.columns[clear], axis=0), 1e-300)
-    theta = np.linalg.lstsq(fitted.columns[clear] / scale, fitted.effort[clear], rcond=1e-8)[0] / scale
-    beyond = fitted.columns[full] @ theta - fitted.effort[full]
+    beyond = fitted.columns[full] @ least_squares(fitted.columns[clear], fitted.effort[clear]) - fitted.effort[full]
     most = float(np.abs(fitted.effort[full if side else clear]).mean())
     return float(np.median(side * beyond) if side else np.abs(beyond).mean()) > (BEYOND if side else DROPPED) * most
 

@@ -9,12 +9,11 @@ drops out 0, another unit a thousand. A delay is recognised by how much less the
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
 
 import numpy as np
 
-from bench.arrays import Array, correlation, rms
-from bench.gate.check import Balanced, Check, Seen, absent
+from bench.arrays import Array, rms
+from bench.gate.check import Balanced, Check, Seen, absent, basis_of
 from bench.trace.trace import Trace
 
 NAME = "balance_holds_throughout"
@@ -52,39 +51,33 @@ def holds(seen: Seen) -> Check:
     return Check(NAME, "pass", "one balance holds", ALLOWED)
 
 
-def _basis(columns: Array) -> Array:
-    """Orthonormal columns (n, r) that span others (n, c)."""
-    ways, size, _ = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False)
-    return ways[:, size > 1e-8 * size[0]]
-
-
 def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, str]]:
     """What is wrong with the effort for a stretch of time, and what to do."""
     effort, count = fitted.effort, min(BLOCKS, fitted.effort.size // WINDOWS)
     edges = np.linspace(0, effort.size, count + 1).astype(int)
-    blocks = [slice(*pair) for pair in pairwise(edges)]
-    basis = _basis(fitted.columns)
-    along = np.stack([basis[block].T @ effort[block] for block in blocks], axis=1)
+    basis, sizes = basis_of(fitted.columns), np.diff(edges)
+    along = np.add.reduceat(basis * effort[:, None], edges[:-1]).T
     signs = _signs(along)
     demand = basis @ (along @ signs)
     if float(demand @ demand) < EXPLAINED * float(effort @ effort):
         return
-    asked = np.array([rms(demand[block]) for block in blocks])
-    demanding = asked > DEMANDED * rms(demand)
-    gains = np.array([demand[block] @ effort[block] / max(demand[block] @ demand[block], 1e-300) for block in blocks])
+    products = np.stack([demand, effort, demand * demand, effort * effort, demand * effort])
+    mean_asked, mean, asked, had, both = np.add.reduceat(products, edges[:-1], axis=1) / sizes
+    varies = np.maximum((asked - mean_asked**2) * (had - mean**2), 0.0)
+    demanding = np.sqrt(asked) > DEMANDED * rms(demand)
+    gains = both / np.maximum(asked, 1e-300)
     scale = np.abs(gains) / np.median(np.abs(gains[demanding])) + 1e-300
-    alike = np.array([abs(correlation(demand[block], effort[block])) for block in blocks]) > ALIKE
-    quiet = np.array([rms(effort[block]) for block in blocks]) < QUIET * asked
+    alike = np.abs(both - mean_asked * mean) > ALIKE * np.sqrt(varies)
     faults = (
-        (demanding & quiet, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
-        (demanding & alike & (abs(np.log(scale)) > np.log(SCALED)), 0.0, f"{name} has another scale", "a unit changed"),
-        (demanding & (gains < 0.0), -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
+        (had < QUIET**2 * asked, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
+        (alike & (np.abs(np.log(scale)) > np.log(SCALED)), 0.0, f"{name} has another scale", "a unit changed"),
+        (gains < 0.0, -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
     )
-    whole = _left(fitted, np.ones(effort.size))
     for wrong, factor, found, why in faults:
-        at = np.flatnonzero(wrong)
-        each = np.repeat(np.where(wrong, factor, signs if factor else 1.0), np.diff(edges))
-        if at.size and _left(fitted, each) < (LEFT_BY_SIGNS if factor else LEFT) * whole:
+        at = np.flatnonzero(demanding & wrong)
+        each = np.repeat(np.where(demanding & wrong, factor, signs if factor else 1.0), sizes)
+        most = LEFT_BY_SIGNS if factor else LEFT
+        if at.size and _left(fitted, each) < most * _left(fitted, np.ones(effort.size)):
             first, last = fitted.starts[edges[at[0]]], fitted.starts[edges[at[-1] + 1] - 1] + fitted.length
             begins, ends = (float(trace.time[min(k, len(trace) - 1)] - trace.time[0]) for k in (first, last))
             yield f"{found} from about {begins:.3g} s to {ends:.3g} s", f"likeliest {why}: cut the recording there"
@@ -93,7 +86,7 @@ def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str,
 def _left(fitted: Balanced, factors: Array) -> float:
     """Share of the effort that the balance leaves of the windows, their effort times factors (n,); 0 leaves one out."""
     used = factors != 0.0
-    effort, basis = (fitted.effort * factors)[used], _basis(fitted.columns[used])
+    effort, basis = (fitted.effort * factors)[used], basis_of(fitted.columns[used])
     return 1.0 - float(np.sum((basis.T @ effort) ** 2)) / max(float(effort @ effort), 1e-300)
 
 
@@ -108,19 +101,22 @@ def _signs(along: Array) -> Array:
 def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, str, float]]:
     """That the effort is late, or early, by more than a drive makes it; and the share that so shifted is left."""
     most = round(LONGEST / trace.sample_period)
-    length, shifts = fitted.length, np.arange(-most, most + 1, max(1, most // 50))
+    length, each = fitted.length, max(1, most // 50)
+    shifts = np.arange(-most, most + 1, each)
     columns, efforts = [], []
     for part in fitted.sums:
-        at = part.windows_of(length)
-        inside = (at >= most) & (at + length + most < part.sums.shape[1])
-        ends = at[inside][:, None] + shifts
-        columns.append(part.windows(length)[0][inside])
-        efforts.append((part.sums[-1][ends + length] - part.sums[-1][ends]) / length)
+        inside = [at - most for at in part.places(length) if most <= at < part.effort.size - length - most]
+        if inside:
+            means = (part.sums[-1, length:] - part.sums[-1, :-length]) / length
+            around = np.lib.stride_tricks.sliding_window_view(means, 2 * most + 1)
+            efforts.append(around[slice(inside[0], inside[-1] + 1, part.places(length).step), ::each])
+            at = part.places(length).index(inside[0] + most)
+            columns.append(part.windows(length)[at : at + len(inside), :-1])
     if sum(map(len, columns)) < BLOCKS * WINDOWS // 3:
         return
-    basis, effort = _basis(np.concatenate(columns)), np.concatenate(efforts)
+    basis, effort = basis_of(np.concatenate(columns)), np.concatenate(efforts)
     effort = effort - effort.mean(axis=0)
-    basis = _basis(basis - basis.mean(axis=0))
+    basis = basis_of(basis - basis.mean(axis=0))
     power = np.einsum("nk,nk->k", effort, effort)
     left = 1.0 - np.square(basis.T @ effort).sum(axis=0) / np.maximum(power, 1e-300)
     best, none = int(np.argmin(left)), int(np.argmin(abs(shifts)))

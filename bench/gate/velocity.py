@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from bench.arrays import Array, rms
-from bench.gate.check import Check, Seen, absent, resolution_of
+from bench.gate.check import Check, Seen, absent, least_squares, resolution_of
 from bench.gate.timing import rate
 from bench.trace.motion import integrated
 from bench.trace.noise import white_noise
@@ -64,12 +64,10 @@ def compared(seen: Seen) -> tuple[float, float, float] | None:
     if max(rms(moved), rms(claimed)) <= least:
         return None
     steady = np.std(moved) <= max(STEADY * rms(moved), least)
-    columns = np.column_stack([moved, change, np.full(moved.size, SPAN * trace.sample_period)])
-    columns *= [1.0, not steady, not steady]
-    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    theta = np.linalg.lstsq(columns / scale, claimed, rcond=1e-9)[0] / scale
+    columns = np.column_stack([moved, *([] if steady else [change, np.full(moved.size, SPAN * trace.sample_period)])])
+    theta = least_squares(columns, claimed)
     left = rms(claimed - columns @ theta)
-    return float(theta[0]), -float(theta[1]), left / max(rms(claimed), 1e-300)
+    return float(theta[0]), 0.0 if steady else -float(theta[1]), left / max(rms(claimed), 1e-300)
 
 
 def judged(ratio: float, lag: float, remainder: float) -> Check:

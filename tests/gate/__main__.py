@@ -26,8 +26,8 @@ def measures(trace: Trace, rig: Rig) -> Iterator[tuple[str, float]]:
         ratio, _, remainder = both
         yield f"|ratio - 1| of speed (warned {velocity.WARNED}, refused {velocity.REFUSED})", abs(ratio - 1.0)
         yield f"remainder of speed (refused {velocity.REMAINDER})", remainder
-    damage = repairs.damage_of(trace)
-    share = (damage.lost + damage.stale) / len(trace)
+    missing, again = repairs.damage_of(trace)
+    share = (np.maximum(missing, 0).sum() + again.sum()) / len(trace)
     yield f"share of lost samples (refused {repairs.MOST}, without speed {repairs.MOST_BLIND})", share
     fitted = seen.balance()
     if fitted is not None:

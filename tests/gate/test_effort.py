@@ -89,7 +89,7 @@ def test_shares_explained_are_judged_by_their_borders(fitted, by_motion, by_posi
 @pytest.mark.parametrize("kept", [None, "inertia", "friction", "power"])
 def test_signs_are_opposite_where_inertia_friction_and_power_are_negative_and_not_where_one_is_not(fitted, kept):
     inertia, coulomb, power = (1.0 if kept == name else -1.0 for name in ("inertia", "friction", "power"))
-    turned = replace(fitted, inertia=inertia, coulomb=coulomb, power=power)
+    turned = replace(fitted, inertia=inertia, coulomb=coulomb, effort=power * fitted.columns[:, 1])
     found = effort.judged(turned, "current")
     assert (found.status == "fail" and "opposite signs" in found.found) == (kept is None)
 

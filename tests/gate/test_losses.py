@@ -26,9 +26,9 @@ def test_each_place_of_a_loss_is_found(sound, rig):
     kept = np.delete(np.arange(len(sound)), places)
     speed = np.abs(sound["velocity"][places])
     assert speed.min() > 5.0, "the axis has to move where samples are lost"
-    damage = repairs.damage_of(with_samples(sound, kept))
-    assert np.flatnonzero(damage.missing).tolist() == [k - 1 - n for n, k in enumerate(places)]
-    mended = repairs.repaired(with_samples(sound, kept), damage)
+    missing, again = repairs.damage_of(with_samples(sound, kept))
+    assert np.flatnonzero(missing).tolist() == [k - 1 - n for n, k in enumerate(places)]
+    mended = repairs.repaired(with_samples(sound, kept), missing, again)
     assert mended.time == pytest.approx(sound.time)
     assert np.abs(mended["position"] - sound["position"]).max() < 0.01 * np.abs(np.diff(sound["position"])).max()
 
