@@ -9,7 +9,15 @@ from bench.assets import asset
 from bench.trace.write import write
 from tests.hostile import ROOT
 from tests.studies.benchmarks import __main__ as command
-from tests.studies.benchmarks import beside_lstsq, beside_pyarrow, beside_stepping, diagnosing, growth
+from tests.studies.benchmarks import (
+    beside_before,
+    beside_lstsq,
+    beside_pyarrow,
+    beside_stepping,
+    diagnosing,
+    growth,
+    starting,
+)
 from tests.studies.benchmarks.table import Table
 from tests.studies.benchmarks.table import growth as exponents
 from tests.studies.benchmarks.timing import Timed, in_turn
@@ -41,6 +49,18 @@ def test_a_diagnosis_is_timed(tmp_path):
     (table,) = diagnosing.measured({"one": [files], "two": [files, files]})
     assert [row[:2] for row in table.rows] == [("one", "1"), ("two", "2")]
     assert all(float(row[2].removesuffix(" s")) > 0.0 for row in table.rows)
+
+
+@pytest.mark.slow
+def test_beside_an_earlier_commit_both_identify():
+    (table,) = beside_before.measured(2.0, 1)
+    assert [row[0] for row in table.rows] == [beside_before.BEFORE, "today", "ratio"]
+
+
+@pytest.mark.slow
+def test_whole_commands_are_timed():
+    (table,) = starting.measured(3.0, 1, before=ROOT)
+    assert len(table.rows) == 4
 
 
 @pytest.mark.slow
