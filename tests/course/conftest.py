@@ -59,9 +59,3 @@ def quick(monkeypatch):
         return whole(replace(result, charts=()))
 
     monkeypatch.setattr(course_report, "task_section", undrawn)
-
-
-@pytest.fixture
-def of_recordings(quick, monkeypatch):
-    """The command with what recordings decide alone: tracking simulates three axes of what the other tasks found."""
-    monkeypatch.setattr(course_module, "TASKS", [task for task in course_module.TASKS if task.key != "tracking"])

@@ -51,7 +51,7 @@ def truth():
 
 
 @pytest.mark.parametrize(("mistake", "seed"), CASES, ids=lambda value: getattr(value, "__name__", str(value)))
-def test_no_wrong_number_is_done(mistake, seed, recorded, truth, of_recordings, tmp_path):
+def test_no_wrong_number_is_done(mistake, seed, recorded, truth, quick, tmp_path):
     of = Folder(dict(recorded[0]), list(recorded[1]))
     mistake(of, np.random.default_rng(seed))
     of.write(tmp_path / "data")
@@ -75,7 +75,7 @@ def test_no_wrong_number_is_done(mistake, seed, recorded, truth, of_recordings, 
     ],
     ids=lambda value: " and ".join(one.__name__ for one in value) if isinstance(value, tuple) else "",
 )
-def test_two_mistakes_are_both_named(pair, seed, recorded, truth, of_recordings, tmp_path):
+def test_two_mistakes_are_both_named(pair, seed, recorded, truth, quick, tmp_path):
     """One in what the other hides: a file that stands twice, a hole, exchanged columns, exchanged files."""
     of, random = Folder(dict(recorded[0]), list(recorded[1])), np.random.default_rng(seed)
     for mistake in pair:
