@@ -67,7 +67,7 @@ def response(model: AxisModel, like: Response | None = None) -> Response:
     inertia, acceleration = (own.inertia, least) if like is None else (like.inertia, like.acceleration)
     wide = BANDWIDTH * inertia
     drive = Cascade(BANDWIDTH / 5.0, wide, wide * BANDWIDTH / 6.0, inertia, model.peak_effort, TICK)
-    torque = run([Plant(model, drive, TICK)], [_references(acceleration)]).torque[:, 0]
+    torque = run(Plant(model, drive, TICK), _references(acceleration)).torque
     kept = torque[np.linspace(0, torque.size - 1, INSTANTS + 1).astype(np.intp)[1:]]
     return Response(inertia, acceleration, tuple(kept.tolist()))
 

@@ -32,7 +32,7 @@ def tracking(recordings: LabRecordings) -> TaskResult:
 
 
 def track(recordings: LabRecordings, axis: AxisParameters, identified: float, known: bool) -> TaskResult:
-    """Simulate the fast run with each feed-forward side by side, and compare the deviations from the reference.
+    """Simulate the fast run with each feed-forward, and compare the deviations from the reference.
 
     Args:
         recordings: whose rig has a drive, the rotor's inertia and the disk's geometry; InputError where it lacks one.
@@ -49,8 +49,8 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
     plant = Plant(AxisModel(axis), cascade, cascade.control_period, emulated=True)
     references = plan("fast_reversals", MotionLimits.from_rig(rig, axis, cascade.control_period))
     plants = [replace(plant, cascade=replace(cascade, inertia_feedforward=rotor + load)) for load in loads.values()]
-    states = run(plants, [references] * len(plants))
-    deviation = np.degrees(references.position[:, None] - states.position)
+    motions = [references.position - run(one, references).position for one in plants]
+    deviation = np.degrees(np.stack(motions, axis=1))
     largest, rms = np.abs(deviation).max(axis=0).tolist(), column_rms(deviation).tolist()
     source = joined(SIMULATED, sources("drive", "position_gain"), sources("load", "outer_diameter"))
     numbers = tuple(
@@ -68,7 +68,7 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
         "reversal.",
     )
     drawn = [
-        curve(states.time[::4], deviation[::4, k], f"{name}: {load * KG_CM2:.4g} kg·cm²")
+        curve(references.time[::4], deviation[::4, k], f"{name}: {load * KG_CM2:.4g} kg·cm²")
         for k, (name, load) in enumerate(loads.items())
     ]
     both = (

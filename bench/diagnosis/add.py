@@ -285,7 +285,7 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
     velocity = measured_velocity(trace)
     try:
         before, after = (
-            rms(follow_references(stored.model, trace, recordings.rig).velocity[:, 0] - velocity)
+            rms(follow_references(stored.model, trace, recordings.rig).velocity - velocity)
             for stored in (without.model, extension.model)
         )
     except BenchError:

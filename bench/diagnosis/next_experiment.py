@@ -177,14 +177,14 @@ def separation(
     states = []
     for model in models:
         plant = Plant(model, cascade, references.period)
-        states.append(reported_states(plant.model, run([plant], [references])))
+        states.append(reported_states(plant.model, run(plant, references)))
     smooth = GaussianFilter(max(width, 1.5 * references.period), references.period)
     one, other = states
-    torque, shift = smooth(other.torque[:, 0], 0, 1)
-    speed, acceleration = smooth(other.velocity[:, 0], 0, 1)
-    slower, slower_change = smooth(one.velocity[:, 0], 0, 1)
+    torque, shift = smooth(other.torque, 0, 1)
+    speed, acceleration = smooth(other.velocity, 0, 1)
+    slower, slower_change = smooth(one.velocity, 0, 1)
     parameters = models[0].parameters
-    missed = torque - smooth(one.torque[:, 0], 0)[0] - parameters.inertia * (acceleration - slower_change)
+    missed = torque - smooth(one.torque, 0)[0] - parameters.inertia * (acceleration - slower_change)
     missed = missed - parameters.viscous_friction_coefficient * (speed - slower)
     sign = np.where(np.abs(speed) > CLEAR * np.abs(speed).max(), np.sign(speed), 0.0)
     from scipy.ndimage import uniform_filter1d  # 0.1 s, which only an open question has to pay

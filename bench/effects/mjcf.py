@@ -12,6 +12,8 @@ Spec: TypeAlias = "mujoco.MjSpec"
 AXIS, MOTOR, LOAD, DRIVE, LOAD_TORQUE = "axis", "motor", "load", "drive", "load torque"
 #: The actuator whose bristles are the axis' friction, where it has some.
 BRISTLES = "bristles"
+#: Places of the two friction levels among that actuator's bias parameters.
+BRISTLE_LEVELS = slice(3, 5)
 
 #: A passive DC motor brakes by K**2/R times speed; its constant is chosen so small that this vanishes in rounding.
 PASSIVE_MOTOR_CONSTANT = 1e-12

@@ -33,8 +33,8 @@ from bench.effects.effect import Bristles
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.effects.signals import Number
 from bench.errors import InputError
+from bench.export.simulations import Joints, Simulations
 from bench.plant.model_file import StoredModel, load_models
-from bench.plant.simulations import Joints, Simulations
 from bench.plant.stepped_effects import Acts, Made, Remembered, SteppedEffects, per_axis
 
 #: A model or its data of another engine, whose types are known where it is installed.

@@ -26,11 +26,11 @@ from mujoco.batch import Batch
 from bench.arrays import Array, rms
 from bench.effects.mjcf import AXIS, BRISTLES
 from bench.errors import InputError
+from bench.export.simulations import Joints, Simulations
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant
 from bench.plant.run import run
-from bench.plant.simulations import Joints, Simulations
 from bench.plant.stepped_effects import SteppedEffects
 from bench.rig.rig import Rig
 from bench.structured import csv_text
@@ -142,8 +142,8 @@ def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Fe
     motion = references
     if feedforward is not None:
         cascade, motion = replace(cascade, inertia_feedforward=feedforward.inertia), feedforward.along(references)
-    states = run([Plant(model, cascade, cascade.control_period)], [motion])
-    return Tracking(rms(references.position - states.position[:, 0]), rms(references.velocity - states.velocity[:, 0]))
+    states = run(Plant(model, cascade, cascade.control_period), motion)
+    return Tracking(rms(references.position - states.position), rms(references.velocity - states.velocity))
 
 
 @dataclass(frozen=True)

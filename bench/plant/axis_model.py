@@ -258,7 +258,7 @@ class AxisModel:
 
     @property
     def structure(self) -> tuple[str, ...]:
-        """What is built into the model; models of one structure run side by side."""
+        """Names of what is built into the model."""
         return tuple(present.name for present in self.native)
 
     def spec(self, timestep: float) -> mujoco.MjSpec:

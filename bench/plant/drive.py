@@ -3,14 +3,13 @@
     torque = K_v*e_v + K_i*integral(e_v dt) + J_ff*acceleration_reference,        |torque| <= torque_limit
     e_v = velocity_reference + K_p*(position_reference - position) - velocity
 
-It exists twice and both agree (tests/plant/test_drive.py prints by how much): `CascadeDrive`, ticked in Python on
-arrays of axes, holds its integrator while the torque is limited; `add_pid` is the same law as MuJoCo's own actuator,
-which does not hold, and serves wherever the limit is not reached.
+It exists twice and both agree (tests/plant/test_drive.py prints by how much): `CascadeDrive`, ticked in Python, holds
+its integrator while the torque is limited; `add_pid` is the same law as MuJoCo's own actuator, which does not hold, and
+serves wherever the limit is not reached.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 
@@ -22,18 +21,16 @@ from bench.effects.effect import EncoderFault
 from bench.effects.mjcf import DRIVE
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, AxisParameters
-from bench.plant.stepped_effects import on_axes, per_axis, stacked
 from bench.rig.rig import Rig
 from bench.structured import csv_text
 
-Values = float | Array
 #: Sensor that has to be in a model that runs natively.
 TORQUE = "torque"
 
 
 @dataclass(frozen=True)
 class Cascade:
-    """Gains and limit of a cascade: numbers, or arrays of shape (axes,).
+    """Gains and limit of a cascade.
 
     Attributes:
         position_gain: K_p - 1/s.
@@ -41,14 +38,14 @@ class Cascade:
         integral_gain: K_i - N*m/rad (N/m).
         inertia_feedforward: J_ff - kg*m**2 (kg).
         torque_limit: torque at peak current - N*m (N); infinite without one.
-        control_period: of the loop - s; one for all axes.
+        control_period: of the loop - s.
     """
 
-    position_gain: Values
-    velocity_gain: Values
-    integral_gain: Values
-    inertia_feedforward: Values
-    torque_limit: Values
+    position_gain: float
+    velocity_gain: float
+    integral_gain: float
+    inertia_feedforward: float
+    torque_limit: float
     control_period: float
 
     @classmethod
@@ -68,76 +65,45 @@ def peak_torque(rig: Rig) -> float:
 
 
 class CascadeDrive:
-    """The cascade ticked in software, for any number of axes at once. It starts at rest on its references.
+    """The cascade ticked in software. It starts at rest on its references.
 
     Args:
-        cascade: of all axes.
-        references: signals of shape (ticks, axes).
-        emulated: axes whose friction software makes, for the inertia that they are taken to have.
-        axes: the models, whose encoders the drive sees; without them it sees the true motion.
+        drive: its gains, references and friction.
+        axis: the model whose encoder the drive sees; without one it sees the true motion.
     """
 
-    def __init__(
-        self,
-        cascade: Cascade,
-        references: References,
-        emulated: AxisParameters | None = None,
-        axes: Sequence[AxisModel] = (),
-    ) -> None:
-        period = cascade.control_period
+    def __init__(self, drive: FollowReferences, axis: AxisModel | None = None) -> None:
+        cascade, references, period = drive.cascade, drive.references, drive.cascade.control_period
         self._position_gain = cascade.position_gain
         # The velocity error is integrated by the trapezoidal rule: half of this tick's error, all of those before.
         self._gain = cascade.velocity_gain + cascade.integral_gain * (period / 2.0)
         self._integral_step = cascade.integral_gain * period
         self._upper = cascade.torque_limit
         self._lower = -self._upper
-        self._speed_demand = by_ticks(references.velocity + self._position_gain * references.position)
-        self._feedforward = by_ticks(references.feedforward(cascade.inertia_feedforward))
-        self._integral: Values = 0.0
-        start = per_axis(references.velocity[0])
-        self._friction = None if emulated is None else _EmulatedFriction(emulated, period, start)
-        self._encoders = on_axes(axes, EncoderFault)
+        self._speed_demand = (references.velocity + self._position_gain * references.position).tolist()
+        self._feedforward = references.feedforward(cascade.inertia_feedforward).tolist()
+        self._integral = 0.0
+        start = references.start[1]
+        self._friction = None if drive.emulated is None else _EmulatedFriction(drive.emulated, period, start)
+        self._encoders = [] if axis is None else axis.acting(EncoderFault)
 
-    @classmethod
-    def of(cls, drives: Sequence[FollowReferences], axes: Sequence[AxisModel]) -> CascadeDrive:
-        """Drives of axes side by side, all of one control period."""
-        cascades, emulated = [drive.cascade for drive in drives], None
-        period = cascades[0].control_period
-        cascade = Cascade(**stacked(cascades, without="control_period"), control_period=period)
-        if any(drive.emulated for drive in drives):  # without friction on axes that have theirs in their mechanics
-            made = [drive.emulated or axis.parameters.frictionless for drive, axis in zip(drives, axes, strict=True)]
-            emulated = AxisParameters(**stacked(made, without="kind"))
-        return cls(cascade, side_by_side([drive.references for drive in drives]), emulated, axes)
-
-    def tick(self, k: int, position: Values, velocity: Values) -> tuple[Values, Values]:
+    def tick(self, k: int, position: float, velocity: float) -> tuple[float, float]:
         """Torque from tick k to the next - N*m (N) - of the true motion at it: set-point, and the motor's.
 
         They differ by the emulated friction. The set-point is what the drive reports as current: the torque that moves
         the axis against its friction, whether that sits in the mechanics or in the software.
         """
-        for some in self._encoders:
-            turned, moving = some.effect.measured(some.values, some.of(position), some.of(velocity))
-            position, velocity = some.with_these(position, turned), some.with_these(velocity, moving)
+        for effect, values in self._encoders:
+            position, velocity = effect.measured(values, position, velocity)
         error = self._speed_demand[k] - self._position_gain * position - velocity
         wanted = self._gain * error + self._integral + self._feedforward[k]
-        setpoint = motor = _limited(wanted, self._lower, self._upper)
+        setpoint = motor = max(min(wanted, self._upper), self._lower)
         if self._friction is not None:
             asked = setpoint - self._friction.torque(setpoint, velocity)
-            self._friction.applied = motor = _limited(asked, self._lower, self._upper)
+            self._friction.applied = motor = max(min(asked, self._upper), self._lower)
             setpoint = setpoint + (motor - asked)
         self._integral = self._integral + self._integral_step * error * (setpoint == wanted)
         return setpoint, motor
-
-
-def by_ticks(values: Array) -> Sequence[Values]:
-    """Values of axes (ticks, axes) tick by tick, those of a lone axis as numbers."""
-    return values[:, 0].tolist() if values.shape[1] == 1 else list(values)
-
-
-def _limited(torque: Values, lower: Values, upper: Values) -> Values:
-    if isinstance(torque, np.ndarray):
-        return np.maximum(np.minimum(torque, upper), lower)
-    return max(min(torque, upper), lower)
 
 
 class _EmulatedFriction:
@@ -149,24 +115,23 @@ class _EmulatedFriction:
     slips. The load is what the last tick's change of speed tells: M_load = M_motor - J*(w - w_last)/T.
     """
 
-    def __init__(self, axes: AxisParameters, period: float, velocity: Values) -> None:
-        viscous, inertia = axes.viscous_friction_coefficient, axes.inertia
-        self._upper = axes.coulomb_friction
-        self._lower = -self._upper
+    def __init__(self, axis: AxisParameters, period: float, velocity: float) -> None:
+        viscous, inertia = axis.viscous_friction_coefficient, axis.inertia
+        self._coulomb = axis.coulomb_friction
         self._momentum_rate = inertia / period
         self._stopping = inertia / period - viscous / 2.0
         # friction = dry + K_w*(w + alpha*T/2), solved for friction
         self._share = inertia / (inertia + viscous * period / 2.0)
         self._viscous = self._share * viscous
         self._last = self._momentum_rate * velocity
-        self.applied: Values = 0.0
+        self.applied = 0.0
 
-    def torque(self, setpoint: Values, velocity: Values) -> Values:
-        """Friction torque - N*m (N), (axes,), to be taken off the set-point."""
+    def torque(self, setpoint: float, velocity: float) -> float:
+        """Friction torque - N*m (N) - to be taken off the set-point."""
         now = self._momentum_rate * velocity
         net = setpoint - self.applied + (now - self._last)
         self._last = now
-        dry = _limited(net + self._stopping * velocity, self._lower, self._upper)
+        dry = max(min(net + self._stopping * velocity, self._coulomb), -self._coulomb)
         return net + self._share * (dry - net) + self._viscous * velocity
 
 
@@ -184,13 +149,13 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
     takes kp*T/2 off kv; `pid_inputs` sends the position reference ahead alike.
     """
     actuator = spec.actuator(DRIVE)
-    kp = float(cascade.velocity_gain * cascade.position_gain + cascade.integral_gain)
-    kv = float(cascade.velocity_gain) - kp * cascade.control_period / 2.0
-    ki = float(cascade.integral_gain * cascade.position_gain)
+    kp = cascade.velocity_gain * cascade.position_gain + cascade.integral_gain
+    kv = cascade.velocity_gain - kp * cascade.control_period / 2.0
+    ki = cascade.integral_gain * cascade.position_gain
     inputs = mujoco.mjtCtrlInput.mjINPUT_POS | mujoco.mjtCtrlInput.mjINPUT_VEL | mujoco.mjtCtrlInput.mjINPUT_FF
     actuator.set_to_pid(kp=kp, kv=kv, ki=ki if ki > 0.0 else -1.0, ctrlspec=int(inputs))
     if np.isfinite(cascade.torque_limit):
-        actuator.forcerange = [-float(cascade.torque_limit), float(cascade.torque_limit)]
+        actuator.forcerange = [-cascade.torque_limit, cascade.torque_limit]
         actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
     sense_torque(spec)
 
@@ -205,10 +170,10 @@ def pid_inputs(cascade: Cascade, references: References) -> Array:
 
 @dataclass(frozen=True)
 class References:
-    """A motion at the drive's ticks. Signals have shape (ticks,), or (ticks, axes) for axes side by side.
+    """A motion at the drive's ticks (ticks,).
 
     Attributes:
-        time: of the ticks, from zero - s - (ticks,).
+        time: of the ticks, from zero - s.
         position, velocity, acceleration: rad, rad/s, rad/s**2 (m, m/s, m/s**2 on a linear axis).
         torque: that is added to the drive's set-point, beside its own feed-forward - N*m (N); None without any.
     """
@@ -219,14 +184,14 @@ class References:
     acceleration: Array
     torque: Array | None = None
 
-    def feedforward(self, inertia: Array | float) -> Array:
+    def feedforward(self, inertia: float) -> Array:
         """Torque that is fed forward - N*m (N) - by a drive that takes its inertia to be one - kg*m**2 (kg)."""
         accelerating = inertia * self.acceleration
         return accelerating if self.torque is None else accelerating + self.torque
 
     @property
     def start(self) -> tuple[float, float]:
-        """Position and velocity of one axis at the first tick - rad (m), rad/s (m/s)."""
+        """Position and velocity at the first tick - rad (m), rad/s (m/s)."""
         return float(self.position[0]), float(self.velocity[0])
 
     @property
@@ -261,14 +226,8 @@ class References:
 
 @dataclass(frozen=True, eq=False)
 class FollowReferences:
-    """The drive of one axis along references (ticks,); where the axis is `emulated`, software makes its friction."""
+    """A drive along references; where an axis is `emulated`, software makes the friction of that."""
 
     cascade: Cascade
     references: References
     emulated: AxisParameters | None = None
-
-
-def side_by_side(references: list[References]) -> References:
-    """Motions of several axes over one time, as one of shape (ticks, axes)."""
-    signals = [(r.position, r.velocity, r.acceleration, r.feedforward(0.0)) for r in references]
-    return References(references[0].time, *(np.stack(signal, axis=1) for signal in zip(*signals, strict=True)))

@@ -67,22 +67,16 @@ class ClosedLoop:
         """Whether MuJoCo runs it all by itself."""
         return not isinstance(self.controller, FollowReferences) and self.axis.all_native
 
-    @property
-    def alike(self) -> tuple[object, ...]:
-        """What loops have in common that can run side by side; none is twice as long as another or more."""
-        timestep = round(self.compiled.opt.timestep, 12)
-        return type(self.controller), self.axis.structure, timestep, self.substeps, self.every, self.ticks.bit_length()
-
 
 @dataclass(frozen=True)
 class States:
-    """True motion at a controller's ticks, without any sensor; position and velocity are simultaneous.
+    """True motion at a controller's ticks (ticks,), without any sensor; position and velocity are simultaneous.
 
     Attributes:
-        time: s - (ticks,).
-        position, velocity: rad (m on a linear axis), rad/s (m/s) - (ticks, axes).
-        torque: set-point from each tick to the next - N*m (N) - (ticks, axes).
-        motor_torque: what the motor makes; less the emulated friction - N*m (N) - (ticks, axes).
+        time: s.
+        position, velocity: rad (m on a linear axis), rad/s (m/s).
+        torque: set-point from each tick to the next - N*m (N).
+        motor_torque: what the motor makes; less the emulated friction - N*m (N).
     """
 
     time: Array
@@ -90,10 +84,6 @@ class States:
     velocity: Array
     torque: Array
     motor_torque: Array
-
-    def axis(self, index: int, ticks: int | None = None) -> States:
-        """Motion of one axis, over its first ticks; signals stay two-dimensional."""
-        return States(self.time[:ticks], *(signal[:ticks, index : index + 1] for signal in self.signals))
 
     @property
     def diverged(self) -> bool:
@@ -137,14 +127,14 @@ class Plant:
         """The simulated axis that a rig describes; InputError where `[drive]` or `[simulation]` lack or contradict."""
         parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
         timestep = rig.simulated.timestep or cascade.control_period
-        axis = AxisModel(parameters, tuple(effects), float(cascade.torque_limit), winding_of(rig))
+        axis = AxisModel(parameters, tuple(effects), cascade.torque_limit, winding_of(rig))
         return cls(axis, cascade, timestep, rig.simulated.friction == "drive")
 
     @cached_property
     def model(self) -> AxisModel:
         """The axis without its drive, whose limit is its peak effort; friction as the mechanics have it."""
         parameters = self.axis.parameters.frictionless if self.emulated else self.axis.parameters
-        return replace(self.axis, parameters=parameters, peak_effort=float(self.cascade.torque_limit))
+        return replace(self.axis, parameters=parameters, peak_effort=self.cascade.torque_limit)
 
     @property
     def substeps(self) -> int:

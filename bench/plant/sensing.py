@@ -66,13 +66,13 @@ def remaining(model: AxisModel, stage: Stage, at: AxisState) -> Array:
 
 
 def reported_states(model: AxisModel, states: States) -> States:
-    """A motion of one axis as its sensors report it."""
+    """A motion as the axis' sensors report it."""
     step = float(states.time[1] - states.time[0])
-    position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
-    torque = states.torque[:, 0]
+    position, velocity = reported(model, states.position, states.velocity, step)
+    torque = states.torque
     for lag, values in lags(model, "current"):
         torque = lag.lagging(values, torque, step)
-    return replace(states, position=position[:, None], velocity=velocity[:, None], torque=torque[:, None])
+    return replace(states, position=position, velocity=velocity, torque=torque)
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class Sensors:
         return stride
 
     def record(self, states: States, references: References, random: np.random.Generator, origin: str) -> Trace:
-        """Trace of one axis' motion along references (ticks,), position, velocity and current of a row simultaneous.
+        """Trace of a motion along references, position, velocity and current of a row simultaneous.
 
         Position is rounded to counts. Velocity is the drive's own, true speed with noise. The drive holds its current
         over each tick; the current of a row is interpolated between the middles of the ticks around it, by a cubic
@@ -120,11 +120,11 @@ class Sensors:
         from scipy.interpolate import PchipInterpolator  # 0.1 s, which only a simulated recording has to pay
 
         rows = slice(None, None, self.stride(references.period))
-        time, position, velocity = states.time[rows], states.position[rows, 0], states.velocity[rows, 0]
+        time, position, velocity = states.time[rows], states.position[rows], states.velocity[rows]
         noise = random.standard_normal((2, len(time)))
         if self.encoder_resolution > 0.0:
             position = np.round(position / self.encoder_resolution) * self.encoder_resolution
-        effort, held = self.kind.effort, states.torque[:, 0]
+        effort, held = self.kind.effort, states.torque
         if self.torque_constant is not None:
             effort, held = "current", self.torque_constant.current(held)
         middles = states.time + (states.time[1] - states.time[0]) / 2.0

@@ -31,7 +31,7 @@ SCHEMA = "bench.truth/1"
 
 @dataclass(frozen=True, repr=False)
 class Simulated:
-    """What the sensors recorded, what of, the true motion at the drive's ticks - (ticks, 1) - and what the drive
+    """What the sensors recorded, what of, the true motion at the drive's ticks, and what the drive
     followed.
     """
 
@@ -83,7 +83,7 @@ def simulate(
     if steps > MOST_TICKS:
         allowed = f"allowed: up to {MOST_TICKS:g} for this motion"
         raise InputError(f"{rig.source}: simulation.timestep", f"takes {steps:.3g} steps", allowed)
-    states = run([plant], [references], progress)
+    states = run(plant, references, progress)
     origin = f"simulation of {rig.name}, {profile}, seed {seed}"
     trace = sensors.record(reported_states(plant.model, states), references, np.random.default_rng(seed), origin)
     friction = "drive" if plant.emulated else "mechanics"

@@ -121,7 +121,7 @@ def run_free(held: SoftTracking, windows: Sequence[slice]) -> list[Tracked]:
 def _at_samples(model: AxisModel, loop: ClosedLoop, states: States, skip: int) -> tuple[Array, Array]:
     """Position and velocity that sensors report of a loop's motion, at the recording's samples."""
     step = loop.compiled.opt.timestep
-    position, velocity = reported(model, states.position[:, 0], states.velocity[:, 0], step)
+    position, velocity = reported(model, states.position, states.velocity, step)
     return position[::skip], velocity[::skip]
 
 
@@ -228,7 +228,7 @@ def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> States:
         allowed = f"allowed: a multiple of the control period of {period:g} s"
         raise InputError(trace.origin, f"found samples every {sampled:g} s", allowed)
     plant = Plant(model, cascade, period)
-    states = reported_states(plant.model, run([plant], [references_of(trace, period, stride)]))
+    states = reported_states(plant.model, run(plant, references_of(trace, period, stride)))
     return States(states.time[::stride], *(signal[::stride] for signal in states.signals))
 
 

@@ -120,14 +120,14 @@ def along_profile(path: str | Path, rig: Rig, profile: str) -> SideBySide:
         raise InputError(f"{path}: kind", f"found '{kind.name}'", f"allowed: '{rig.kind}', as {rig.source} says")
     asked = plan(profile, MotionLimits.from_rig(rig, stored.model.parameters, cascade.control_period))
     plant = Plant(stored.model, cascade, cascade.control_period)
-    states = reported_states(plant.model, run([plant], [asked]))
+    states = reported_states(plant.model, run(plant, asked))
     return SideBySide(
         kind=kind,
         ghost_is="asked for",
         simulated_is=f"The drive of {rig.name} makes the model follow {profile.replace('_', ' ')}.",
         time=asked.time,
         ghost=asked.position,
-        position=states.position[:, 0],
+        position=states.position,
         ghost_velocity=asked.velocity,
-        velocity=states.velocity[:, 0],
+        velocity=states.velocity,
     )

@@ -99,7 +99,7 @@ def test_emps_moves_alike_in_closed_loop(emps_found):
     assert emps_found.model is not None
     followed = follow_references(emps_found.model.model, at_rest, EMPS)
     measured = Published.of(trace)
-    position, velocity, force = (each[:, 0] for each in (followed.position, followed.velocity, followed.torque))
+    position, velocity, force = followed.position, followed.velocity, followed.torque
     simulated = (position, velocity, np.gradient(velocity, 1e-3), force)
     pairs = zip((measured.position, measured.velocity, measured.acceleration, measured.force), simulated, strict=True)
     errors = [float(np.linalg.norm(one - other[49:]) / np.linalg.norm(one)) for one, other in pairs]

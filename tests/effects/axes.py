@@ -113,22 +113,6 @@ def plant(*names: str) -> Plant:
 FREE = AxisParameters(AXIS.inertia, motor_inertia=AXIS.rotor_inertia)
 
 
-def pushed(
-    effects: list[Present],
-    duration: float,
-    torque: float = 0.0,
-    velocity: float = 0.0,
-    position: float = 0.0,
-    parameters: AxisParameters = FREE,
-) -> tuple[Plant, References]:
-    """An axis under a constant demanded torque: the drive has no gains, its feed-forward is the torque."""
-    time = PERIOD * np.arange(round(duration / PERIOD) + 1)
-    still = np.zeros_like(time)
-    references = References(time, still + position, still + velocity, still + torque)
-    open_loop = Cascade(0.0, 0.0, 0.0, 1.0, AXIS.peak_torque, PERIOD)
-    return Plant(AxisModel(parameters, tuple(effects), winding=WINDING), open_loop, PERIOD), references
-
-
 def moved(
     effects: list[Present],
     duration: float,
@@ -137,14 +121,17 @@ def moved(
     position: float = 0.0,
     parameters: AxisParameters = FREE,
 ) -> States:
-    """Motion of such an axis alone."""
-    one, references = pushed(effects, duration, torque, velocity, position, parameters)
-    return run([one], [references])
+    """Motion of an axis under a constant demanded torque: the drive has no gains, its feed-forward is the torque."""
+    time = PERIOD * np.arange(round(duration / PERIOD) + 1)
+    still = np.zeros_like(time)
+    references = References(time, still + position, still + velocity, still + torque)
+    open_loop = Cascade(0.0, 0.0, 0.0, 1.0, AXIS.peak_torque, PERIOD)
+    return run(Plant(AxisModel(parameters, tuple(effects), winding=WINDING), open_loop, PERIOD), references)
 
 
 def signals(states: States) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Time, position and velocity, (n,) each."""
-    return states.time, states.position[:, 0], states.velocity[:, 0]
+    return states.time, states.position, states.velocity
 
 
 class Reversals:

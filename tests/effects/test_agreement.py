@@ -22,15 +22,15 @@ FLOOR = {"velocity": 0.002, "measured_velocity": 0.002, "measured_position": 5e-
 @pytest.mark.parametrize("case", CASES, ids=" + ".join)
 def test_same_motion(case, truths):
     bench = plant(*case)
-    states = run([bench], [MOTION.references()])
+    states = run(bench, MOTION.references())
     seen = reported_states(bench.model, states)
     bare, true = truths[()], truths[case]
     found = {"velocity": states.velocity, "measured_velocity": seen.velocity, "measured_position": seen.position}
     for name, values in found.items():
-        off, changed = rms(values[:, 0] - true[name]), rms(true[name] - bare[name])
+        off, changed = rms(values - true[name]), rms(true[name] - bare[name])
         print(f"{' + '.join(case)}: {name} {off:.1e} of {changed:.3g}")
         assert off < FLOOR[name] + SHARE.get(case, 0.01) * changed
-    off = rms((seen.torque[:, 0] - AXIS.torque_constant * true["current"])[:-1])
+    off = rms((seen.torque - AXIS.torque_constant * true["current"])[:-1])
     changed = AXIS.torque_constant * rms(true["current"] - bare["current"])
     print(f"{' + '.join(case)}: torque {off:.1e} of {changed:.3g} N*m")
     # the independent current is that of a moment, the bench's the mean of a step

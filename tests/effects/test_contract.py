@@ -15,7 +15,8 @@ from bench.effects.torque import Friction, Inertia, Torque
 from bench.plant.axis_model import build_spec
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
-from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant, present, pushed
+from bench.plant.stepped_effects import SteppedEffects
+from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, moved, plant, present
 from tests.plant.open_loop import open_loop
 
 #: Those of other packages are held by their own tests.
@@ -42,7 +43,7 @@ def test_every_effect_of_the_catalogue_is_tried():
 def test_null_values_leave_the_trajectory_as_it_is(name):
     bare, null = plant(), replace(plant(), axis=model().with_effects([with_null(name)]))
     assert null.model.effects == ()
-    np.testing.assert_array_equal(run([null], [SHORT]).velocity, run([bare], [SHORT]).velocity)
+    np.testing.assert_array_equal(run(null, SHORT).velocity, run(bare, SHORT).velocity)
 
 
 @pytest.mark.parametrize("name", [n for n in EFFECTS if np.isfinite(list(dict(with_null(n).values).values())).all()])
@@ -76,13 +77,13 @@ def test_it_does_something(name):
 
 
 def reported(*names):
-    return reported_states(model(*names), run([plant(*names)], [SHORT]))
+    return reported_states(model(*names), run(plant(*names), SHORT))
 
 
 def test_order_does_not_matter():
     names = [name for name in EFFECTS if name != "backlash"]
     plants = [plant(*names), plant(*names[::-1]), plant(*np.random.default_rng(1).permutation(names))]
-    first, *others = (run([one], [SHORT]).velocity for one in plants)
+    first, *others = (run(one, SHORT).velocity for one in plants)
     for other in others:
         np.testing.assert_array_equal(other, first)
     assert np.abs(first).max() > 10.0
@@ -90,12 +91,13 @@ def test_order_does_not_matter():
 
 @pytest.fixture(scope="module")
 def coasting():
-    """Speed at every tick of an axis with each friction, left alone at either speed; all run together."""
+    """Speed at every tick of an axis with each friction, left alone at either speed."""
     friction = replace(FREE, coulomb_friction=AXIS.coulomb, viscous_friction_coefficient=AXIS.viscous)
     cases = list(product(DISSIPATIVE, (40.0, -40.0)))
-    axes = [pushed([present(name)], 1.0, velocity=velocity, parameters=friction) for name, velocity in cases]
-    states = run(*zip(*axes, strict=True))
-    return dict(zip(cases, states.velocity.T, strict=True))
+    return {
+        (name, velocity): moved([present(name)], 1.0, velocity=velocity, parameters=friction).velocity
+        for name, velocity in cases
+    }
 
 
 @pytest.mark.parametrize("name", DISSIPATIVE)
@@ -117,7 +119,7 @@ def test_columns_agree_with_the_simulation(name):
     if name == "friction_warmup":
         values["relative_amplitude"] = 0.4
     axis = model().with_effects([Present.of(name, values)])
-    states = run([replace(plant(), axis=axis)], [Reversals(0.6).references()])
+    states = run(replace(plant(), axis=axis), Reversals(0.6).references())
     gap, columns, shape = balance(effect, values, states)
     strengths, *_ = np.linalg.lstsq(columns, gap, rcond=None)
     off = gap - columns @ strengths
@@ -135,10 +137,10 @@ def test_columns_agree_with_the_simulation(name):
 
 def balance(effect: Effect, values, states):
     """The gap at the middles of steps that do not reverse, the effect's columns there, and its shape."""
-    time, q, w = states.time, states.position[:, 0], states.velocity[:, 0]
-    effort = states.torque[:-1, 0]
+    time, q, w = states.time, states.position, states.velocity
+    effort = states.torque[:-1]
     middle = signals_of(time[:-1] + PERIOD / 2.0, (q[1:] + q[:-1]) / 2.0, (w[1:] + w[:-1]) / 2.0, effort)
-    ends = signals_of(time, q, w, states.torque[:, 0])
+    ends = signals_of(time, q, w, states.torque)
     given = {**values, "bristle_rate": values.get("bristle_stiffness", 0.0) / AXIS.coulomb}
     shape = [given[shape.quantity.name] for shape in effect.shapes]
     columns = [
@@ -165,13 +167,20 @@ def signals_of(time, position, velocity, effort):
     )
 
 
-def test_axes_with_and_without_effects_run_side_by_side_as_alone():
-    """Ticked effects gather over the axes that have them; models of other structure run in another batch."""
-    cases = [("stribeck_friction", "torque_ripple"), ("friction_warmup",), ("torque_ripple", "cogging_torque"), ()]
-    plants = [plant(*case) for case in cases]
-    together = run(plants, [SHORT] * len(plants))
-    for column, one in enumerate(plants):
-        np.testing.assert_array_equal(together.velocity[:, column], run([one], [SHORT]).velocity[:, 0])
+def test_axes_with_and_without_effects_are_moved_side_by_side_as_alone():
+    """An effect is gathered over the axes that have it."""
+    cases = [("stribeck_friction", "torque_ripple"), ("friction_warmup",), ("torque_ripple",), ()]
+    axes = [model(*case) for case in cases]
+    time, position, velocity, demand = 0.3, *(np.array([0.3, -1.0, 2.0, 0.1]) * size for size in (1.0, 5.0, 2.0))
+    together = SteppedEffects(axes, PERIOD)
+    found = together.act(together.start(velocity), time, position, velocity, demand)
+    for column, axis in enumerate(axes):
+        alone, state = SteppedEffects([axis], PERIOD), [one.item(column) for one in (position, velocity, demand)]
+        acts = alone.act(alone.start(state[1]), time, *state)
+        for name in ("reported", "motor", "torque", "friction"):
+            expected = getattr(acts, name)
+            expected = PARAMETERS.coulomb_friction if expected is None else expected
+            assert getattr(found, name)[column] == pytest.approx(expected, rel=1e-14)
 
 
 def test_the_joint_is_called_as_in_the_mjcf():

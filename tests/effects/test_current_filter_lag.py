@@ -25,8 +25,8 @@ def test_lags_a_ramp_and_is_undone():
 
 def test_the_axis_does_not_feel_it():
     references = Reversals(0.2).references()
-    states = run([plant(NAME)], [references])
-    np.testing.assert_array_equal(states.velocity, run([plant()], [references]).velocity)
+    states = run(plant(NAME), references)
+    np.testing.assert_array_equal(states.velocity, run(plant(), references).velocity)
     assert np.abs(reported_states(model(NAME), states).torque - states.torque).max() > 0.01
 
 

@@ -42,7 +42,7 @@ def recording(signals, *left_out):
 
 
 def gap(axis, trace, rig):
-    return float(np.sqrt(np.mean((follow_references(axis, trace, rig).velocity[:, 0] - trace["velocity"]) ** 2)))
+    return float(np.sqrt(np.mean((follow_references(axis, trace, rig).velocity - trace["velocity"]) ** 2)))
 
 
 @pytest.mark.parametrize(

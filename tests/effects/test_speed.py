@@ -4,7 +4,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from bench.plant import run as runners
 from bench.plant.run import run
 from bench.plant.tracking import SoftTracking, track
 from bench.trace.trace import Trace
@@ -26,19 +25,13 @@ MANY_TICKED = (
 
 @pytest.fixture
 def steps(monkeypatch):
-    """One entry for each call by which Python steps an axis, or several side by side."""
+    """One entry for each call by which Python steps an axis."""
     calls = []
-
-    class Counted(runners.Batch):
-        def step(self, *args, **kwargs):
-            calls.append(self)
-            return super().step(*args, **kwargs)
 
     def counted(model, data, mj_step=mujoco.mj_step):
         calls.append(model)
         return mj_step(model, data)
 
-    monkeypatch.setattr(runners, "Batch", Counted)
     monkeypatch.setattr(mujoco, "mj_step", counted)
     return calls
 
@@ -56,16 +49,15 @@ def tracked(names, trace):
 
 
 @pytest.mark.parametrize(("names", "each"), [((), 0), (NATIVE, 0), (TICKED, STEPS), (MANY_TICKED, STEPS)], ids=str)
-def test_native_effects_leave_all_steps_to_mujoco_and_ticked_ones_share_theirs(names, each, steps):
+def test_native_effects_leave_all_steps_to_mujoco(names, each, steps):
     trace = recorded(0.2)
     assert np.isfinite(tracked(names, trace)).all()
     assert len(steps) == pytest.approx(each * len(trace), abs=STEPS)
 
 
-@pytest.mark.parametrize("axes", [1, 50])
-def test_many_axes_take_the_steps_of_one(axes, steps):
+def test_a_drive_takes_one_step_a_tick(steps):
     references, one = Reversals(0.02).references(), plant(*MANY_TICKED)
-    run([one] * axes, [references] * axes)
+    run(one, references)
     assert len(steps) == len(references.time) * one.substeps
 
 
@@ -74,10 +66,3 @@ def test_many_axes_take_the_steps_of_one(axes, steps):
 def test_tracking_a_recording(names, benchmark):
     """13 s at 1 kHz, 26000 steps."""
     assert np.isfinite(benchmark(tracked, names, recorded(13.0))).all()
-
-
-@pytest.mark.slow
-def test_a_hundred_axes(benchmark):
-    references = Reversals(0.2).references()
-    states = benchmark(run, [plant(*MANY_TICKED)] * 100, [references] * 100)
-    assert states.velocity.shape == (references.time.size, 100)

@@ -54,7 +54,7 @@ def test_top_speed_is_that_of_the_voltage():
     _, _, velocity = signals(states)
     assert velocity[-1] == pytest.approx(36.0 / WINDING.back_emf_constant, rel=1e-3)
     np.testing.assert_allclose(states.torque, states.motor_torque, atol=1e-12)
-    assert abs(states.torque[-1, 0]) < 0.05
+    assert abs(states.torque[-1]) < 0.05
 
 
 def test_a_winding_without_inductance_jumps():

@@ -11,7 +11,7 @@ from bench.effects.effect import EncoderFault
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
 from bench.export.mjcf import ArmatureShare, armature_of, onto
-from bench.plant.drive import CascadeDrive, References, side_by_side
+from bench.plant.drive import CascadeDrive, FollowReferences, References
 from bench.plant.model_file import Mounting, StoredModel, model_toml
 from bench.plant.run import run
 from tests.effects.axes import CASCADE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant
@@ -28,22 +28,20 @@ TOGETHER = ("stribeck_friction", "friction_warmup", "torque_ripple", "presliding
 def driven(simulation, effects, joint=AXIS, actuator=DRIVE, ratio=1.0):
     """Speed of the motor - (n,) - in a loop of one's own, under the drive of the rig written around it."""
     data, half = mujoco.MjData(simulation), PERIOD / 2.0
-    drive = CascadeDrive(CASCADE, side_by_side([REFERENCES]))
+    drive = CascadeDrive(FollowReferences(CASCADE, REFERENCES))
     here, control = simulation.joint(joint), simulation.actuator_ctrladr[simulation.actuator(actuator).id]
     q, w = int(here.qposadr[0]), int(here.dofadr[0])
     velocity = np.empty(TIME.size)
     for k in range(TIME.size):
-        speed = ratio * data.qvel[w : w + 1]
-        velocity[k] = speed[0]
-        _, motor = drive.tick(k, ratio * data.qpos[q : q + 1] - half * speed, speed)
-        data.ctrl[control] = motor[0]
+        velocity[k] = speed = ratio * float(data.qvel[w])
+        _, data.ctrl[control] = drive.tick(k, ratio * float(data.qpos[q]) - half * speed, speed)
         effects.step(simulation, data)
     return velocity
 
 
 @pytest.mark.parametrize("names", [*((name,) for name in ACTING), TOGETHER], ids="+".join)
 def test_it_agrees_with_the_plant(names):
-    expected = run([plant(*names)], [REFERENCES]).velocity[:, 0]
+    expected = run(plant(*names), REFERENCES).velocity
     effects = bench.Effects(StoredModel("axis", plant(*names).model))
     velocity = driven(plant(*names).spec().compile(), effects)
     # the native drive is MuJoCo's, which agrees with the one written out to 3e-5 of 100 rad/s (docs/plant.md)
@@ -53,7 +51,7 @@ def test_it_agrees_with_the_plant(names):
 def test_it_agrees_on_a_joint_behind_a_gear(tmp_path):
     """From the file, on an MJCF of somebody else whose link has the load's inertia."""
     names, ratio = TOGETHER[:3], 12.0
-    expected = run([plant(*names)], [REFERENCES]).velocity[:, 0]
+    expected = run(plant(*names), REFERENCES).velocity
     toml = tmp_path / "model.toml"
     toml.write_text(model_toml(StoredModel("axis", model(*names), mounting=Mounting(ratio))), encoding="utf-8")
     load = (PARAMETERS.inertia - PARAMETERS.motor_inertia) * ratio**2

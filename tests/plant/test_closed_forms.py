@@ -46,14 +46,14 @@ def test_coast_down_to_standstill(name):
     steps = round(1.3 * stop / timestep)
     states = coast(parameters, 0.0, speed, 0.3, steps, timestep)
     velocity, distance, stop = closed_form(parameters, 0.0, speed, states.time)
-    worst = np.abs(states.velocity[:, 0] - velocity).max()
-    stopped = states.time[np.flatnonzero(np.abs(states.velocity[:, 0]) < 1e-4)[0]]
+    worst = np.abs(states.velocity - velocity).max()
+    stopped = states.time[np.flatnonzero(np.abs(states.velocity) < 1e-4)[0]]
     print(f"coast-down, {name}: worst velocity deviation {worst:.2e} rad/s, stop {stopped:.5f} s, exact {stop:.5f} s")
     assert worst < 1e-4
     assert 0.0 <= stopped - stop <= timestep
     # The trapezoidal rule over each step, h**2/12 of the change of acceleration, and h**2/8 of it where motion ends.
     deceleration = (parameters.viscous_friction_coefficient * speed + parameters.coulomb_friction) / parameters.inertia
-    assert np.abs(states.position[:, 0] - 0.3 - distance).max() < 0.21 * timestep**2 * deceleration
+    assert np.abs(states.position - 0.3 - distance).max() < 0.21 * timestep**2 * deceleration
 
 
 @pytest.mark.parametrize("share", [-0.5, 0.5, 0.95])
@@ -70,7 +70,7 @@ def test_breaks_away_above_breakaway_torque():
     parameters, _, timestep = AXES["the lab's axis"]
     states = coast(parameters, 1.05 * parameters.coulomb_friction, 0.0, 0.0, 4000, timestep)
     velocity = closed_form(parameters, 1.05 * parameters.coulomb_friction, 0.0, states.time)[0]
-    assert np.abs(states.velocity[:, 0] - velocity).max() < 1e-4
+    assert np.abs(states.velocity - velocity).max() < 1e-4
 
 
 @pytest.mark.parametrize("load_torque", [0.0, 0.4])
@@ -78,10 +78,10 @@ def test_constant_torque_accelerates_to_its_final_speed(load_torque):
     parameters = dataclasses.replace(AXES["the lab's axis"][0], load_torque=load_torque)
     states = coast(parameters, 1.0, 2.0, 0.0, 8000, 250e-6)
     velocity, distance, _ = closed_form(parameters, 1.0, 2.0, states.time)
-    worst = np.abs(states.velocity[:, 0] - velocity).max()
+    worst = np.abs(states.velocity - velocity).max()
     print(f"constant torque against load {load_torque} N*m: worst velocity deviation {worst:.2e} rad/s")
     assert worst < 1e-6
-    assert np.abs(states.position[:, 0] - distance).max() < 1e-7 * distance[-1]
+    assert np.abs(states.position - distance).max() < 1e-7 * distance[-1]
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -89,14 +89,14 @@ def test_load_torque_is_held_by_friction_or_not(sign):
     parameters = dataclasses.replace(AXES["the lab's axis"][0], load_torque=sign * 0.08)
     assert np.abs(coast(parameters, 0.0, 0.0, 0.0, 2000, 250e-6).velocity).max() < 1e-4
     parameters = dataclasses.replace(parameters, load_torque=sign * 0.09)
-    assert coast(parameters, 0.0, 0.0, 0.0, 2000, 250e-6).velocity[-1, 0] * sign < -0.5
+    assert coast(parameters, 0.0, 0.0, 0.0, 2000, 250e-6).velocity[-1] * sign < -0.5
 
 
 def test_work_of_the_motor_is_kinetic_energy_and_friction_heat():
     parameters, _, timestep = AXES["the lab's axis"]
     time = np.arange(8000) * timestep
     states = open_loop(build_spec(parameters, timestep), 0.6 * np.sin(9.0 * time))
-    torque, velocity = states.torque[:-1, 0], states.velocity[:, 0]
+    torque, velocity = states.torque[:-1], states.velocity
     mean = (velocity[1:] + velocity[:-1]) / 2.0
     friction = parameters.viscous_friction_coefficient * mean**2 + parameters.coulomb_friction * np.abs(mean)
     work, heat = (torque * mean).sum() * timestep, friction.sum() * timestep
@@ -113,7 +113,7 @@ def test_error_falls_with_the_square_of_the_step():
         spec = build_spec(parameters, timestep)
         spec.joint("axis").stiffness = [4.0, 0.0, 0.0]
         states = open_loop(spec, np.zeros(len(time)), position=1.0)
-        return np.abs(states.position[:, 0] - np.cos(np.sqrt(4.0 / parameters.inertia) * time)).max()
+        return np.abs(states.position - np.cos(np.sqrt(4.0 / parameters.inertia) * time)).max()
 
     coarse, fine = error(500e-6), error(250e-6)
     print(f"spring: position error {coarse:.2e} rad at 500 us, {fine:.2e} rad at 250 us")

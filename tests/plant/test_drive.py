@@ -7,7 +7,7 @@ import pytest
 
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel, AxisParameters
-from bench.plant.drive import Cascade, CascadeDrive, References
+from bench.plant.drive import Cascade, CascadeDrive, FollowReferences, References
 from bench.plant.plant import Plant
 from bench.plant.run import run, run_native, run_ticked
 
@@ -69,7 +69,7 @@ def worst(a, b):
 
 def test_mujoco_actuator_is_the_ticked_cascade(plant):
     references = reversals()
-    off = worst(run_native(plant.native_loop(references)), run_ticked([plant.ticked_loop(references)]))
+    off = worst(run_native(plant.native_loop(references)), run_ticked(plant.ticked_loop(references)))
     print(f"pid against ticked cascade: {off['velocity']:.1e} rad/s, {off['torque']:.1e} N*m")
     assert off["velocity"] < 1e-4
     assert off["torque"] < 1e-4
@@ -79,14 +79,14 @@ def test_mujoco_actuator_is_the_ticked_cascade(plant):
 def test_plant_moves_as_the_written_law_on_an_exact_axis(plant, speed):
     """The higher speed limits the torque now and then, so that the integrator holds."""
     references = reversals(speed=speed)
-    states, (position, velocity, torque) = run([plant], [references]), written_law(plant, references)
+    states, (position, velocity, torque) = run(plant, references), written_law(plant, references)
     limited = np.abs(torque) >= plant.cascade.torque_limit
-    off = np.abs(states.velocity[:, 0] - velocity)
+    off = np.abs(states.velocity - velocity)
     print(f"plant against written law, {limited.mean():.0%} limited: worst {off.max():.1e}, rms {off.std():.1e} rad/s")
     assert limited.any() == (speed > 90.0)
     assert off.max() < reversal_error(plant)
     assert np.sqrt((off**2).mean()) < 0.2 * reversal_error(plant)
-    assert np.abs(states.position[:, 0] - position).max() < 2e-3
+    assert np.abs(states.position - position).max() < 2e-3
 
 
 def reversal_error(plant):
@@ -100,7 +100,7 @@ def test_torque_never_exceeds_the_limit_and_integrator_holds(plant):
     step = References(t, 150.0 * t, np.full_like(t, 150.0), 0.0 * t)
     step = References(t, step.position, step.velocity * (t > 0.0), step.acceleration)
     plain = dataclasses.replace(plant, cascade=dataclasses.replace(plant.cascade, position_gain=0.0))
-    held, wound_up = run([plain], [step]), run_native(plain.native_loop(step))
+    held, wound_up = run(plain, step), run_native(plain.native_loop(step))
     assert np.abs(held.torque).max() == plant.cascade.torque_limit
     assert held.velocity.max() - 150.0 < 0.5 * (wound_up.velocity.max() - 150.0)
 
@@ -109,14 +109,14 @@ def test_no_integral_gain_is_a_plain_pd(plant):
     cascade = dataclasses.replace(plant.cascade, integral_gain=0.0)
     axis = dataclasses.replace(plant, cascade=cascade)
     references = reversals()
-    off = worst(run_native(axis.native_loop(references)), run_ticked([axis.ticked_loop(references)]))
+    off = worst(run_native(axis.native_loop(references)), run_ticked(axis.ticked_loop(references)))
     assert off["velocity"] < 1e-9
 
 
 def test_friction_by_the_drive_moves_as_friction_in_the_mechanics(plant):
     references = reversals()
-    emulated = run([dataclasses.replace(plant, emulated=True)], [references])
-    off = worst(emulated, run([plant], [references]))
+    emulated = run(dataclasses.replace(plant, emulated=True), references)
+    off = worst(emulated, run(plant, references))
     print(f"friction by the drive against mechanics: {off['velocity']:.1e} rad/s, {off['torque']:.1e} N*m")
     assert off["velocity"] < 1e-3
     assert off["torque"] < 1e-3
@@ -133,35 +133,35 @@ def test_emulated_friction_holds_a_standing_axis(plant, load_torque):
     """A drive that only holds by friction: no gains. Load and friction settle; the axis stays."""
     weak = Cascade(0.0, 0.0, 0.0, 0.0, 3.5, 250e-6)
     parameters = dataclasses.replace(plant.axis.parameters, load_torque=load_torque)
-    states = run([Plant(AxisModel(parameters), weak, 250e-6, emulated=True)], [standstill(250e-6, 1.0)])
+    states = run(Plant(AxisModel(parameters), weak, 250e-6, emulated=True), standstill(250e-6, 1.0))
     print(f"held by emulated friction against {load_torque:+} N*m: {np.abs(states.velocity[-1]).max():.1e} rad/s")
     assert np.abs(states.velocity[100:]).max() < 1e-9
-    assert states.motor_torque[-1, 0] == pytest.approx(load_torque, abs=1e-9)
+    assert states.motor_torque[-1] == pytest.approx(load_torque, abs=1e-9)
 
 
 def test_emulated_friction_slips_beyond_breakaway(plant):
     weak = Cascade(0.0, 0.0, 0.0, 0.0, 3.5, 250e-6)
     parameters = dataclasses.replace(plant.axis.parameters, load_torque=-0.1)
-    states = run([Plant(AxisModel(parameters), weak, 250e-6, emulated=True)], [standstill(250e-6, 1.0)])
+    states = run(Plant(AxisModel(parameters), weak, 250e-6, emulated=True), standstill(250e-6, 1.0))
     rate = parameters.viscous_friction_coefficient / parameters.inertia
     final = (0.1 - parameters.coulomb_friction) / parameters.viscous_friction_coefficient
-    np.testing.assert_allclose(states.velocity[:, 0], -final * np.expm1(-rate * states.time), atol=2e-2)
+    np.testing.assert_allclose(states.velocity, -final * np.expm1(-rate * states.time), atol=2e-2)
 
 
 def test_motor_stays_within_its_limit_with_emulated_friction(plant):
     emulated = dataclasses.replace(plant, emulated=True)
-    states = run([emulated], [reversals(speed=200.0)])
+    states = run(emulated, reversals(speed=200.0))
     assert np.abs(states.motor_torque).max() == pytest.approx(plant.cascade.torque_limit)
 
 
 def test_cascade_terms_one_by_one():
     """First tick: proportional, feed-forward and half a tick of integral; second: all of the first error too."""
     cascade = Cascade(10.0, 2.0, 30.0, 0.5, 100.0, 1e-3)
-    ones = np.ones((2, 1))
-    drive = CascadeDrive(cascade, References(np.array([0.0, 1e-3]), 3.0 * ones, 4.0 * ones, 5.0 * ones))
+    ones = np.ones(2)
+    references = References(np.array([0.0, 1e-3]), 3.0 * ones, 4.0 * ones, 5.0 * ones)
+    drive = CascadeDrive(FollowReferences(cascade, references))
     error = 4.0 + 10.0 * (3.0 - 2.5) - 1.0
-    first = drive.tick(0, np.array([2.5]), np.array([1.0]))[0][0]
-    second = drive.tick(1, np.array([2.5]), np.array([1.0]))[0][0]
+    first, second = (drive.tick(k, 2.5, 1.0)[0] for k in (0, 1))
     assert first == pytest.approx(2.0 * error + 0.5 * 5.0 + 30.0 * error * 0.5e-3)
     assert second - first == pytest.approx(30.0 * error * 1e-3)
 
@@ -169,8 +169,8 @@ def test_cascade_terms_one_by_one():
 def test_substeps_leave_the_motion_as_it_is(plant):
     """The mechanics are exact under a held torque, but for the step of a reversal."""
     references = reversals()
-    fine = run([dataclasses.replace(plant, timestep=62.5e-6)], [references])
-    off = fine.velocity - run([plant], [references]).velocity
+    fine = run(dataclasses.replace(plant, timestep=62.5e-6), references)
+    off = fine.velocity - run(plant, references).velocity
     print(f"62.5 us against 250 us: worst {np.abs(off).max():.1e}, rms {off.std():.1e} rad/s")
     assert np.abs(off).max() < reversal_error(plant)
     assert off.std() < 0.1 * reversal_error(plant)
@@ -181,35 +181,15 @@ def test_substeps_act_as_often_as_they_are(plant):
     effect = Present.of("torque_ripple", {"relative_amplitude": 0.2, "harmonic": 3.0})
     coarse = dataclasses.replace(plant, axis=plant.axis.with_effects([effect]))
     references = reversals(duration=0.5)
-    whole, half = (run([dataclasses.replace(coarse, timestep=step)], [references]) for step in (250e-6, 125e-6))
+    whole, half = (run(dataclasses.replace(coarse, timestep=step), references) for step in (250e-6, 125e-6))
     assert worst(half, whole)["velocity"] < reversal_error(plant)
     assert np.sqrt(((half.torque - whole.torque) ** 2).mean()) < 1e-3 * np.abs(whole.torque).max()
     assert np.sqrt(((half.motor_torque - whole.motor_torque) ** 2).mean()) < 5e-3 * np.abs(whole.motor_torque).max()
 
 
-def test_axes_that_differ_run_side_by_side_as_alone(plant):
-    other = AxisModel(AxisParameters(5e-3, 3e-3, 0.2, load_torque=0.1))
-    heavy = Plant(other, dataclasses.replace(plant.cascade, velocity_gain=2.0), 250e-6)
-    emulated = dataclasses.replace(plant, emulated=True)
-    plants, references = [plant, heavy, emulated, heavy], [reversals(speed=s, duration=0.5) for s in (60, 40, 60, 30)]
-    loops = [one.ticked_loop(motion) for one, motion in zip(plants, references, strict=True)]
-    together = run_ticked(loops)
-    for i, loop in enumerate(loops):
-        alone = run_ticked([loop])
-        np.testing.assert_array_equal(together.axis(i).velocity, alone.velocity)
-        np.testing.assert_array_equal(together.axis(i).torque, alone.torque)
-
-
 def test_emulation_values_are_what_it_takes():
     emulation = AxisParameters(1e-3, 0.0, 0.3)
-    r = standstill(1e-3, 2e-3)
-    drive = CascadeDrive(
-        Cascade(0.0, 0.0, 0.0, 0.0, np.inf, 1e-3),
-        dataclasses.replace(
-            r, position=r.position[:, None], velocity=r.velocity[:, None], acceleration=r.acceleration[:, None]
-        ),
-        emulation,
-    )
-    setpoint, motor = drive.tick(0, np.zeros(1), np.array([5.0]))
-    assert motor[0] == pytest.approx(-0.3)
-    assert setpoint[0] == pytest.approx(0.0)
+    cascade = Cascade(0.0, 0.0, 0.0, 0.0, np.inf, 1e-3)
+    setpoint, motor = CascadeDrive(FollowReferences(cascade, standstill(1e-3, 2e-3), emulation)).tick(0, 0.0, 5.0)
+    assert motor == pytest.approx(-0.3)
+    assert setpoint == pytest.approx(0.0)

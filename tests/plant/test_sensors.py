@@ -18,7 +18,7 @@ SATURATING = TorqueConstant.from_datasheet(1.4, 1.8, 3.5, 5.7)
 def motion(torque=None, n=8000):
     r = reversals(duration=n * 250e-6)
     torque = 1.2 * np.sin(7.0 * r.time) if torque is None else torque
-    return States(r.time, *(each[:, None] for each in (r.position, r.velocity, torque, torque))), r
+    return States(r.time, r.position, r.velocity, torque, torque), r
 
 
 def record(sensors, seed=0, torque=None):
@@ -28,8 +28,8 @@ def record(sensors, seed=0, torque=None):
 
 def test_ideal_sensors_report_the_states():
     states, trace = record(Sensors(250e-6))
-    np.testing.assert_array_equal(trace["position"], states.position[:, 0])
-    np.testing.assert_array_equal(trace["velocity"], states.velocity[:, 0])
+    np.testing.assert_array_equal(trace["position"], states.position)
+    np.testing.assert_array_equal(trace["velocity"], states.velocity)
     assert trace.units["torque"] == "N*m"
 
 
@@ -37,8 +37,8 @@ def test_position_comes_in_counts():
     states, trace = record(Sensors(1e-3, encoder_resolution=1e-3))
     counts = trace["position"] / 1e-3
     assert np.abs(counts - np.round(counts)).max() < 1e-6
-    assert np.abs(trace["position"] - states.position[::4, 0]).max() <= 0.5e-3 * (1.0 + 1e-9)
-    assert (trace["position"] - states.position[::4, 0]).std() == pytest.approx(1e-3 / np.sqrt(12.0), rel=0.05)
+    assert np.abs(trace["position"] - states.position[::4]).max() <= 0.5e-3 * (1.0 + 1e-9)
+    assert (trace["position"] - states.position[::4]).std() == pytest.approx(1e-3 / np.sqrt(12.0), rel=0.05)
 
 
 def test_noise_has_the_stated_size_and_no_bias():
@@ -60,7 +60,7 @@ def test_seed_alone_decides_the_noise():
 
 def test_current_inverts_the_saturating_torque_constant():
     states, trace = record(Sensors(1e-3, torque_constant=SATURATING), torque=np.full(8000, 3.2))
-    np.testing.assert_allclose(SATURATING.torque(trace["current"]), states.torque[::4, 0], rtol=1e-9)
+    np.testing.assert_allclose(SATURATING.torque(trace["current"]), states.torque[::4], rtol=1e-9)
 
 
 def test_current_belongs_to_the_instant_of_the_row():
@@ -86,7 +86,7 @@ def test_apparent_inertia_differs_from_the_true_one_only_by_the_hold():
     time = np.arange(8000) * period
     states = open_loop(build_spec(parameters, period), np.sin(omega * time))
     trace = Sensors(1e-3).record(states, motion()[1], np.random.default_rng(0), "test")
-    mean = (states.torque[3:-1:4, 0] + states.torque[4::4, 0]) / 2.0
+    mean = (states.torque[3:-1:4] + states.torque[4::4]) / 2.0
 
     def amplitude(signal, at):
         columns = np.stack([np.sin(omega * at), np.cos(omega * at), np.ones_like(at)], axis=1)

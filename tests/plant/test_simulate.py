@@ -16,8 +16,8 @@ def torque_error(simulated):
     """Worst mean of M - J*alpha - K_w*w - K_0*sgn(w) - M_L over 10 ms of motion one way - N*m; number of windows."""
     truth, states = simulated.truth.parameters, simulated.states
     period = simulated.references.period
-    velocity, position = states.velocity[:, 0], states.position[:, 0]
-    impulse = np.append(0.0, np.cumsum(states.torque[:-1, 0])) * period
+    velocity, position = states.velocity, states.position
+    impulse = np.append(0.0, np.cumsum(states.torque[:-1])) * period
     window = 40
     ends = np.arange(window, len(velocity), window)
     starts = ends - window

@@ -11,7 +11,7 @@ from mujoco import rollout
 
 from bench.plant.drive import References, add_pid
 from bench.plant.plant import Plant
-from bench.plant.run import batch_of, run, run_native, run_ticked
+from bench.plant.run import run, run_native, run_ticked
 from tests.effects.axes import Reversals, plant
 from tests.studies.benchmarks.table import Table
 from tests.studies.benchmarks.timing import Way, in_turn
@@ -25,7 +25,7 @@ TICKED = (
     "stribeck_friction",
     "torque_ripple",
 )
-BARE, BATCH = "bare `mj_step` in a loop", "bare `Batch.step`, {} axes"
+BARE = "bare `mj_step` in a loop"
 
 
 def stepped(model: mujoco.MjModel, steps: int) -> None:
@@ -41,17 +41,9 @@ def rolled(model: mujoco.MjModel, steps: int) -> None:
     rollout.rollout([model], [mujoco.MjData(model)], start, np.zeros((1, steps, model.nu)))
 
 
-def batched(plants: list[Plant], steps: int) -> None:
-    """A batch without drives."""
-    batch = batch_of([one.spec().compile() for one in plants[:1]] * len(plants))
-    for _ in range(steps):
-        batch.step()
-
-
-def by_ticks(one: Plant, motions: list[References]) -> None:
-    """An axis along motions side by side, its model compiled anew."""
-    alike = replace(one)
-    run_ticked([alike.ticked_loop(motion) for motion in motions])
+def by_ticks(one: Plant, motion: References) -> None:
+    """An axis along a motion, its model compiled anew."""
+    run_ticked(replace(one).ticked_loop(motion))
 
 
 def with_pid(one: Plant) -> mujoco.MjModel:
@@ -61,33 +53,24 @@ def with_pid(one: Plant) -> mujoco.MjModel:
     return spec.compile()
 
 
-def measured(steps: int = 4000, axes: int = 1000, few: int = 200, rounds: int = 7) -> list[Table]:
-    """One axis over `steps` steps, and `axes` of them over `few`."""
+def measured(steps: int = 4000, rounds: int = 7) -> list[Table]:
+    """One axis over `steps` steps."""
     bare, ticked, native = plant(), plant(*TICKED), plant(*NATIVE)
-    period = bare.cascade.control_period
-    motion, short = (Reversals(period * (count - 0.5)).references() for count in (steps, few))
-    assert (motion.time.size, short.time.size) == (steps, few)
-    one, many = [motion], [short] * axes
-    ways: dict[str, tuple[Way, int]] = {
-        BARE: (partial(stepped, with_pid(bare), steps), steps),
-        "`mujoco.rollout`": (partial(rolled, with_pid(bare), steps), steps),
-        "one axis, drive in MuJoCo": (lambda: run_native(replace(bare).native_loop(motion)), steps),
-        "the same with five native effects": (lambda: run_native(replace(native).native_loop(motion)), steps),
-        "one axis by ticks": (partial(by_ticks, bare, one), steps),
-        "the same with friction by the drive": (partial(by_ticks, replace(bare, emulated=True), one), steps),
-        "the same with five ticked effects": (partial(run, [ticked], one), steps),
-        BATCH.format(axes): (partial(batched, [bare] * axes, few), few * axes),
-        f"{axes} axes by ticks": (partial(by_ticks, bare, many), few * axes),
-        f"{axes} axes, five ticked effects": (partial(run, [ticked] * axes, many), few * axes),
+    motion = Reversals(bare.cascade.control_period * (steps - 0.5)).references()
+    assert motion.time.size == steps
+    ways: dict[str, Way] = {
+        BARE: partial(stepped, with_pid(bare), steps),
+        "`mujoco.rollout`": partial(rolled, with_pid(bare), steps),
+        "drive in MuJoCo": lambda: run_native(replace(bare).native_loop(motion)),
+        "the same with five native effects": lambda: run_native(replace(native).native_loop(motion)),
+        "by ticks": partial(by_ticks, bare, motion),
+        "the same with friction by the drive": partial(by_ticks, replace(bare, emulated=True), motion),
+        "the same with five ticked effects": partial(run, ticked, motion),
     }
-    timed = in_turn({name: way for name, (way, _) in ways.items()}, rounds)
-    rows = []
-    for name, (_, count) in ways.items():
-        times = (timed.ratio(name, other) * ways[other][1] / count for other in (BARE, BATCH.format(axes)))
-        rows.append((name, f"{1e6 * timed.median(name) / count:.3g} us", *(f"{ratio:.2f}" for ratio in times)))
+    timed = in_turn(ways, rounds)
+    rows = [(name, f"{1e6 * timed.median(name) / steps:.3g} us", f"{timed.ratio(name, BARE):.2f}") for name in ways]
     says = (
-        f"Time of an axis and step, building models included; {steps} steps of one axis, {few} of {axes} axes on all "
-        "cores. By ticks means that the drive's law is Python on arrays of axes, which has to be where a torque is "
-        "limited or an effect acts that MuJoCo does not have."
+        f"Time of a step of one axis over {steps} steps, building models included. By ticks means that the drive's law "
+        "is Python, which has to be where a torque is limited or an effect acts that MuJoCo does not have."
     )
-    return [Table(says, ("", "axis and step", "times bare `mj_step`", "times bare batch"), tuple(rows))]
+    return [Table(says, ("", "step", "times bare `mj_step`"), tuple(rows))]

@@ -1,4 +1,4 @@
-"""How time grows with samples, with axes side by side, and with effects."""
+"""How time grows with samples and with effects."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from bench.fit.estimate import Estimate
 from bench.fit.hypothesis import Hypothesis, Layout, Term, lay_out
 from bench.fit.identify import identify
 from bench.fit.rows import Memory, Rows
-from bench.plant.run import run, run_ticked
+from bench.plant.run import run
 from bench.trace.read import read
 from bench.trace.stream import stream
 from tests.effects.axes import VALUES, Reversals, plant
@@ -31,13 +31,12 @@ from tests.studies.benchmarks.timing import Way, in_turn
 
 def measured(
     samples: Sequence[int] = (1_000, 10_000, 100_000, 1_000_000, 10_000_000),
-    axes: Sequence[int] = (1, 10, 100, 1000),
     effects: Sequence[int] = (1, 3, 7, 14, 21),
     ticks: int = 2000,
     rounds: int = 3,
 ) -> list[Table]:
     """Time over each of these sizes."""
-    return [by_samples(samples, rounds), by_axes(axes, ticks, rounds), by_effects(effects, ticks, rounds)]
+    return [by_samples(samples, rounds), by_effects(effects, ticks, rounds)]
 
 
 def by_samples(sizes: Sequence[int], rounds: int) -> Table:
@@ -86,27 +85,12 @@ def by_read(path: Path) -> Estimate:
 WHOLE = 10_000_000
 
 
-def by_axes(sizes: Sequence[int], ticks: int, rounds: int) -> Table:
-    """Axes side by side, their drives ticked."""
-    one = plant()
-    motion = Reversals(one.cascade.control_period * (ticks - 0.5)).references()
-    timed = in_turn({str(size): partial(run_ticked, [one.ticked_loop(motion)] * size) for size in sizes}, rounds)
-    seconds = [timed.median(str(size)) for size in sizes]
-    each = (f"{1e6 * taken / (ticks * size):.3g} us" for size, taken in zip(sizes, seconds, strict=True))
-    rows = zip(map(str, sizes), (f"{taken:.3g} s" for taken in seconds), each, growth(sizes, seconds), strict=True)
-    return Table(
-        f"Axes side by side over {ticks} ticks, drives in Python.",
-        ("axes", "time", "axis and tick", "exponent"),
-        tuple(rows),
-    )
-
-
 def by_effects(sizes: Sequence[int], ticks: int, rounds: int) -> Table:
     """The first so many effects of the catalogue on one axis: simulated, and as columns of a hypothesis."""
     names, one = one_coupling(), plant()
     motion = Reversals(one.cascade.control_period * (ticks - 0.5)).references()
     rows_of_run = Rows.of(recording(np.random.default_rng(0), duration=8.0, position=True), RIG)
-    simulated: dict[str, Way] = {str(n): partial(run, [plant(*names[:n])], [motion]) for n in sizes}
+    simulated: dict[str, Way] = {str(n): partial(run, plant(*names[:n]), motion) for n in sizes}
     laid: dict[str, Way] = {str(n): partial(columns, rows_of_run, names[:n]) for n in sizes}
     times = [[timed.median(str(n)) for n in sizes] for timed in (in_turn(simulated, rounds), in_turn(laid, rounds))]
     rows = zip(

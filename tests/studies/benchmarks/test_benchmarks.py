@@ -27,9 +27,9 @@ from tests.studies.benchmarks.timing import Timed, in_turn
     ("measured", "rows"),
     [
         (lambda: beside_lstsq.measured((3.0,), 1), (1,)),
-        (lambda: beside_stepping.measured(steps=40, axes=3, few=20, rounds=1), (10,)),
+        (lambda: beside_stepping.measured(steps=40, rounds=1), (7,)),
         (lambda: beside_pyarrow.measured((2000,), 1), (2,)),
-        (lambda: growth.measured((1000, 2000), (1, 2), (1, 21), ticks=20, rounds=1), (2, 2, 2)),
+        (lambda: growth.measured((1000, 2000), (1, 21), ticks=20, rounds=1), (2, 2)),
     ],
     ids=["lstsq", "stepping", "reading", "growth"],
 )

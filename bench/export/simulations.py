@@ -11,12 +11,9 @@ import numpy as np
 from mujoco.batch import Batch
 from numpy.typing import NDArray
 
-from bench.effects.mjcf import AXIS, BRISTLES
+from bench.effects.mjcf import AXIS, BRISTLE_LEVELS, BRISTLES
 from bench.effects.signals import Number
 from bench.plant.stepped_effects import Acts
-
-#: Places of the two friction levels among the parameters of a passive motor with bristles.
-BRISTLE_LEVELS = slice(3, 5)
 
 
 @dataclass(frozen=True)
@@ -103,7 +100,7 @@ class Joints:
             armature[:, self._columns] = bare
 
     def _on_rows(self, values: Number) -> Number:
-        return values if isinstance(values, float) or not np.ndim(values) else values.reshape(-1, self._count)
+        return values.reshape(-1, self._count) if np.ndim(values) else values
 
     @cached_property
     def _armatures(self) -> tuple[Number, Number]:
