@@ -15,6 +15,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bench.diagnosis.policy import Policy, worth
 from bench.diagnosis.probability import BESIDE_NOISE, Key, key_of, weighed
 from bench.effects.catalogue import simpler_forms
@@ -39,6 +42,8 @@ LOOKAHEAD = 2
 SCREEN = 4.0
 #: Score below the best one from which on a set is as good as impossible.
 NEGLIGIBLE = 30.0
+#: Most likely sets with an effect whose shape was bent to what was hidden, in which the shape is searched anew.
+AGAIN = 2
 
 
 @dataclass(frozen=True)
@@ -235,40 +240,64 @@ class Visited:
     def try_further(self, best: Fit, most: int) -> bool:
         """Visit sets beyond one move: an effect in place of those it replaces, and many small ones; whether any is new.
 
-        The shape of an effect that replaces others is searched once with each set.
+        The shape of an effect that replaces others is searched once with each set; first with none, as what is found
+        without it may be bent to it, too.
         """
-        before = len(self.fits), best.squares
+        before, bare = (len(self.fits), best.squares), next(iter(self.fits.values()))
         for effect in (each for each in self.effects if each.replaces and self.policy.leaves_room(best, each)):
             names = {effect.name, *effect.replaces}
-            less = self.without(best, [k for k, term in enumerate(best.terms) if term.effect.name in names])
-            if key_of(less, effect) not in self.further and less.hypothesis.admits(effect):
-                self.further.add(key_of(less, effect))
-                self.put_in_place(less, effect)
+            self.put_in_place(bare, effect)
+            others = [k for k, term in enumerate(best.terms) if term.effect.name in names]
+            self.put_in_place(self.without(best, others), effect)
         if key_of(best) not in self.further and self.policy.remains(best):
             self.further.add(key_of(best))
             self.add_many(best, most)
         return (len(self.fits), self.best().squares) != before
 
     def put_in_place(self, less: Fit, effect: Effect) -> None:
-        """Visit the fit with an effect whose shape is searched in its own way, and what is a move away from that."""
+        """Visit the fit with an effect whose shape is searched in its own way, and what is a move away from that.
+
+        The shape is bent to what is still hidden: next to each of the most likely of these it is searched again.
+        """
+        after = self.search_in_place(less, effect)
+        if after is None:
+            return
+        scores, size = self.named(), len(key_of(after)) + 1
+        one_more = [key for key in scores if (effect, 1) in key and key_of(less) < key and len(key) == size]
+        for fitted in [self.fits[key] for key in sorted(one_more, key=lambda key: -scores[key])[:AGAIN]]:
+            if self.policy.leaves_room(fitted, effect):
+                own = [k for k, term in enumerate(fitted.terms) if term.effect is effect]
+                self.search_in_place(self.without(fitted, own), effect)
+
+    def search_in_place(self, less: Fit, effect: Effect) -> Fit | None:
+        """The fit with it, expanded if it takes its part; None if it does not, or was searched with this set before."""
+        if key_of(less, effect) in self.further or not less.hypothesis.admits(effect):
+            return None
+        self.further.add(key_of(less, effect))
         shape = effect.in_place_of(less, lambda gain: gain > self.part(less))
         if shape is None:
-            return
+            return None
         first = fit(less.rows, less.hypothesis.plus(Term(effect, shape)), less)
         after = shaped(first, first.hypothesis, len(less.terms))  # from where levels and loads have settled
         after = physical_form(after, self.effects, self.policy)
         if self.policy.only_damps(less, after) or not self.policy.physical(after):
-            return
+            return None
         self.add(after)
-        if worth(less, after) > self.part(less):  # what is present in addition may be most of the residual still
-            self.expand(self.fits[key_of(after)])
+        if worth(less, after) <= self.part(less, after.determined):
+            return None
+        self.expand(self.fits[key_of(after)])  # what else is present may be most of the residual still
+        return after
 
-    def part(self, fitted: Fit) -> float:
+    def part(self, fitted: Fit, among: NDArray[np.bool_] | None = None) -> float:
         """Squares that each of as many effects as there may be takes on average of a residual - (N*m)**2 (N**2).
 
-        More than chance in any case.
+        More than chance in any case; `among`: of the residual of these rows alone (m,).
         """
-        return max(fitted.excess / MOST, self.policy.by_chance(fitted))
+        whole = fitted.excess
+        if among is not None and not among.all():
+            common = among & fitted.determined
+            whole = float(np.sum(fitted.left[common] ** 2)) - np.count_nonzero(common) * fitted.floor**2
+        return max(whole / MOST, self.policy.by_chance(fitted))
 
     def add_many(self, fitted: Fit | None, most: int) -> None:
         """Visit a chain of effects each of which takes its part of the residual above noise."""
