@@ -13,11 +13,11 @@ gave, leaves of it beyond twice what the best one does. Then
 
 U, V - logarithms of E over that of the bare axis and over that of noise alone, V on all rows for a hypothesis that
 determines all: who claims no gap has to explain what is beside impacts, too; B - logarithm of v/f**2 where that is
-negative, else 0: the noise is then weaker than it was taken for; numbers - fitted. What holds an effect
-from outside the catalogue weighs `outside` less and, together with a constant weight for what was not tried, makes up
-"none of the catalogue"; a name beside such an effect is there if without it at least twice as much is left, as that
-makes up for what is small. The weights, of `bench.diagnosis.policy`, are those under which recordings whose truth is
-known were likeliest (`python -m tests.studies.certainty`).
+negative and the bare axis leaves more than noise, else 0: the noise is then weaker than it was taken for; numbers -
+fitted. What holds an effect from outside the catalogue weighs `outside` less and, together with a constant weight for
+what was not tried, makes up "none of the catalogue"; a name beside such an effect is there if without it at least twice
+as much is left, as that makes up for what is small. The weights, of `bench.diagnosis.policy`, are those under which
+recordings whose truth is known were likeliest (`python -m tests.studies.certainty`).
 """
 
 from __future__ import annotations
@@ -226,7 +226,7 @@ def weighed(visited: Sequence[Fit], holdout: Rows | None, policy: Policy) -> lis
     rescaled = [RESCALED * each.layout.rescaling.size for each in physical]
     numbers = [freedom(each) - freedom(visited[0]) + more for each, more in zip(physical, rescaled, strict=True)]
     least = np.minimum(floor, floor[best])  # neither who damps noise gains by it, nor who raises it
-    below = np.minimum(np.log(power / least), 0.0)
+    below = np.minimum(np.log(power / least), 0.0) * policy.remains(visited[0])  # of noise alone nothing is explained
     columns = (left - left[0]).tolist(), over.tolist(), below.tolist(), numbers, outside.tolist()
     return [Contender(*each) for each in zip(physical, *columns, strict=True)]
 

@@ -95,7 +95,7 @@ def test_a_name_counts_that_what_no_catalogue_holds_cannot_make_up_for(monkeypat
         contender(-5.0, 0.0, SPRING, OUTSIDE, numbers=2, outside=True),
     ]
     less = SimpleNamespace(chi=without * every[-1].fitted.chi)
-    monkeypatch.setattr(probability, "fit", lambda rows, hypothesis: less)
+    monkeypatch.setattr(probability, "fit", lambda rows, hypothesis, start=None: less)
     found = probabilities(every, frozenset(), POLICY)
     (both,) = (each.probability for each in found.sets if each.names)
     beside = counts * both * math.exp(-weighs)
