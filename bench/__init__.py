@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from bench.joints.robot import IdentifiedRobot, robot
     from bench.plant.simulate import simulate
     from bench.rig.rig import Rig, load_rig
+    from bench.servos.servo import Servo, servo
     from bench.trace.read import read
     from bench.trace.trace import Trace
 
@@ -32,6 +33,7 @@ __all__ = [
     "IdentifiedRobot",
     "InputError",
     "Rig",
+    "Servo",
     "Trace",
     "UndeterminedError",
     "__version__",
@@ -43,6 +45,7 @@ __all__ = [
     "read",
     "replay",
     "robot",
+    "servo",
     "simulate",
 ]
 __version__ = "0.1.0"
@@ -55,6 +58,7 @@ _MODULES = {
     "Estimate": "bench.fit.estimate",
     "IdentifiedRobot": "bench.joints.robot",
     "Rig": "bench.rig.rig",
+    "Servo": "bench.servos.servo",
     "Trace": "bench.trace.trace",
     "check": "bench.baseline.check",
     "diagnose": "bench.diagnosis.diagnosis",
@@ -64,6 +68,7 @@ _MODULES = {
     "read": "bench.trace.read",
     "replay": "bench.diagnosis.replay",
     "robot": "bench.joints.robot",
+    "servo": "bench.servos.servo",
     "simulate": "bench.plant.simulate",
 }
 

@@ -24,7 +24,7 @@ LAYERS = (
     {"fit"},
     {"friction_map"},
     {"diagnosis"},
-    {"baseline", "validation", "fleet", "export", "view", "joints"},
+    {"baseline", "validation", "fleet", "export", "view", "joints", "servos"},
     {"report"},
     {"course"},  # a guest: nothing but its commands imports it
     {"demo"},

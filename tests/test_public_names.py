@@ -16,6 +16,8 @@ from bench.assets import asset
 from bench.trace.write import write
 from tests.export.two_links import HIDDEN, MJCF, log, write_log
 from tests.fit.motions import Truth, recording
+from tests.studies.servos import Truth as Servo
+from tests.studies.servos import log as of_servo
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "api.md").read_text(encoding="utf-8"), re.DOTALL)
@@ -122,6 +124,7 @@ def test_the_examples_of_the_manual_run_and_find_the_truth(tmp_path, monkeypatch
         write(with_cogging(number), f"run{number}.csv.gz")
     Path("robot.xml").write_text(MJCF)
     write_log("log.csv", log())
+    write(of_servo(Servo(rate=100.0), np.random.default_rng(5), 12.0), Path("goals.csv"))
     names = {}
     for block in EXAMPLES:
         exec(compile(block, "docs/api.md", "exec"), names)

@@ -47,6 +47,7 @@ LINES = (
     "limits run1.csv.gz --rig lab.toml",
     "report found",
     "robot log.csv --mjcf robot.xml --joint elbow --out robot",
+    "servo servo.csv",
 )
 #: Runs the lines, each once; whatever one prints is printed at each width, which the terminal is given before.
 DRIVER = """
@@ -123,6 +124,11 @@ def folder_of_files(folder):
     (folder / "foreign.csv").write_text("\n".join([head, *rows]) + "\n")
     (folder / "robot.xml").write_text(MJCF)
     write_log(folder / "log.csv", log())
+    time = np.arange(0.0, 8.0, 0.02)
+    goal = 0.5 * np.sign(np.sin(2.0 * time)) + 0.1 * np.sin(5.0 * time)
+    late = np.convolve(goal, np.exp(-time / 0.08))[: time.size] / np.exp(-time / 0.08).sum()
+    table = np.column_stack([time, goal, np.round(late, 3)])
+    np.savetxt(folder / "servo.csv", table, delimiter=",", header="time [s],goal [rad],position [rad]", comments="")
     (folder / "fleet.csv").write_text("file,rig,axis\nown.csv.gz,rig.toml,press 1\nmissing.csv,rig.toml,press 2\n")
 
 

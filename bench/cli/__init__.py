@@ -30,6 +30,7 @@ from bench.cli.common import NOTES, guarded, say, warn
 from bench.cli.lab import lab
 from bench.cli.model import compensate, export, replay, view
 from bench.cli.recording import diagnose, fleet, friction, identify, inspect, limits, robot
+from bench.cli.servo import servo
 from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate, validate
 from bench.errors import BenchError, InputError
 from bench.names import short
@@ -58,6 +59,7 @@ COMMANDS = (
     identify,
     diagnose,
     robot,
+    servo,
     replay,
     view,
     friction,

@@ -48,6 +48,10 @@ ASIDE = 1e-4
 FAR = 1.0
 #: Joints of one coordinate, and its unit.
 UNITS = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
+#: Step of a joint's position for the slope of a torque - rad (m).
+SLOPE_STEP = 1e-3
+#: Unit of the effort of a joint by that of its position.
+UNITS_OF_EFFORT = {"rad": "N*m", "m": "N"}
 #: What inverse dynamics leaves out: what is no property of the links.
 DISABLED = int(
     mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
@@ -408,6 +412,25 @@ def read_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) 
     return _known(moved, rig, robot, ())[0], (trace.time, dict(zip(robot.names, position.T, strict=True)))
 
 
+def read_goals(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], slope: str) -> Trace:
+    """A log of a joint's goal and position with the torque of its links, all on the joint's side; it needs no effort.
+
+    InputError as `read_log`, but for an effort. `slope` is the name of a signal that is added: how that torque changes
+    with the joint's position - N*m/rad (N/m).
+    """
+    trace, position, velocity, _ = _moved(path, rig, robot, stated)
+    ratio, unit = (rig.of_joint(robot.joint).load or Load()).gear_ratio, UNITS_OF_EFFORT[robot.unit(robot.joint)]
+    own = {name: trace[name] / ratio for name in ("position", "velocity", "position_reference") if name in trace}
+    torque, momentum = robot.rest(position, velocity)
+    step = np.zeros_like(position)
+    step[:, robot.names.index(robot.joint)] = SLOPE_STEP
+    ahead, behind = (robot.rest(position + side * step, velocity)[0] for side in (1.0, -1.0))
+    trace = with_known(trace.with_signals(own, {}), torque, momentum, unit)
+    return trace.with_signals(
+        {slope: (ahead - behind) / (2.0 * SLOPE_STEP)}, {slope: f"{unit}/{robot.unit(robot.joint)}"}
+    )
+
+
 def logs_of(
     path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], changes: Sequence[AddedBody] = ()
 ) -> list[Trace]:
@@ -421,6 +444,11 @@ def _known(
     """What `_moved` returns with the torque of the rest of the robot, as it is and with each change."""
     own = rig.of_joint(robot.joint)
     trace, position, velocity, stand = moved
+    unit = own.effort(trace)[1]
+    if unit != own.effort_unit:
+        allowed = f"allowed: {own.effort_unit}, or its torque_constant under [joints.{robot.joint}] in a rig"
+        where = f"{trace.origin}: joint '{robot.joint}'"
+        raise InputError(where, f"found an effort in {unit}, beside links in kg", allowed)
     torque, momentum = robot.rest(position, velocity)
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
@@ -476,10 +504,6 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
         motion[name] = found
         _require_within(found[0], name, robot, path)
-    unit = own.effort(trace)[1]
-    if unit != own.effort_unit:
-        allowed = f"allowed: {own.effort_unit}, or its torque_constant under [joints.{robot.joint}] in a rig"
-        raise InputError(f"{path}: joint '{robot.joint}'", f"found an effort in {unit}, beside links in kg", allowed)
     position, velocity = (np.column_stack([motion[name][k] for name in robot.names]) for k in (0, 1))
     return trace, position, velocity, stand
 
@@ -502,7 +526,15 @@ def _joint_of(recording: Recording, name: str, rig: Rig, robot: Robot) -> Trace:
     how = GivenOptions(how.columns, rig.trace.sample_period, period, axis)
     if angle == "m":
         recording = replace(recording, channels=tuple(map(_sliding, recording.channels)))
-    units = {"position": angle, "velocity": f"{angle}/s", "torque": "N*m", "force": "N", "current": "A", "time": "s"}
+    units = {
+        "position": angle,
+        "position_reference": angle,
+        "velocity": f"{angle}/s",
+        "torque": "N*m",
+        "force": "N",
+        "current": "A",
+        "time": "s",
+    }
     recording = replace(recording, usual_units={**units, **recording.usual_units})
     trace = assemble(recording, how)
     turned = {one: -values for one, values in trace.signals.items() if notes.sign < 0 and one != "temperature"}

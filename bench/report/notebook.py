@@ -26,7 +26,9 @@ from bench.report.gap import at_a_glance
 from bench.report.identification import identification, identification_json, moved
 from bench.report.numbers import effort_word, sentence, unit_text
 from bench.report.parts import parameters_table
+from bench.report.servo import servo, servo_json
 from bench.report.terminal import rendered
+from bench.servos.servo import Servo
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,6 +62,10 @@ def overview(result: object) -> Overview:
             document = check_document(result, "")
             tables = [part for section in document.sections for part in section.blocks if isinstance(part, Table)]
             return Overview(document.verdict, tables, check_json(result))
+        case Servo():
+            document = servo(result, "")
+            tables = [part for part in document.sections[0].blocks if isinstance(part, Table)]
+            return Overview(document.verdict, tables, servo_json(result))
     raise TypeError(f"nothing is known of {type(result).__name__}")
 
 
@@ -138,7 +144,7 @@ def frame(result: object) -> Any:  # noqa: ANN401 - of pandas or polars
     library = next((name for name in ("pandas", "polars") if find_spec(name) is not None), None)
     if library is None:
         raise InputError("to_frame()", "found neither pandas nor polars", "install one of them")
-    of: list[tuple[str, Any]] = [("axis", result)] if isinstance(result, Estimate | Diagnosis) else []
+    of: list[tuple[str, Any]] = [("axis", result)] if isinstance(result, Estimate | Diagnosis | Servo) else []
     of += [(effect.name, effect) for effect in result.effects] if isinstance(result, Diagnosis) else []
     columns = ("of", "quantity", "value", "unit", "std_error", "low", "high")
     rows = [

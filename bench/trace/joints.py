@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from bench.trace.channel import Recording
 from bench.trace.choose import axes_of
-from bench.trace.signals import LETTERS, SI_UNITS, VAGUE, ColumnName, is_index, read_name, unit_in_name
+from bench.trace.signals import LETTERS, SI_UNITS, VAGUE, ColumnName, is_index, read_name, signal_of, unit_in_name
 
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 #: Position of joints without another word, as LeRobot has it.
@@ -47,11 +47,16 @@ def by_joints(recording: Recording) -> Recording:
 def _signal(text: str, name: ColumnName) -> str | None:
     """Signal of a joint, or its time, that a column's name tells; None where it tells none, or several."""
     told = name.told or ({LETTERS[name.letter]} if name.letter is not None and name.letter not in VAGUE else set())
-    if not told and _STATE.match(text):
+    if not told and (_STATE.match(text) or _is_goal(name)):
         told = {"position"}
     signal = next(iter(told)) if len(told) == 1 and not name.foreign else None
     signal = f"{signal}_reference" if name.setpoint else signal
     return signal if signal in SI_UNITS or signal == "time" else None
+
+
+def _is_goal(name: ColumnName) -> bool:
+    """Whether a name is a joint's and a word alone that a servo's goal has, as `elbow.goal`."""
+    return name.joint != "" and any(signal_of(word) == "position_reference" for word in name.words)
 
 
 def named(recording: Recording, joints: Sequence[str]) -> Recording:

@@ -44,7 +44,7 @@ ALIASES: dict[str, str] = {
     "acceleration": "actual acceleration|actacc",
     "current": "iq|strom|current actual value|current actual value averaged",
     "torque": "actual torque|torque actual value|torque actual value averaged|effort",
-    "position_reference": "reference position|position demand value",
+    "position_reference": "reference position|position demand value|goal|target|setpoint|desired|command|cmd",
     "velocity_reference": "reference velocity|velocity demand value",
     "torque_reference": "reference torque|torque demand value",
 }

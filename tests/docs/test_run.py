@@ -115,6 +115,7 @@ ELSEWHERE = {
     "docs/fleet.md": "fleet/test_fleet.py",
     "docs/recordings.md": "test_recordings_manual.py",
     "docs/robot.md": "joints/test_robot.py",
+    "docs/servo.md": "servos/test_servo.py",
     "docs/validate.md": "validation/test_command.py",
     "docs/view.md": "view/test_manual.py",
 }

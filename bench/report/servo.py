@@ -1,0 +1,144 @@
+"""A servo: its parameters with intervals, what cannot be separated and by which motion it would be.
+
+As the contract's JSON (`bench.servo/1`) and as a document, with the free-running motion before and after, and the
+MuJoCo actuator to take along.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from bench.export.actuator import position_actuator
+from bench.names import words
+from bench.parameter import Parameter
+from bench.report import document as doc
+from bench.report.numbers import brief, interval, number, sentence, share, unit_text
+from bench.report.over_time import Plotted, time_graph
+from bench.report.parts import one_panel, origin, parameters_table
+from bench.report.serial import as_json, serialised
+from bench.servos.servo import Servo
+
+SCHEMA = "bench.servo/1"
+ACTUATOR, JSON = "actuator.xml", "servo.json"
+#: Times of the glance - s.
+GLANCE = 4.0
+
+
+def servo_json(found: Servo, provenance: Mapping[str, Any] | None = None) -> str:
+    """The servo as the contract's JSON."""
+    of = found.found
+    gaps = {name: {"before": gap.before, "after": gap.after} for name, gap in found.gaps.items()}
+    return serialised(
+        {
+            "schema": SCHEMA,
+            "verdict": found.verdict,
+            "effects": [{"name": name, "parameters": values} for name, values in of.effects.items()],
+            "parameters": of.parameters,
+            "inseparable": [{"combination": name, **as_json(value)} for name, value in of.inseparable.items()],
+            "separated_by": of.advice,
+            "refused": of.refused,
+            "gap": {"position": {"unit": found.kind.length_unit, "noise_floor": found.noise_floor, **gaps}},
+            "checks": [],
+            "warnings": found.warnings,
+            "actuator": of.actuator or None,
+            "provenance": provenance,
+        }
+    )
+
+
+def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None) -> doc.Document:
+    """The document of a servo that `title` names."""
+    of, graph = found.found, _graph(found)
+    tables = [parameters_table("Parameters", {**of.parameters, **_flat(of.effects)})]
+    if of.inseparable:
+        rows = (
+            (words(name), interval(value, unit=False), unit_text(value.unit)) for name, value in of.inseparable.items()
+        )
+        caption = "Cannot be separated: only these combinations are determined"
+        tables.append(doc.table(caption, ("combination", "value ± half interval (95 %)>", "unit"), rows))
+    if of.refused:
+        rows = ((words(name), sentence(why)) for name, why in of.refused.items())
+        tables.append(doc.table("Not determined", ("quantity", "why~"), rows))
+    files = [doc.file(JSON, "all of it as numbers", servo_json(found, provenance) + "\n")]
+    if of.actuator:
+        files.insert(0, doc.file(ACTUATOR, "the MuJoCo actuator", position_actuator(found.joint, of.actuator)))
+    return doc.Document(
+        title=title,
+        subject=f"Position servo of {title}",
+        verdict=_verdict(found),
+        tone="open" if found.verdict == "unexplained_remainder" else "sure",
+        answers=_answers(found),
+        glance=(_glance(found),),
+        sections=doc.sections(
+            doc.section("parameters", "Parameters", *tables),
+            doc.section("separate", "What would separate them", *([doc.points(of.advice)] if of.advice else [])),
+            doc.section("motion", "Goal, measured and simulated", graph, detail=True),
+            doc.section("warnings", "Warnings", *([doc.points(found.warnings)] if found.warnings else [])),
+            doc.section("model", "The model", doc.downloads(*files), detail=True),
+        ),
+        origin=origin(provenance),
+        pictures=(doc.Picture(name="servo", title=title, rows=((_glance(found),),)),),
+        warnings=found.warnings,
+    )
+
+
+def _flat(effects: Mapping[str, Mapping[str, Parameter]]) -> dict[str, Parameter]:
+    return {f"{name}: {quantity}": value for name, of in effects.items() for quantity, value in of.items()}
+
+
+def _verdict(found: Servo) -> str:
+    gap, unit = found.gaps["identify"], found.kind.length_unit
+    change = f"{number(gap.before, unit, 3)} before, {number(gap.after, unit, 3)} after"
+    if found.verdict == "unexplained_remainder":
+        return f"The fitted servo explains part of the motion: its free-running position differs by {change}."
+    return f"The fitted servo moves like the measured one: its free-running position differs by {change}."
+
+
+def _answers(found: Servo) -> dict[str, str]:
+    of, unit = found.found, found.kind.length_unit
+    named = {**of.parameters, **of.inseparable}
+    gains = [f"{words(name)} {brief(value)}" for name, value in named.items() if name[:2] in ("kp", "kv", "(k")]
+    late, late_half = (1e3 * one for one in (of.parameters["dead_time"].value, of.parameters["dead_time"].half_width))
+    gap = found.gaps.get("holdout", found.gaps["identify"])
+    where = "on the holdout" if "holdout" in found.gaps else "on the log"
+    more = ", ".join(words(name) for name in of.effects) or "nothing beyond gains, dead time, limit and friction"
+    return {
+        "Gains?": f"{'; '.join(gains)}.",
+        "Dead time?": f"{number(late, 'ms', 3)} ± {number(late_half, 'ms', 2)}, of command and sensor together.",
+        "What else?": f"{sentence(more)}.",
+        "How good?": f"Free-running {where}, the position differs by {number(gap.after, unit, 3)} RMS, "
+        f"{number(gap.after / found.noise_floor, digits=2)} × the sensor noise; with {found.before} "
+        f"by {number(gap.before, unit, 3)} ({share(gap.after / gap.before)} remains).",
+    }
+
+
+def _glance(found: Servo) -> doc.Chart:
+    """The part of the log in which most of the motion is."""
+    motion = found.motion
+    size = max(2, int(GLANCE / max(float(motion.time[1] - motion.time[0]), 1e-9)))
+    step = max(1, size // 4)
+    starts = range(0, max(1, motion.time.size - size), step)
+    start = max(starts, key=lambda at: float(np.ptp(motion.goal[at : at + size])))
+    part = slice(start, start + size)
+    drawn = [
+        doc.series("goal", "dotted", "first", motion.time[part], motion.goal[part]),
+        doc.series("measured", "wide", "ink", motion.time[part], motion.measured[part]),
+        doc.series("before", "dashes", "left", motion.time[part], motion.before[part]),
+        doc.series("after", "line", "model", motion.time[part], motion.after[part]),
+    ]
+    alternative = f"Goal, measured position, and free-running simulations: {found.before}, and the fitted servo."
+    return one_panel("Position.", alternative, ("time", "s"), ("position", found.kind.length_unit), drawn)
+
+
+def _graph(found: Servo) -> doc.TimeGraph:
+    motion, unit = found.motion, found.kind.length_unit
+    left = (motion.measured - motion.before, motion.measured - motion.after)
+    signals = (
+        Plotted("position", unit, motion.time, motion.measured, left),
+        Plotted("goal", unit, motion.time, motion.goal, name="goal"),
+    )
+    alternative = "Measured position and free-running simulations over time, and what each leaves."
+    return time_graph("Motion.", alternative, motion.time, signals, (found.before, "the fitted servo"))

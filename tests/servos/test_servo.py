@@ -1,0 +1,186 @@
+"""`bench.servo` on servos of an independent integrator, on a joint of an MJCF, and on logs that cannot answer."""
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+import bench
+from bench.errors import InputError, UndeterminedError
+from bench.trace.trace import Trace
+from tests.command import bench as command
+from tests.docs.pages import PAGES, run_commands
+from tests.studies.servos import Truth, goals, motion
+
+MJCF = """<mujoco><compiler angle="radian"/><worldbody><body name="arm">
+<joint name="elbow" type="hinge" axis="0 1 0" armature="0.002" damping="0.02"/>
+<inertial pos="0.1 0 0" mass="0.4" diaginertia="0.0004 0.0004 0.0004"/></body></worldbody></mujoco>"""
+#: Of the link about the joint's axis - kg*m**2.
+LINK = 0.4 * 0.1**2 + 0.0004
+
+
+def log(goal, position, rate, **more):
+    signals = {"time": np.arange(goal.size) / rate, "position": position, "position_reference": goal, **more}
+    units = {"time": "s", "position": "rad", "position_reference": "rad"}
+    return Trace.from_arrays(signals, units)
+
+
+def covers(parameter, truth, reach=2.0):
+    """Whether the interval, extended by `reach`, has the truth: a single draw may lie outside of 95 %."""
+    return abs(parameter.value - truth) <= reach * parameter.half_width
+
+
+@pytest.fixture(scope="module")
+def quick():
+    """A servo without a limit, as it is found from 12 s at 100 Hz and 12 bit."""
+    truth = Truth(rate=100.0, control_period=50e-6, coulomb=0.02)
+    goal = goals(np.random.default_rng(5), truth.rate, 12.0)
+    return truth, bench.servo(log(goal, motion(truth, goal), truth.rate))
+
+
+def test_ratios_are_found_and_their_parts_are_not_stated(quick):
+    truth, found = quick
+    expected = truth.effective
+    of = found.found.inseparable
+    assert of["kp/moment_of_inertia"].value == pytest.approx(expected["kp"], rel=0.03)
+    assert covers(of["kp/moment_of_inertia"], expected["kp"])
+    assert covers(of["(kv + viscous_friction_coefficient)/moment_of_inertia"], expected["damping"])
+    assert covers(of["coulomb_friction_torque/moment_of_inertia"], expected["friction"])
+    assert found.parameters["dead_time"].value == pytest.approx(expected["dead_time"], abs=1e-3)
+    assert {"kp", "kv"}.isdisjoint(found.parameters)
+    assert not found.found.actuator
+
+
+def test_the_residual_is_noise_and_a_limit_never_reached_is_a_lower_bound(quick):
+    _, found = quick
+    assert found.verdict == "nothing_missing"
+    assert found.gaps["identify"].after < 0.2 * found.gaps["identify"].before
+    assert re.search(r"not reached; it is at least [\d.]+", found.found.refused["force_limit"])
+
+
+def test_a_limit_that_is_reached_is_found():
+    truth = Truth(rate=100.0, control_period=50e-6, coulomb=0.02, limit=0.5)
+    goal = goals(np.random.default_rng(6), truth.rate, 12.0)
+    found = bench.servo(log(goal, motion(truth, goal), truth.rate))
+    of = {**found.parameters, **found.found.inseparable}
+    assert of["force_limit/moment_of_inertia"].value == pytest.approx(truth.effective["limit"], rel=0.05)
+    assert of["kp/moment_of_inertia"].value == pytest.approx(truth.effective["kp"], rel=0.05)
+
+
+def arm(goal, rate, kp, kv, friction, late):
+    """Position (n,) of the arm of MJCF under gravity, integrated at 50 us by its equation of motion."""
+    h, inertia, pull = 50e-6, LINK + 0.002, 0.4 * 9.81 * 0.1
+    q = w = 0.0
+    out = np.empty(goal.size)
+    every = round(1.0 / (rate * h))
+    for step in range(goal.size * every):
+        if step % every == 0:
+            out[step // every] = q
+        u = goal[max(0, int((step * h - late) * rate + 1e-9))]
+        torque = kp * (u - q) - kv * w + pull * np.cos(q)
+        if w == 0.0 and abs(torque) <= friction:
+            continue
+        speed = w + h * (torque - np.copysign(friction, torque if w == 0.0 else w) - 0.02 * w) / inertia
+        speed = 0.0 if speed * w < 0.0 else speed
+        q, w = q + 0.5 * h * (w + speed), speed
+    return np.round(out * 2**13 / np.pi) * np.pi / 2**13
+
+
+@pytest.fixture(scope="module")
+def of_arm(tmp_path_factory):
+    """The folder with log and MJCF of the arm."""
+    folder = tmp_path_factory.mktemp("arm")
+    goal = goals(np.random.default_rng(3), 100.0, 12.0)
+    position = arm(goal, 100.0, 6.0, 0.15, 0.02, 0.012)
+    time = np.arange(goal.size) / 100.0
+    (folder / "robot.xml").write_text(MJCF, encoding="utf-8")
+    table = np.column_stack([time, position, goal])
+    header = "time [s],elbow.position [rad],elbow.goal [rad]"
+    np.savetxt(folder / "log.csv", table, delimiter=",", header=header, comments="")
+    return folder
+
+
+def test_gravity_on_known_links_gives_the_scale_and_the_actuator_loads(of_arm, monkeypatch):
+    monkeypatch.chdir(of_arm)
+    done = command("servo", "log.csv", "--mjcf", "robot.xml", "--joint", "elbow", "--out", "servo")
+    assert done.status == 0, done.err
+    found = json.loads((of_arm / "servo" / "servo.json").read_text(encoding="utf-8"))
+    values = {name: one["value"] for name, one in found["parameters"].items()}
+    assert values["kp"] == pytest.approx(6.0, rel=0.05)
+    assert values["kv"] == pytest.approx(0.15, rel=0.08)
+    assert values["armature"] == pytest.approx(0.002, abs=0.0006)
+    assert values["dead_time"] == pytest.approx(0.012, abs=1e-3)
+    including = MJCF.replace("</mujoco>", '<include file="servo/actuator.xml"/></mujoco>')
+    (of_arm / "whole.xml").write_text(including, encoding="utf-8")
+    model = mujoco.MjModel.from_xml_path(str(of_arm / "whole.xml"))
+    assert model.actuator_gainprm[0, 0] == pytest.approx(values["kp"], rel=1e-4)
+    assert -model.actuator_biasprm[0, 2] == pytest.approx(values["kv"], rel=1e-4)
+    assert model.actuator_delay[0] == pytest.approx(values["dead_time"], rel=1e-4)
+
+
+def test_the_commands_of_its_page_run(of_arm, monkeypatch):
+    shutil.copy(of_arm / "log.csv", of_arm / "log2.csv")
+    monkeypatch.chdir(of_arm)
+    run_commands(PAGES["docs/servo.md"])
+    found = json.loads((of_arm / "servo.json").read_text(encoding="utf-8"))
+    assert found["gap"]["position"]["holdout"]["after"] == found["gap"]["position"]["identify"]["after"]
+
+
+def moving(seconds=12.0, rate=100.0):
+    time = np.arange(0.0, seconds, 1.0 / rate)
+    return time, 0.5 * np.sin(2.0 * time) + 0.1 * np.sin(7.0 * time)
+
+
+def test_a_log_without_a_goal_is_bad_input():
+    time, goal = moving()
+    trace = Trace.from_arrays({"time": time, "position": goal}, {"time": "s", "position": "rad"})
+    with pytest.raises(InputError, match=r"holds no goal.*position_reference"):
+        bench.servo(trace)
+
+
+@pytest.mark.parametrize(
+    ("goal", "position", "reason"),
+    [
+        (lambda q: q, lambda q: q, "equal in every sample"),
+        (lambda q: 0.0 * q + 0.3, lambda q: q, "the goal never moves"),
+        (lambda q: q, lambda q: 0.0 * q, "the position does not"),
+    ],
+)
+def test_a_goal_that_shows_no_servo_cannot_answer(goal, position, reason):
+    _, motion = moving()
+    with pytest.raises(UndeterminedError, match=reason):
+        bench.servo(log(goal(motion), position(motion), 100.0))
+
+
+def test_a_short_log_cannot_answer():
+    _, motion = moving(1.5)
+    with pytest.raises(UndeterminedError, match="10 s or more"):
+        bench.servo(log(motion, np.roll(motion, 3), 100.0))
+
+
+def test_a_log_that_is_too_slow_says_which_rate_it_takes():
+    truth = Truth(inertia=1e-4, kp=3.0, kv=0.02, viscous=0.01, rate=10.0, control_period=50e-6, dead_time=0.002)
+    goal = goals(np.random.default_rng(2), truth.rate, 15.0)
+    with pytest.raises(UndeterminedError, match=r"within a sample of the log \(100 ms\).*Hz or more"):
+        bench.servo(log(goal, motion(truth, goal), truth.rate))
+
+
+def test_a_servo_always_at_its_limit_cannot_answer():
+    truth = Truth(rate=100.0, control_period=50e-6, limit=0.02, coulomb=0.002, kv=0.0, viscous=0.01)
+    goal = 3.0 * np.sign(np.sin(2.0 * np.pi * np.arange(1200) / 100.0 / 0.8))
+    with pytest.raises(UndeterminedError, match="stays far from its goal, at its limit"):
+        bench.servo(log(goal, motion(truth, goal), truth.rate))
+
+
+def test_bad_input_is_one_line_with_its_status(of_arm, monkeypatch):
+    monkeypatch.chdir(of_arm)
+    Path("bare.csv").write_text("time [s],elbow.position [rad]\n0,0\n0.01,0.1\n0.02,0.2\n", encoding="utf-8")
+    done = command("servo", "bare.csv", "--mjcf", "robot.xml", "--joint", "elbow")
+    assert (done.status, done.err.count("\n")) == (2, 1)
+    assert "holds no goal" in done.err
+    done = command("servo", "log.csv", "--joint", "elbow")
+    assert (done.status, done.err.count("\n")) == (2, 1)
