@@ -35,9 +35,10 @@ from bench.diagnosis.model import (
 )
 from bench.diagnosis.name import NamedEffect, Suspects, named
 from bench.diagnosis.policy import ERRS_TWICE, Policy
+from bench.diagnosis.reason import Reason
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
-from bench.diagnosis.tabulated import UnknownEffect, unknown_effect
+from bench.diagnosis.tabulated import UnknownEffect, unknown_effect, with_tables
 from bench.effects.effect import DriveLimit, Occasional
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
@@ -90,7 +91,7 @@ class Added:
     stages: tuple[Extension, ...]
     gaps: VelocityGaps
     recorded: tuple[Recorded, ...]
-    rejected: tuple[tuple[str, str], ...]
+    rejected: tuple[tuple[str, Reason], ...]
     model: StoredModel | None
     effects: list[NamedEffect]
     parameters: dict[str, Parameter]
@@ -101,6 +102,11 @@ class Added:
     refused: Mapping[str, str]
     unknown: UnknownEffect | None
 
+    @property
+    def tabulated(self) -> StoredModel | None:
+        """The model with the tables of an unknown effect in addition, where there is one."""
+        return self.model and with_tables(self.model, self.unknown.tables if self.unknown else ())
+
 
 def add(recordings: Recordings, suspects: Suspects) -> Added:
     """Try every effect, keep those that held-out motion confirms, and refine their model.
@@ -108,13 +114,13 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     Raises:
         UndeterminedError: nothing is missing, and the recording does not determine the inertia, or the load's.
     """
-    found = suspects.searched.last
+    found = suspects.fitted
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
     held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
     extension = Extension(recordings.rows, found.hypothesis, suspects.detected, recordings.rig, found)
     recorded, closed_loop = recordings_to_track(recordings, repeats), closed_loop_gap(recordings, extension)
-    rejected = [*suspects.unsized.items()]
+    rejected = [*suspects.rejected.items()]
     while True:
         refused = refusals(recordings, extension.fitted)
         modelled = last_determined(recordings, extension, suspects.policy) if refused else extension
@@ -208,7 +214,7 @@ def rejection(
     gaps: VelocityGaps,
     shown: Sequence[tuple[Extension, Recorded]],
     policy: Policy,
-) -> tuple[int, str] | None:
+) -> tuple[int, Reason] | None:
     """Index of the last effect that held-out motion contradicts, with the reason; None if it contradicts none.
 
     The torque gaps come first, as they cost no simulation. Where they contradict none, what is shown in the end is
@@ -217,7 +223,7 @@ def rejection(
     judged, judge = replace(extension, recording=held_out.fitted), held_out.recorded
     floor = NULL * white_noise(measured_velocity(recordings.trace))
     asked: list[tuple[int, Extension]] = []
-    by_torque: tuple[int, str] | None = None
+    by_torque: tuple[int, Reason] | None = None
     for index in reversed(range(len(judged.names))):
         if judged.a(Occasional, index) and (not judge.events or held_out.fitted is not recordings.rows):
             continue
@@ -227,7 +233,7 @@ def rejection(
         balances = (Balance.of(each.fitted).repeating(judge.events) for each in (less, judged))
         before, after = (balance.gap(held_out.judge) for balance in balances)
         if after > before:
-            by_torque = index, _grows(f"torque gap of the {judge.name}", before, after, judged.rig.effort_unit)
+            by_torque = index, grows("torque", before, after, judged.rig.effort_unit, judge.name)
             break
         asked.append((index, less))
     if not asked:
@@ -243,8 +249,7 @@ def rejection(
         allowed = float(np.hypot(before, floor) * (1.0 if in_phase else np.sqrt(ERRS_TWICE)))
         worse = min(before, after) < judge.varies and after > allowed
         if worse and not _comes_closer(recordings, judged, held_out, gaps, allowed, policy):
-            unit = judged.rig.axis_kind.speed_unit
-            return index, _grows(f"velocity gap of the {judge.name}", before, after, unit)
+            return index, grows("velocity", before, after, judged.rig.axis_kind.speed_unit, judge.name)
     return by_torque
 
 
@@ -300,16 +305,18 @@ def under_drive(extension: Extension) -> int | None:
     return shown[0] if shown else None
 
 
-def unlimited(extension: Extension, closed_loop: tuple[float, float] | None) -> tuple[int, str] | None:
+def unlimited(extension: Extension, closed_loop: tuple[float, float] | None) -> tuple[int, Reason] | None:
     """The effect visible only under the drive, if it does not reduce the velocity gap there; with the reason."""
     index = under_drive(extension)
     if closed_loop is None or closed_loop[1] < closed_loop[0] or index is None:
         return None
-    return index, _grows("velocity gap under the rig's drive", *closed_loop)
+    return index, grows("velocity", *closed_loop)
 
 
-def _grows(what: str, before: float, after: float, unit: str = "") -> str:
-    return f"the {what} grows with it: {before:.3g} -> {after:.3g} {unit}".rstrip()
+def grows(gap: str, before: float, after: float, unit: str = "", recording: str = "") -> Reason:
+    """That an effect increases a gap of a recording, or of a simulation under the rig's drive."""
+    figures: dict[str, str | float] = {"gap": gap, "before": before, "after": after, "unit": unit}
+    return Reason("grows", figures | ({"recording": recording} if recording else {}))
 
 
 def refined(

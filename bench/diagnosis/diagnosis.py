@@ -20,24 +20,24 @@ from bench.diagnosis.name import NamedEffect, Suspects, name
 from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.policy import POLICY, Policy
 from bench.diagnosis.probability import Probabilities
+from bench.diagnosis.reason import Reason
 from bench.diagnosis.recordings import Recordings, fit_bare
-from bench.diagnosis.same_axis import SameAxis, apart
-from bench.diagnosis.search import Round
-from bench.diagnosis.tabulated import UnknownEffect, with_tables
-from bench.diagnosis.verdict import Gap, Objection, verdict
+from bench.diagnosis.same_axis import SameAxis, between_recordings
+from bench.diagnosis.tabulated import UNKNOWN, UnknownEffect, remaining
+from bench.diagnosis.verdict import Gap, verdict
 from bench.diagnosis.where import Where, where
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.present import named
 from bench.errors import InputError
 from bench.fit.estimate import Alone
-from bench.fit.fit import Fit
+from bench.fit.fit import Fit, fit
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.gate.check import Check
 from bench.gate.gate import joined, passed
 from bench.gate.signals import clipped
-from bench.names import nearest, words
+from bench.names import nearest
 from bench.packed import unpack
 from bench.parameter import Parameter
 from bench.plant.model_file import StoredModel, model_xml
@@ -56,11 +56,11 @@ MATCH, RESOLVED = 3.5, 1e-3
 
 
 @dataclass(frozen=True)
-class Shrunk:
+class Step:
     """Gaps after one addition to the model.
 
     Attributes:
-        effect: added last; empty for the bare axis.
+        effect: added last; empty for the bare axis, UNKNOWN for the tables of an unknown effect.
         torque: of the recording, and of the holdout where there is one - N*m (N).
         velocity: the same - rad/s (m/s); nan if not available.
     """
@@ -71,50 +71,50 @@ class Shrunk:
 
 
 @dataclass(frozen=True)
-class Course:
-    """One recording over time, with the residuals of the model after each addition.
+class TimeSeries:
+    """One recording over time, with the residuals of the model after each step.
 
     Attributes:
         name: `recording` or `holdout`.
         origin: of it.
         time: s - (n,).
         velocity: as measured - rad/s (m/s) - (n,).
-        velocity_left: measured less simulated, for each step (n,), nan outside the model; None without a model, or
+        velocity_residuals: measured less simulated, for each step (n,), nan outside the model; None without a model, or
             if it diverged.
         rows: index into the samples of each row of the torque balance (m,).
         torque: as measured, filtered - N*m (N) - (m,).
-        torque_left: measured less modelled, for each step (m,).
+        torque_residuals: measured less modelled, for each step (m,).
     """
 
     name: str
     origin: str
     time: Array
     velocity: Array
-    velocity_left: tuple[NDArray[np.float32] | None, ...]
+    velocity_residuals: tuple[NDArray[np.float32] | None, ...]
     rows: NDArray[np.int64]
     torque: Array
-    torque_left: tuple[Array, ...]
+    torque_residuals: tuple[Array, ...]
 
 
 @dataclass(frozen=True)
 class Considered:
-    """An effect of the catalogue, and why it was accepted or not.
+    """An effect of the catalogue, and why it is in the model or is not.
 
     Attributes:
         effect: of the catalogue.
-        taken: whether it is in the model.
+        accepted: whether it is in the model.
         probability: that the axis has it.
-        alone: share of the squared gap that it explains alone; None if it was not tried.
-        beside: share of the squared residual that it explains in addition to the others; None if it was not tried.
+        of_gap: share of the squared gap that it explains as the only effect; None if it was not tried.
+        of_residual: share of the squared residual that it explains in addition to the others; None if it was not tried.
         reason: for or against it.
     """
 
     effect: Effect
-    taken: bool
+    accepted: bool
     probability: float
-    alone: float | None
-    beside: float | None
-    reason: str
+    of_gap: float | None
+    of_residual: float | None
+    reason: Reason
 
 
 @dataclass(frozen=True, repr=False)
@@ -123,11 +123,11 @@ class Diagnosis(Presented):
 
     Attributes:
         verdict, effects, parameters: as the contract has them.
-        objections: what speaks against its being all; () unless something remains.
+        objections: the criteria by which the model is incomplete; () unless something remains.
         probabilities: of sets of names, and that none of the catalogue's is right.
         where: shares of the gap before any effect; unexplained_share, unexplained_where: of the residual.
         torque, velocity: gaps before and after.
-        steps: the bare axis, then the model after each addition.
+        steps: the bare axis, then the model after each addition, the tables of an unknown effect last.
         holdout: whether it is of the same axis, and in what it differs.
         next_experiment: that tells apart what this recording does not.
         rejected: names that held-out motion contradicts, or whose size is not determined, each with the reason.
@@ -135,15 +135,15 @@ class Diagnosis(Presented):
         stopped: what ended the search before it was done; None if nothing did.
         unknown_effect: what remains, as tables of the model; None where held-out motion confirms none.
         model, balance: with all effects; no model where MuJoCo cannot have them. Only the model has the tables.
-        courses: the recordings over time beside the model as it grew.
-        considered: every effect of the catalogue, and why it was taken or not.
+        time_series: the recordings, with the residuals of the model after each step.
+        considered: every effect of the catalogue, and why it was accepted or not.
         recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
         warnings: what a user should know.
         checks: what the gate found before the fit.
     """
 
     verdict: str
-    objections: tuple[Objection, ...]
+    objections: tuple[Reason, ...]
     effects: list[NamedEffect]
     probabilities: Probabilities
     where: list[Where]
@@ -152,8 +152,8 @@ class Diagnosis(Presented):
     parameters: dict[str, Parameter]
     torque: Gap
     velocity: Gap
-    steps: list[Shrunk]
-    rejected: tuple[tuple[str, str], ...]
+    steps: list[Step]
+    rejected: tuple[tuple[str, Reason], ...]
     refused: Mapping[str, str]
     holdout: SameAxis
     next_experiment: NextExperiment | None
@@ -161,7 +161,7 @@ class Diagnosis(Presented):
     unknown_effect: UnknownEffect | None
     model: StoredModel | None
     balance: Balance
-    courses: tuple[Course, ...]
+    time_series: tuple[TimeSeries, ...]
     considered: tuple[Considered, ...]
     recordings: tuple[Alone, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
@@ -229,10 +229,10 @@ def diagnose(
     unseen = passed(trace_of(holdout, rig, units), rig).trace if holdout is not None else None
     recordings = Recordings.of([each.trace for each in gated], rig, unseen, policy)
     recordings, bare, suspects = decided(recordings, left_out, policy)
-    recordings, moves = recordings.steady(suspects.searched.last)
+    recordings, moves = recordings.steady(suspects.fitted)
     if recordings.rows is not bare.rows:
         bare = fit_bare(recordings.rows)
-        suspects = replace(suspects, searched=suspects.searched.through(recordings.rows))
+        suspects = replace(suspects, fitted=fit(recordings.rows, suspects.fitted.hypothesis, suspects.fitted))
     progress(0.6)
     added = add(recordings, suspects)
     progress(0.9)
@@ -251,7 +251,7 @@ def decided(recordings: Recordings, excluded: frozenset[str], policy: Policy) ->
         bare = fit_bare(each.rows)
         suspects = name(each, bare, excluded, policy)
         tried.append((each, bare, suspects))
-        if suspects.probabilities.chosen.names:
+        if suspects.probabilities.chosen:
             return tried[-1]
         if suspects.probabilities.nothing > 0.5 or not policy.noise_hides(bare):
             break
@@ -262,9 +262,9 @@ def show(bare: Fit, added: Added) -> Diagnosis:
     """The diagnosis of what was named and kept."""
     recordings, whole = added.recordings, added.extension.fitted
     unit, kind, current = recordings.unit, recordings.rig.axis_kind, recordings.current
-    parameters, alone, spread, differing = apart(recordings, whole, added.parameters)
-    shown = courses(added)
-    steps = shrinking(added, shown)
+    parameters, alone, spread, differing = between_recordings(recordings, whole, added.parameters)
+    series = time_series(added)
+    steps = gaps_of_steps(added, series)
     torque, velocity = gaps(added, steps)
     likely = added.suspects.probabilities.without(frozenset(name for name, _ in added.rejected))
     comes_to, objections = verdict(added, likely, torque, velocity)
@@ -273,7 +273,7 @@ def show(bare: Fit, added: Added) -> Diagnosis:
         objections=objections,
         effects=added.effects,
         probabilities=likely,
-        where=where(bare, kind, unit, current, whole),
+        where=where(bare, kind, unit, current, [whole.left, *series[0].torque_residuals[len(added.stages) :]]),
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
         unexplained_where=where(whole, kind, unit, current)[:3] if objections else [],
         parameters=parameters,
@@ -286,11 +286,11 @@ def show(bare: Fit, added: Added) -> Diagnosis:
         refused=added.refused,
         holdout=added.compared,
         next_experiment=propose(added),
-        stopped=added.suspects.searched.stopped,
+        stopped=added.suspects.stopped,
         unknown_effect=added.unknown,
-        model=added.model and with_tables(added.model, added.unknown.tables if added.unknown else ()),
+        model=added.tabulated,
         balance=Balance.of(whole).repeating(added.repeats),
-        courses=shown,
+        time_series=series,
         considered=considered(added, likely),
         warnings=[
             *suspicions(recordings.trace, recordings.rig, added.parameters),
@@ -305,43 +305,50 @@ def show(bare: Fit, added: Added) -> Diagnosis:
     )
 
 
-def courses(added: Added) -> tuple[Course, ...]:
-    """The recording, and the holdout where there is one, beside the bare axis and the model after each addition."""
+def time_series(added: Added) -> tuple[TimeSeries, ...]:
+    """The recording, and the holdout where there is one, with the residuals after each step."""
     laid_out = [rows for rows in (added.recordings.rows, added.recordings.holdout_rows) if rows is not None]
     balances = [Balance.of(stage.fitted).repeating(added.repeats) for stage in added.stages]
+    models = [stage.model for stage in added.stages]
+    if added.refined is not None:
+        models[-1] = added.model
+    tables = [] if added.unknown is None else [added.unknown.tables]
+    models += [added.tabulated for _ in tables]
     found = []
     for rows, recorded in zip(laid_out, added.recorded, strict=True):
         trace = recorded.trace
-        models = [stage.model for stage in added.stages]
-        if added.refined is not None:
-            models[-1] = added.model
-        left = [added.gaps.residual(model, recorded) for model in models]
-        along = recorded.name, trace.origin, trace.time, measured_velocity(trace), tuple(left), rows.samples()
-        found.append(Course(*along, rows.effort, tuple(balance.left(rows) for balance in balances)))
+        velocity = tuple(added.gaps.residual(model, recorded) for model in models)
+        torque = [
+            *(balance.left(rows) for balance in balances),
+            *(remaining(balances[-1], rows, one) for one in tables),
+        ]
+        along = recorded.name, trace.origin, trace.time, measured_velocity(trace)
+        found.append(TimeSeries(*along, velocity, rows.samples(), rows.effort, tuple(torque)))
     return tuple(found)
 
 
-def shrinking(added: Added, shown: Sequence[Course]) -> list[Shrunk]:
-    """Gaps of the bare axis and after each addition, the last one as it was kept."""
+def gaps_of_steps(added: Added, series: Sequence[TimeSeries]) -> list[Step]:
+    """Gaps of the bare axis and after each step, that of the last effect as it was kept."""
+    names = [stage.names[-1] if stage.names else "" for stage in added.stages]
     return [
-        Shrunk(
-            stage.names[-1] if stage.names else "",
-            tuple(rms(course.torque_left[k]) for course in shown),
-            tuple(math.nan if (left := course.velocity_left[k]) is None else known_rms(left) for course in shown),
+        Step(
+            effect,
+            tuple(rms(one.torque_residuals[k]) for one in series),
+            tuple(math.nan if (left := one.velocity_residuals[k]) is None else known_rms(left) for one in series),
         )
-        for k, stage in enumerate(added.stages)
+        for k, effect in enumerate([*names, UNKNOWN] if added.unknown else names)
     ]
 
 
-def gaps(added: Added, steps: Sequence[Shrunk]) -> tuple[Gap, Gap]:
+def gaps(added: Added, steps: Sequence[Step]) -> tuple[Gap, Gap]:
     """Torque and velocity gap of all effects together.
 
-    Of the torque over all rows; beside it what is left on those that judge the fit, where not all do. Of the velocity
-    None where MuJoCo cannot have the model or a simulation diverged.
+    Of the torque over all rows, and the residual of those that judge the fit, where not all do. Of the velocity None
+    where MuJoCo cannot have the model or a simulation diverged.
     """
-    whole, recordings = added.extension.fitted, added.recordings
-    torque = zip(steps[0].torque, steps[-1].torque, strict=True)
-    velocity = zip(steps[0].velocity, steps[-1].velocity, strict=True)
+    whole, recordings, last = added.extension.fitted, added.recordings, steps[len(added.stages) - 1]
+    torque = zip(steps[0].torque, last.torque, strict=True)
+    velocity = zip(steps[0].velocity, last.velocity, strict=True)
     simulated = [pair if all(map(math.isfinite, pair)) else None for pair in velocity]
     judged = None if whole.determined.all() else (float(whole.determined.mean()), whole.rms)
     velocity = measured_velocity(recordings.trace)
@@ -378,53 +385,36 @@ def shaken(fitted: Fit, bandwidth: float) -> float:
 
 def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, ...]:
     """All effects: those accepted in the order of addition, then the others by the share they explain."""
-    rounds = [each for each in added.suspects.searched.rounds if each.candidates]
+    suspects, found = added.suspects, dict[Effect, Considered]()
     kept = {one.effect: one for one in added.effects}
     alike = {name: one for one in kept.values() for name in one.ambiguous_with}
-    found: dict[Effect, Considered] = {}
     for effect in catalogue().values():
-        shares = [share for tried in rounds if (share := _share(tried, effect)) is not None]
-        likely, same = probabilities.names.get(effect.name, 0.0), kept.get(effect) or alike.get(effect.name)
-        if effect in kept:
-            figures = (f"{key.replace('_', ' ')} {value:.3g}" for key, value in kept[effect].evidence.items())
-            reason = ", ".join(figures) or "named"
-        elif same is not None:
-            reason = f"this recording does not distinguish it from {words(same.name)}"
-        else:
-            reason = _against(effect, added, rounds)
+        accepted, same = effect in kept, kept.get(effect) or alike.get(effect.name)
+        likely = probabilities.names.get(effect.name, 0.0)
         if same is not None:
             likely = probabilities.of_any((same.name, *same.ambiguous_with))
-        last = _share(rounds[-1], effect) if len(rounds) > 1 and effect not in kept else None
-        found[effect] = Considered(effect, effect in kept, likely, shares[0] if shares else None, last, reason)
-    taken = [found.pop(effect) for effect in kept]
-    return (*taken, *sorted(found.values(), key=lambda one: -(one.alone or 0.0)))
+        if accepted:
+            reason = Reason("accepted", kept[effect].evidence)
+        else:
+            reason = Reason("alike", {"effect": same.name}) if same is not None else against(effect, added)
+        shares = suspects.of_gap.get(effect), None if accepted else suspects.of_residual.get(effect)
+        found[effect] = Considered(effect, accepted, likely, *shares, reason)
+    first = [found.pop(effect) for effect in kept]
+    return (*first, *sorted(found.values(), key=lambda one: -(one.of_gap or 0.0)))
 
 
-def _share(tried: Round, effect: Effect) -> float | None:
-    """Share of the squared residual that an effect explains beside a fit; None if it was not tried."""
-    return max((each.share for each in tried.candidates if each.term.effect is effect), default=None)
-
-
-def _against(effect: Effect, added: Added, rounds: Sequence[Round]) -> str:
-    """Why an effect is not in the model: the first of these reasons that holds."""
-    suspects = added.suspects
-    rejected = dict(added.rejected)
-    share = _share(rounds[-1], effect) if rounds else None
-    reasons = {
+def against(effect: Effect, added: Added) -> Reason:
+    """Why an effect is not in the model: the first of these criteria that holds."""
+    suspects, rejected = added.suspects, dict(added.rejected)
+    if effect.name not in suspects.excluded and effect.name in rejected:
+        return rejected[effect.name]
+    criteria = {
         "excluded": effect.name in suspects.excluded,
-        rejected.get(effect.name, ""): effect.name in rejected,
-        "added and removed again: the others explain it too, or another set is more likely": any(
-            effect is term.effect for tried in rounds for term in tried.fitted.terms
-        ),
-        "this recording cannot show it": not effect.sought(added.recordings.rows.scope),
-        "no more than chance": share is not None
-        and share * rounds[-1].fitted.squares < suspects.policy.by_chance(rounds[-1].fitted, 1),
-        suspects.searched.refused.get(effect.name, "others explain more"): share is not None,
-        "the recording does not distinguish it from an added effect": not suspects.searched.last.hypothesis.admits(
-            effect
-        ),
+        suspects.against.get(effect, ""): effect in suspects.against,
+        "invisible": not effect.sought(added.recordings.rows.scope),
+        "same_as_added": not suspects.fitted.hypothesis.admits(effect),
     }
-    return next((reason for reason, holds in reasons.items() if holds), "nothing in the recording points to it")
+    return Reason(next((criterion for criterion, holds in criteria.items() if holds), "no_sign"))
 
 
 def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:
@@ -468,9 +458,9 @@ def impacts(fitted: Fit, unit: str) -> list[str]:
     if share == 0.0:
         return []
     return [
-        f"{100.0 * share:.0f} % of the rows follow impacts so closely that their torque hangs on instants which the "
-        f"recording does not tell: the verdict is by the others, on which {fitted.rms:.3g} {unit} are left; the torque "
-        "gap counts all"
+        f"{100.0 * share:.0f} % of the rows follow impacts so closely that their torque depends on instants which "
+        f"the recording does not determine. The verdict uses the other rows, whose residual is {fitted.rms:.3g} "
+        f"{unit}; the torque gap covers all"
     ]
 
 

@@ -9,15 +9,17 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import Probabilities, probabilities, weighed
+from bench.diagnosis.probability import Probabilities, key_of, probabilities, weighed
+from bench.diagnosis.reason import Reason
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.search import Searched, search
+from bench.diagnosis.search import Search, search
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect, Lag, Occasional, Stage, Standout
 from bench.effects.signals import Axis, AxisState, Values
@@ -27,7 +29,6 @@ from bench.fit.fit import Fit, fit, hint, shaped, unbiased
 from bench.fit.hypothesis import BASE, Term
 from bench.fit.quantities import uncertain
 from bench.fit.solution import solution_of
-from bench.names import words
 from bench.parameter import Parameter
 
 
@@ -63,25 +64,35 @@ class NamedEffect:
 
 @dataclass(frozen=True)
 class Suspects:
-    """What was named.
+    """What was named, and what it was weighed against.
 
     Attributes:
-        searched: steps of the search; the last one's fit has the effects of the torque balance.
+        fitted: with the effects of the torque balance.
+        visited: all fits that are possible, the first without an effect.
         probabilities: of these and of others.
         detected: what the torque balance does not hold.
         withheld: whether something was found whose name was not to be tried.
         policy: that decided.
         excluded: names that were not to be tried.
-        unsized: why the size of what was found at first is not determined, by name; these were then not tried either.
+        rejected: why the size of what was found at first is not determined, by name; it was then not tried either.
+        stopped: what ended the search before it was done; None if nothing did.
+        of_gap: share of the squared gap that each effect which was tried explains as the only one.
+        of_residual: share of the squared residual that it explains in addition to those named.
+        against: the criterion by which it is not in `fitted`.
     """
 
-    searched: Searched
+    fitted: Fit
+    visited: tuple[Fit, ...]
     probabilities: Probabilities
     detected: Mapping[Effect, Detected]
-    withheld: bool
     policy: Policy
+    withheld: bool = False
     excluded: frozenset[str] = frozenset()
-    unsized: Mapping[str, str] = field(default_factory=dict)
+    rejected: Mapping[str, Reason] = field(default_factory=dict)
+    stopped: str | None = None
+    of_gap: Mapping[Effect, float] = field(default_factory=dict)
+    of_residual: Mapping[Effect, float] = field(default_factory=dict)
+    against: Mapping[Effect, str] = field(default_factory=dict)
 
 
 def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Policy) -> Suspects:
@@ -91,23 +102,56 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     repeated where torque and speed are apart by a delay, too, which is then undone.
     """
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
-    direct, unsized = frozenset(effect.name for effect in kept), dict[str, str]()
+    direct, unsized = frozenset(effect.name for effect in kept), dict[str, Reason]()
     while True:
         untried = excluded | unsized.keys()
         effects = [effect for name, effect in catalogue().items() if name not in untried]
         searched = search(bare, effects, policy)
-        likely = probabilities(weighed(searched.visited, recordings.holdout_rows, policy), direct, policy)
-        chosen = likely.fits[likely.chosen.names]
+        visited = searched.visited
+        likely = probabilities(weighed(visited, recordings.holdout_rows, policy), direct, policy)
+        chosen = likely.fits[likely.chosen]
         last = with_events(chosen, effects, policy)
         more, shift = without_size(last, recordings), delay(last, policy)
         if not more and not shift:
             break
         unsized |= more
         bare = fit(bare.rows, replace(bare.hypothesis, shift=bare.hypothesis.shift + shift))
-    standing = frozenset(term.effect.name for term in last.terms[len(chosen.terms) :])
-    likely = replace(likely, detected=likely.detected | standing)
-    withheld = len(kept) < len(recordings.detected)
-    return Suspects(searched.ending(last), likely, kept, withheld, policy, excluded, unsized)
+    events = frozenset(term.effect.name for term in last.terms[len(chosen.terms) :])
+    return Suspects(
+        fitted=last,
+        visited=visited,
+        probabilities=replace(likely, detected=likely.detected | events),
+        detected=kept,
+        policy=policy,
+        withheld=len(kept) < len(recordings.detected),
+        excluded=excluded,
+        rejected=unsized,
+        stopped=searched.stopped,
+        **tried(searched, last),
+    )
+
+
+def tried(searched: Search, result: Fit) -> dict[str, Mapping[Effect, Any]]:
+    """Shares of the effects that a search tried, and why each is not in its result, as `Suspects` has them."""
+    shares = {key: of for key, of in searched.shares.items() if of}
+    if not shares:
+        return {}
+    if not result.terms:
+        shares = dict([next(iter(shares.items()))])
+    own = key_of(result)
+    last = shares.pop(own, None) or next(reversed(shares.values()))
+    shares[own] = last
+    against = {
+        effect: "chance"
+        if part * result.squares < searched.policy.by_chance(result)
+        else searched.refused.get(effect, "others")
+        for effect, part in last.items()
+    }
+    return {
+        "of_gap": {effect: part for of in reversed(shares.values()) for effect, part in of.items()},
+        "of_residual": last if result.terms else {},
+        "against": against | {effect: "removed" for key in shares for effect, _ in key},
+    }
 
 
 def delay(fitted: Fit, policy: Policy) -> float:
@@ -125,8 +169,8 @@ def delay(fitted: Fit, policy: Policy) -> float:
     return 0.0 if policy.remains(fit(fitted.rows, moved, fitted)) else free.shift[0]
 
 
-def without_size(fitted: Fit, recordings: Recordings) -> dict[str, str]:
-    """Why the size of an effect is not determined, by name: of all its terms the intervals contain its absence."""
+def without_size(fitted: Fit, recordings: Recordings) -> dict[str, Reason]:
+    """The effects whose size is not determined, by name: of all their terms the intervals contain their absence."""
     if not fitted.terms:
         return {}
     numbers, sizes = uncertain(fitted), dict[str, list[tuple[str, Parameter]]]()
@@ -135,15 +179,10 @@ def without_size(fitted: Fit, recordings: Recordings) -> dict[str, str]:
         known = [(each.name, values[each.name]) for each in term.effect.quantities if each.null is not None]
         sizes.setdefault(term.effect.name, []).extend(known)
     return {
-        name: f"{with_interval(*known[0])} is not determined"
+        name: Reason("undetermined", {"quantity": known[0][0], "found": known[0][1]})
         for name, known in sizes.items()
         if known and all(abs(one.value) <= numbers.reach * one.std_error for _, one in known)
     }
-
-
-def with_interval(name: str, found: Parameter) -> str:
-    """A quantity with half of its interval in words."""
-    return f"{words(name)} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"
 
 
 def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:

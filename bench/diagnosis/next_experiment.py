@@ -123,11 +123,11 @@ def _of_motion(effect: Effect) -> bool:
 
 def nearly_as_good(added: Added, model: AxisModel) -> Iterator[Alternatives]:
     """Effects that, instead of the one accepted last, leave hardly more of the torque."""
-    whole, searched = added.extension.fitted, added.suspects.searched
-    if not whole.terms or whole.hypothesis != searched.last.hypothesis:
+    whole, suspects = added.extension.fitted, added.suspects
+    if not whole.terms or whole.hypothesis != suspects.fitted.hypothesis:
         return
     *kept, named = (term.effect for term in whole.terms)
-    for visited in searched.visited:
+    for visited in suspects.visited:
         effects = [term.effect for term in visited.terms]
         rivals = [effect for effect in effects if effect not in kept and not effect.decoy]
         if len(rivals) != 1 or len(effects) != len(whole.terms) or not {*kept} <= {*effects}:

@@ -46,27 +46,27 @@ class Policy:
         remainder: residual over noise floor above which the residual is not noise.
         large: residual over white noise from which on it is not noise, even if the noise is stronger than it appears.
         holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave.
-        left: weight of the residual above noise over that of the bare axis: it acts as a number of independent rows,
-            which other effects of a real axis make few (`bench.diagnosis.probability`; all weights are fitted,
+        remaining: weight of the residual above noise over that of the bare axis: it acts as a number of independent
+            rows, which other effects of a real axis make few (`bench.diagnosis.probability`; all weights are fitted,
             `docs/certainty.md`).
         over: weight of the residual above noise over noise.
         number: weight of a fitted number.
         outside: weight of an effect from outside the catalogue.
         none: weight of effects that were not tried.
-        beside: residual over noise floor, as share of that without a name, up to which the name is present together
-            with an effect from outside the catalogue.
+        with_unknown: residual over noise floor, as share of that without a name, up to which the name is present
+            together with an effect from outside the catalogue.
     """
 
     chance: float = 40.0
     remainder: float = NOISE_ALONE
     large: float = 3.0
     holdout_gap: float = 3.0
-    left: float = 4.0
+    remaining: float = 4.0
     over: float = 1.65
     number: float = 1.35
     outside: float = 1.85
     none: float = -1.85
-    beside: float = 0.5
+    with_unknown: float = 0.5
 
     def by_chance(self, fitted: Fit, numbers: int = 1) -> float:
         """Squares that so many numbers save by chance at most - (N*m)**2 (N**2)."""
@@ -115,7 +115,7 @@ class Policy:
 
         It is found next to a remainder, so its score has the weight of an unknown effect, too.
         """
-        score = self.left * float(np.log1p(saved / max(left, 1e-300))) - self.number * numbers - self.outside
+        score = self.remaining * float(np.log1p(saved / max(left, 1e-300))) - self.number * numbers - self.outside
         return saved > self.by_chance(fitted, numbers) and score > 0.0
 
 

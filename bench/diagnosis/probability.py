@@ -9,7 +9,7 @@ v - mean squared residual; f - noise floor, its colour that of the hypothesis th
 turn a difference in colour into evidence. A holdout adds what a hypothesis, of the strengths that the recording
 gave, leaves of it beyond twice what the best one does. Then
 
-    ln P = -left*(max(U, LEAST) + B) - over*min(V, MUCH) - number*numbers + constant
+    ln P = -remaining*(max(U, LEAST) + B) - over*min(V, MUCH) - number*numbers + constant
 
 U, V - logarithms of E over that of the bare axis and over that of noise alone, V on all rows for a hypothesis that
 determines all: who claims no gap has to explain what is beside impacts, too; B - logarithm of v/f**2 where that is
@@ -60,38 +60,30 @@ CALIBRATED_ON = "docs/certainty.md"
 
 
 @dataclass(frozen=True)
-class NameSet:
-    """A set of names with its probability."""
-
-    names: frozenset[str]
-    probability: float
-
-
-@dataclass(frozen=True)
 class Probabilities:
     """How likely each set of names is.
 
     Attributes:
-        sets: of names of the torque balance, likeliest first; the empty one says that it lacks nothing.
+        sets: probability of each set of names of the torque balance, likeliest first; the empty one: it lacks nothing.
         none: probability that it lacks something and none of the catalogue is it.
         detected: names that the signals show directly.
-        beside: probability that each name is there beside an effect from outside the catalogue, a part of `none`.
+        with_unknown: probability that each name is there with an effect from outside the catalogue, a part of `none`.
         fits: the best of each set, as long as they are searched; what is stored of them keeps none.
     """
 
-    sets: tuple[NameSet, ...]
+    sets: Mapping[frozenset[str], float]
     none: float
     detected: frozenset[str] = frozenset()
-    beside: Mapping[str, float] = field(default_factory=dict)
+    with_unknown: Mapping[str, float] = field(default_factory=dict)
     fits: Mapping[frozenset[str], Fit] = field(default_factory=dict)
 
     @cached_property
     def names(self) -> dict[str, float]:
         """Probability of every name that was considered, likeliest first."""
-        found = dict(self.beside)
-        for each in self.sets:
-            for name in each.names:
-                found[name] = found.get(name, 0.0) + each.probability
+        found = dict(self.with_unknown)
+        for names, probability in self.sets.items():
+            for name in names:
+                found[name] = found.get(name, 0.0) + probability
         found |= dict.fromkeys(self.detected, DETECTED)
         return dict(sorted(found.items(), key=lambda one: (-one[1], one[0])))
 
@@ -99,17 +91,16 @@ class Probabilities:
         """Probability that the axis has one of some effects that the recording does not distinguish."""
         if self.detected & {*names}:
             return DETECTED
-        beside = max((self.beside.get(name, 0.0) for name in names), default=0.0)
-        return beside + sum(each.probability for each in self.sets if each.names & {*names})
+        unknown = max((self.with_unknown.get(name, 0.0) for name in names), default=0.0)
+        return unknown + sum(probability for each, probability in self.sets.items() if each & {*names})
 
     @property
     def nothing(self) -> float:
         """Probability that nothing is missing."""
-        bare = sum(each.probability for each in self.sets if not each.names)
-        return bare * (1.0 - DETECTED) if self.detected else bare
+        return self.sets.get(frozenset(), 0.0) * (1.0 - DETECTED if self.detected else 1.0)
 
     @property
-    def chosen(self) -> NameSet:
+    def chosen(self) -> frozenset[str]:
         """The names that are likelier than not, or of sets without others the one that misses least of them.
 
         It predicts best, though another set may be the likeliest (median probability model: M. M. Barbieri, J. O.
@@ -118,8 +109,7 @@ class Probabilities:
         """
         sure = {name: shared - 0.5 for name in self.names if (shared := self._with_likeness(name)) > 0.5}
         return max(
-            (each for each in self.sets if each.names <= sure.keys()),
-            key=lambda each: sum(sure[name] for name in each.names),
+            (each for each in self.sets if each <= sure.keys()), key=lambda each: sum(sure[name] for name in each)
         )
 
     def _with_likeness(self, name: str) -> float:
@@ -130,16 +120,18 @@ class Probabilities:
         return self.of_any([name, *alike]) if all(self.names[other] < own for other in alike) else own
 
     def instead_of(self, name: str) -> dict[str | None, float]:
-        """What stands in the place of a chosen name in the sets without it; None: none of the catalogue."""
-        found: dict[str | None, float] = {None: self.none - self.beside.get(name, 0.0)}
-        for each in self.sets:
-            for other in each.names - self.chosen.names if name not in each.names else ():
-                found[other] = found.get(other, 0.0) + each.probability
+        """What the sets without a chosen name have in its place; None: none of the catalogue."""
+        found: dict[str | None, float] = {None: self.none - self.with_unknown.get(name, 0.0)}
+        for names, probability in self.sets.items():
+            for other in names - self.chosen if name not in names else ():
+                found[other] = found.get(other, 0.0) + probability
         return dict(sorted(found.items(), key=lambda one: -one[1]))
 
     def holding(self, level: float) -> list[frozenset[str] | None]:
         """The fewest sets that hold the truth with a probability of at least `level`; None: none of the catalogue."""
-        ranked = [(each.probability, each.names | self.detected) for each in self.sets] + [(self.none, None)]
+        ranked = [(probability, names | self.detected) for names, probability in self.sets.items()] + [
+            (self.none, None)
+        ]
         ranked.sort(key=lambda one: -one[0])
         before = np.cumsum([0.0, *(share for share, _ in ranked)])[:-1]
         return [names for (_, names), sure in zip(ranked, before, strict=True) if sure < level]
@@ -147,17 +139,19 @@ class Probabilities:
     def without(self, names: frozenset[str]) -> Probabilities:
         """Given that something else is in the place of some names: what held-out motion spoke against.
 
-        Names beside them are as likely as before; what nothing else would be missing beside is none of the catalogue.
+        The other names are as likely as before; where nothing else would be missing it is none of the catalogue.
         """
-        left: dict[frozenset[str], float] = {}
-        for each in self.sets:
-            left[each.names - names] = left.get(each.names - names, 0.0) + each.probability
-        bare = sum(each.probability for each in self.sets if not each.names)
-        lost = left.pop(frozenset(), 0.0) - bare
-        sets = [NameSet(frozenset(), bare), *(NameSet(*each) for each in left.items())]
-        sets.sort(key=lambda one: -one.probability)
-        beside = {name: share for name, share in self.beside.items() if name not in names}
-        return Probabilities(tuple(sets), self.none + lost, self.detected - names, beside)
+        bare, rest = self.sets.get(frozenset(), 0.0), dict[frozenset[str], float]()
+        for each, probability in self.sets.items():
+            rest[each - names] = rest.get(each - names, 0.0) + probability
+        lost = rest.get(frozenset(), 0.0) - bare
+        unknown = {name: share for name, share in self.with_unknown.items() if name not in names}
+        return Probabilities(ranked({**rest, frozenset(): bare}), self.none + lost, self.detected - names, unknown)
+
+
+def ranked(shares: Mapping[frozenset[str], float]) -> dict[frozenset[str], float]:
+    """Sets of names, likeliest first."""
+    return dict(sorted(shares.items(), key=lambda one: -one[1]))
 
 
 @dataclass(frozen=True)
@@ -166,7 +160,7 @@ class Contender:
 
     Attributes:
         fitted: to the recording.
-        left: logarithm of what it leaves beyond noise over what the bare axis leaves.
+        remaining: logarithm of its residual beyond noise over that of the bare axis.
         over: the same over BESIDE_NOISE of the noise.
         below: logarithm of what it leaves over the noise where that is less, else 0: the noise is then less, too, and
             the other that leaves as much as was thought is not as likely.
@@ -175,7 +169,7 @@ class Contender:
     """
 
     fitted: Fit
-    left: float
+    remaining: float
     over: float
     below: float
     numbers: float
@@ -183,7 +177,7 @@ class Contender:
 
     def score(self, policy: Policy) -> float:
         """ln P, up to a constant."""
-        distance = policy.left * (max(self.left, LEAST) + self.below) + policy.over * min(self.over, MUCH)
+        distance = policy.remaining * (max(self.remaining, LEAST) + self.below) + policy.over * min(self.over, MUCH)
         return -distance - policy.number * self.numbers - policy.outside * self.outside
 
 
@@ -274,30 +268,30 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
     logs = [each.score(policy) for each in scored]
     weights = np.exp(np.array([*logs, policy.none]) - max(*logs, policy.none))
     shares = (weights / weights.sum()).tolist()
-    ranked = sorted(zip(scored, shares, strict=False), key=lambda one: (one[0].outside, -one[1]))
     called: dict[str, str] = {}
     shared: dict[frozenset[str], float] = {}
-    beside: dict[str, float] = {}
+    with_unknown: dict[str, float] = {}
     fits: dict[frozenset[str], Fit] = {}
-    for each, share in ranked:
+    for each, share in sorted(zip(scored, shares, strict=False), key=lambda one: (one[0].outside, -one[1])):
         if each.outside and share < LITTLE:
             continue
         held = standing(each.fitted, policy) if each.outside else [term.effect for term in each.fitted.terms]
         names = frozenset(_called(effect, each.fitted.scope, called) for effect in held)
         if each.outside:
-            beside |= {name: beside.get(name, 0.0) + share for name in names}
+            with_unknown |= {name: with_unknown.get(name, 0.0) + share for name in names}
         else:
             fits.setdefault(names, each.fitted)
             shared[names] = shared.get(names, 0.0) + share
-    sets = sorted((NameSet(*each) for each in shared.items()), key=lambda one: -one.probability)
-    return Probabilities(tuple(sets), 1.0 - sum(each.probability for each in sets), detected, beside, fits)
+    return Probabilities(ranked(shared), 1.0 - sum(ranked(shared).values()), detected, with_unknown, fits)
 
 
 def standing(fitted: Fit, policy: Policy) -> list[Effect]:
     """Effects beside one from outside the catalogue that it cannot make up for."""
     own = [(index, term.effect) for index, term in enumerate(fitted.terms) if not term.effect.decoy]
     less = (fit(fitted.rows, fitted.hypothesis.without(index), fitted) for index, _ in own)
-    return [effect for (_, effect), without in zip(own, less, strict=True) if fitted.chi < policy.beside * without.chi]
+    return [
+        effect for (_, effect), without in zip(own, less, strict=True) if fitted.chi < policy.with_unknown * without.chi
+    ]
 
 
 def _called(effect: Effect, scope: Scope, called: dict[str, str]) -> str:

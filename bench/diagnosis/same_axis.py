@@ -86,7 +86,7 @@ def _beyond(factor: float, found: Difference) -> bool:
     return found.outside(1.0 / factor - 1.0, factor - 1.0, SURE)
 
 
-def apart(
+def between_recordings(
     recordings: Recordings, whole: Fit, parameters: Mapping[str, Parameter]
 ) -> tuple[dict[str, Parameter], tuple[Alone, ...], dict[str, Between], list[str]]:
     """The model with all effects, and its parameters, compared to it fitted to each of several recordings alone.

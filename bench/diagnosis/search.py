@@ -12,8 +12,8 @@ and a chain of many small effects, which take little each and most of the residu
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,6 @@ from bench.effects.waves import Wave
 from bench.fit.fit import Fit, fit, shaped, together
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Term, on_other_side, outer_loads
-from bench.fit.rows import Rows
 
 #: Said of a search that its limit ended.
 LIMIT = "limit of effects reached"
@@ -61,82 +60,60 @@ class Candidate:
     share: float
 
 
-@dataclass(frozen=True)
-class Round:
-    """A fit, and the effects that were tried in addition to it, best first."""
-
-    fitted: Fit
-    candidates: tuple[Candidate, ...] = ()
-
-
-@dataclass(frozen=True)
-class Searched:
-    """What a search visited.
+class Search:
+    """A search, and the fits that it visited, the best one of each set of effects.
 
     Attributes:
-        rounds: fits that were expanded, the first without an effect, the last the result.
-        visited: all fits that are possible, the first without an effect.
-        stopped: what ended it before it was done; None if nothing did.
-        refused: why an effect that was fitted was not visited, by its name.
+        last: the most likely set without a decoy.
+        stopped: what ended the search before it was done; None if nothing did.
+        refused: why an effect that was fitted was not visited, by effect: a criterion of `bench.diagnosis.reason`.
     """
 
-    rounds: tuple[Round, ...]
-    visited: tuple[Fit, ...]
-    stopped: str | None = None
-    refused: Mapping[str, str] = field(default_factory=dict)
-
-    @property
-    def last(self) -> Fit:
-        """The result."""
-        return self.rounds[-1].fitted
-
-    def ending(self, fitted: Fit) -> Searched:
-        """The same with another result; its candidates are kept where its effects are those of the last fit."""
-        if not fitted.terms:
-            return replace(self, rounds=(*self.rounds[:1],))
-        kept = [each for each in self.rounds if key_of(each.fitted) != key_of(fitted)]
-        same = next((each for each in self.rounds if key_of(each.fitted) == key_of(fitted)), self.rounds[-1])
-        return replace(self, rounds=(*kept, Round(fitted, same.candidates)))
-
-    def through(self, rows: Rows) -> Searched:
-        """The same with the result fitted to rows through another filter."""
-        last = Round(fit(rows, self.last.hypothesis, self.last), self.rounds[-1].candidates)
-        return replace(self, rounds=(*self.rounds[:-1], last))
-
-
-def search(bare: Fit, effects: Sequence[Effect], policy: Policy, most: int = MOST) -> Searched:
-    """Sets of effects around the most likely one; `most`: terms of a set."""
-    visited = Visited(bare, effects, policy)
-    best, waits, stopped = bare, 0, None
-    while True:
-        # the shape of what replaces others is bent to an effect that is still hidden: it is searched anew at once
-        ahead = 0 if any(term.effect.replaces for term in best.terms) or not policy.remains(best) else LOOKAHEAD
-        following = visited.next() if waits <= ahead else None
-        if following is not None and len(following.terms) < most:
-            visited.expand(following)
-        elif following is not None:
-            visited.pass_over(following)
-            stopped = LIMIT if following is best else stopped
-        elif not visited.try_further(best, most):
-            break
-        found = visited.best()
-        waits = 0 if key_of(found) != key_of(best) else waits + 1
-        best = found
-    visited.add_decoy_waves(best)
-    return visited.result(best, stopped if policy.remains(best) else None)
-
-
-class Visited:
-    """Fits that a search visited, the best one of each set of effects."""
-
     def __init__(self, bare: Fit, effects: Sequence[Effect], policy: Policy) -> None:
-        self.effects, self.policy = effects, policy
+        self.effects, self.policy, self.last = effects, policy, bare
+        self.stopped: str | None = None
+        self.refused: dict[Effect, str] = {}
         self.fits: dict[Key, Fit] = {key_of(bare): bare}
         self.tried: dict[Key, tuple[Candidate, ...]] = {}
         self.grown: set[Key] = set()
         self.expanded: dict[Key, None] = {}
         self.further: set[Key] = set()
-        self.refused: dict[str, str] = {}
+
+    def run(self, most: int) -> None:
+        """Visit sets around the most likely one until none is likelier."""
+        best, waits = self.last, 0
+        while True:
+            # the shape of what replaces others is bent to an effect that is still hidden: it is searched anew at once
+            replacing = any(term.effect.replaces for term in best.terms)
+            following = (
+                self.next() if waits <= (LOOKAHEAD if self.policy.remains(best) and not replacing else 0) else None
+            )
+            if following is not None and len(following.terms) < most:
+                self.expand(following)
+            elif following is not None:
+                self.expanded[key_of(following)] = None
+                self.stopped = LIMIT if following is best else self.stopped
+            elif not self.try_further(best, most):
+                break
+            found = self.best()
+            waits = 0 if key_of(found) != key_of(best) else waits + 1
+            best = found
+        self.add_decoy_waves(best)
+        self.last, self.stopped = best, self.stopped if self.policy.remains(best) else None
+
+    @property
+    def visited(self) -> tuple[Fit, ...]:
+        """All fits that are possible, the first without an effect."""
+        scores, bare = self.scores(), next(iter(self.fits.values()))
+        least = max(scores.values()) - NEGLIGIBLE
+        likely = [self.fits[key] for key, score in scores.items() if score > least and self.fits[key] is not bare]
+        return bare, *likely
+
+    @property
+    def shares(self) -> dict[Key, dict[Effect, float]]:
+        """Share of the squared residual of each set that was expanded which each effect would take, in order."""
+        tried = {key: self.tried[key] for key in self.expanded if key in self.tried}
+        return {key: {each.term.effect: each.share for each in of} for key, of in tried.items()}
 
     def add(self, fitted: Fit) -> Fit:
         """Keep a fit that is physical; returns the best one of its effects."""
@@ -167,13 +144,9 @@ class Visited:
         chosen = self.fits[max(scores, key=lambda key: scores[key])]
         return self.add(with_hum(on_its_side(settled(chosen, self.policy), self.policy)))
 
-    def pass_over(self, fitted: Fit) -> None:
-        """Do not expand a fit."""
-        self.expanded[key_of(fitted)] = None
-
     def expand(self, current: Fit) -> None:
         """Visit what a move away is: an effect more, one less, or another in its place."""
-        self.pass_over(current)
+        self.expanded[key_of(current)] = None
         self.grow(current)
         for index, term in enumerate(current.terms):
             self.grow(self.without(current, [index]))
@@ -228,11 +201,11 @@ class Visited:
         after = shaped(fitted, fitted.hypothesis.plus(candidate.term), len(fitted.terms))
         after = physical_form(after, self.effects, self.policy)
         if not self.policy.physical(after):
-            self.refused[effect.name] = "it fits only with values that are physically impossible"
+            self.refused[effect] = "impossible"
         elif self.policy.only_damps(fitted, after):
-            self.refused[effect.name] = "it takes no more than noise that it damps"
+            self.refused[effect] = "damps"
         elif worth(fitted, after) < effect.needed * fitted.excess:
-            self.refused[effect.name] = "it explains too small a part of what remains"
+            self.refused[effect] = "small"
         else:
             return self.add(after)
         return None
@@ -322,13 +295,12 @@ class Visited:
             for decoy in WAVES if len(alike) > 1 else WAVES[:1] if self.policy.remains(best) else ():
                 self.add(fit(best.rows, kept.plus(Term(decoy, (number,))), best))
 
-    def result(self, best: Fit, stopped: str | None) -> Searched:
-        """What is possible of it."""
-        scores, bare = self.scores(), next(iter(self.fits.values()))
-        least = max(scores.values()) - NEGLIGIBLE
-        visited = [self.fits[key] for key, score in scores.items() if score > least and self.fits[key] is not bare]
-        rounds = tuple(Round(self.fits[key], self.tried[key]) for key in self.expanded if key in self.tried)
-        return Searched(rounds or (Round(bare),), (bare, *visited), stopped, self.refused).ending(best)
+
+def search(bare: Fit, effects: Sequence[Effect], policy: Policy, most: int = MOST) -> Search:
+    """Sets of effects around the most likely one; `most`: terms of a set."""
+    found = Search(bare, effects, policy)
+    found.run(most)
+    return found
 
 
 def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:

@@ -34,6 +34,8 @@ from bench.plant.model_file import StoredModel
 from bench.plant.tracking import run_free
 from bench.trace.motion import measured_velocity, windows_of
 
+#: What stands for an unknown effect in the place of a name.
+UNKNOWN = "unknown_effect"
 #: Blocks that the motion is cut into, and parts that they are dealt to, each of which is predicted from the others.
 BLOCKS, PARTS = 24, 6
 #: Smoothness that is tried, in mean squares of a column.

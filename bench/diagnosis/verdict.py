@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from bench.axis_kind import COULOMB, VISCOUS
 from bench.diagnosis.add import Added
 from bench.diagnosis.policy import ERRS_TWICE
 from bench.diagnosis.probability import Probabilities
+from bench.diagnosis.reason import Reason
 from bench.parameter import Parameter
 
 
@@ -57,15 +58,7 @@ class Gap:
         return self.final is None or self.final[1] <= self.limit
 
 
-@dataclass(frozen=True)
-class Objection:
-    """A criterion by which a model is incomplete, with its figures by name (`bench.report.verdict`)."""
-
-    criterion: str
-    figures: Mapping[str, str | float | Parameter] = field(default_factory=dict)
-
-
-def verdict(added: Added, likely: Probabilities, torque: Gap, velocity: Gap) -> tuple[str, tuple[Objection, ...]]:
+def verdict(added: Added, likely: Probabilities, torque: Gap, velocity: Gap) -> tuple[str, tuple[Reason, ...]]:
     """The verdict on the effects that were added, and the objections that it rests on, the gravest first.
 
     Args:
@@ -74,24 +67,24 @@ def verdict(added: Added, likely: Probabilities, torque: Gap, velocity: Gap) -> 
         torque, velocity: gaps of the bare axis and of the model.
     """
     whole, suspects = added.extension.fitted, added.suspects
-    against = list[Objection]()
+    against = list[Reason]()
     if suspects.policy.remains(whole):
-        against.append(Objection("residual", {"times_noise": whole.chi}))
+        against.append(Reason("residual", {"times_noise": whole.chi}))
     if whole.depends is not None:
-        against.append(Objection("dependence", {"reason": str(whole.depends)}))
+        against.append(Reason("dependence", {"reason": str(whole.depends)}))
     plain = not against
     if added.refused:  # the first, of which the others follow
         name, reason = next(iter(added.refused.items()))
-        against.append(Objection("refused", {"parameter": name, "reason": reason}))
-    if suspects.searched.stopped:
-        against.append(Objection("stopped", {"reason": suspects.searched.stopped}))
+        against.append(Reason("refused", {"parameter": name, "reason": reason}))
+    if suspects.stopped:
+        against.append(Reason("stopped", {"reason": suspects.stopped}))
     elif suspects.withheld:
-        against.append(Objection("excluded"))
+        against.append(Reason("withheld"))
     if added.effects:
         against += [*moves_worse(added, velocity), *undetermined(added, torque)]
     elif not velocity.within and velocity.final is not None:
         figures = {"after": velocity.final[1], "unit": velocity.unit, "times_noise": velocity.times_noise}
-        against.append(Objection("moves_otherwise", figures))
+        against.append(Reason("moves_otherwise", figures))
     against += [*negative_friction(added, torque), *holdout_differs(added, torque)]
     if plain and not added.effects:
         against += likelier(likely)
@@ -100,15 +93,15 @@ def verdict(added: Added, likely: Probabilities, torque: Gap, velocity: Gap) -> 
     return ("explained" if added.effects else "nothing_missing"), ()
 
 
-def likelier(likely: Probabilities) -> Iterator[Objection]:
+def likelier(likely: Probabilities) -> Iterator[Reason]:
     """Something is more likely than no missing effect, and is not certain enough to be named."""
-    others = {" and ".join(sorted(each.names)): each.probability for each in likely.sets if each.names}
+    others = {" and ".join(sorted(names)): probability for names, probability in likely.sets.items() if names}
     name, probability = max({**others, "an unknown effect": likely.none}.items(), key=lambda one: one[1])
     if probability >= likely.nothing:
-        yield Objection("likelier", {"name": name, "probability": probability, "nothing": likely.nothing})
+        yield Reason("likelier", {"name": name, "probability": probability, "nothing": likely.nothing})
 
 
-def moves_worse(added: Added, velocity: Gap) -> Iterator[Objection]:
+def moves_worse(added: Added, velocity: Gap) -> Iterator[Reason]:
     """The model moves worse than the bare axis, by more than noise: in the recording that shows it first."""
     for recorded, pair in zip(added.recorded, (velocity.identify, velocity.holdout), strict=False):
         if pair is None:
@@ -117,11 +110,11 @@ def moves_worse(added: Added, velocity: Gap) -> Iterator[Objection]:
         twice = 1.0 if added.gaps.in_phase(added.extension, recorded) else math.sqrt(ERRS_TWICE)
         if after > math.hypot(before, velocity.noise_floor) * twice:
             figures = {"recording": recorded.name, "before": before, "after": after, "unit": velocity.unit}
-            yield Objection("moves_worse", figures)
+            yield Reason("moves_worse", figures)
             return
 
 
-def undetermined(added: Added, torque: Gap) -> Iterator[Objection]:
+def undetermined(added: Added, torque: Gap) -> Iterator[Reason]:
     """A quantity is undetermined: its interval is wider than its value; the first.
 
     One that is minor, as a share between dry and viscous friction, does not count. A phase is wide if it may be
@@ -134,19 +127,19 @@ def undetermined(added: Added, torque: Gap) -> Iterator[Objection]:
             found = one.parameters.get(quantity.name)
             itself = np.pi if quantity.angle else float(time[-1] - time[0]) if quantity.instant else None
             if found is not None and found.half_width > (abs(found.value) if itself is None else itself):
-                yield Objection("undetermined", {"effect": one.name, "quantity": quantity.name, "found": found})
+                yield Reason("undetermined", {"effect": one.name, "quantity": quantity.name, "found": found})
                 return
     for friction, (found, unit_torque) in frictions(added).items():
         if found.half_width > abs(found.value) and found.half_width * unit_torque > torque.noise_floor:
-            yield Objection("undetermined", {"quantity": friction, "found": found})
+            yield Reason("undetermined", {"quantity": friction, "found": found})
             return
 
 
-def negative_friction(added: Added, torque: Gap) -> Iterator[Objection]:
+def negative_friction(added: Added, torque: Gap) -> Iterator[Reason]:
     """Friction is negative by more than noise, so it includes something else."""
     for friction, (found, unit_torque) in frictions(added).items():
         if found.value < 0.0 and (found.ci95[1] < 0.0 or -found.value * unit_torque > torque.noise_floor):
-            yield Objection("negative", {"quantity": friction, "found": found})
+            yield Reason("negative", {"quantity": friction, "found": found})
             return
 
 
@@ -159,10 +152,10 @@ def frictions(added: Added) -> dict[str, tuple[Parameter, float]]:
     }
 
 
-def holdout_differs(added: Added, torque: Gap) -> Iterator[Objection]:
+def holdout_differs(added: Added, torque: Gap) -> Iterator[Reason]:
     """The residual of the holdout is larger than that of the recording."""
     if torque.holdout is None or torque.identify is None:
         return
     least, after = max(torque.identify[1], torque.noise_floor), torque.holdout[1]
     if after > added.suspects.policy.holdout_gap * least:
-        yield Objection("holdout", {"holdout": after, "recording": least, "unit": torque.unit})
+        yield Reason("holdout", {"holdout": after, "recording": least, "unit": torque.unit})

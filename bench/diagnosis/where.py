@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ class Where:
         unit: of the region.
         share: of the gap's variance, 0 to 1.
         centres, means: bins and the gap's mean in each - unit, N*m (N) - for the plot.
-        after: the same mean with all effects; empty of a frequency, and where there is no such fit.
+        after: the same means with all effects, then with the tables of an unknown effect; () of a frequency.
     """
 
     coordinate: str
@@ -37,28 +38,16 @@ class Where:
     share: float
     centres: Array
     means: Array
-    after: Array = field(default_factory=lambda: np.empty(0))
+    after: tuple[Array, ...] = ()
 
 
-@dataclass(frozen=True)
-class Coordinate:
-    """A coordinate along the rows of a recording.
-
-    Attributes:
-        name: as `Where` has it.
-        values: by which rows are sorted into bins (m,).
-        unit: of the labels of bins.
-        called: values that label the bins, if they are noisier than those that sort them (m,); None: the same.
-    """
-
-    name: str
-    values: Array
-    unit: str
-    called: Array | None = None
+#: A coordinate along the rows of a recording: its name, as `Where` has it, the values by which rows are sorted into
+#: bins (m,), the unit of their labels, and the values that label them, where those are noisier (m,).
+Coordinate = tuple[str, Array, str, Array]
 
 
 def where(
-    fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None, whole: Fit | None = None
+    fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None, after: Sequence[Array] = ()
 ) -> list[Where]:
     """Shares of every coordinate of the gap that a fit leaves, largest first.
 
@@ -67,9 +56,9 @@ def where(
         kind: of the axis.
         effort_unit: of the effort.
         current: as reported at the rows - A - (m,); None where another effort is.
-        whole: the fit with all effects, for `Where.after`.
+        after: residuals of later models, for `Where.after` - N*m (N) - (m,) each.
     """
-    found = [_account(one, fitted, whole) for one in coordinates(fitted, kind, effort_unit, current)]
+    found = [_account(one, fitted, after) for one in coordinates(fitted, kind, effort_unit, current)]
     found.append(_frequency(fitted))
     return sorted(found, key=lambda account: -account.share)
 
@@ -81,15 +70,17 @@ def coordinates(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | 
     turned = np.concatenate([[0.0], np.where(np.diff(sign) != 0.0, time[1:], 0.0)])
     turn = np.mod(position, 2.0 * np.pi) if kind.turns else position
     modelled = fitted.effort - fitted.left  # the measured effort contains the gap: sorted by it, noise has a share
-    return [
-        Coordinate("position", turn, kind.length_unit),
-        Coordinate("velocity", rows.values(lambda s: s.velocity), kind.speed_unit),
-        Coordinate("acceleration", fitted.columns[:, fitted.owners == INERTIA][:, 0], kind.acceleration_unit),
-        Coordinate("current", modelled, *((effort_unit, fitted.effort) if current is None else ("A", current))),
-        Coordinate("time", time, "s"),
-        Coordinate("direction", sign, "dimensionless"),
-        Coordinate("reversal", time - np.maximum.accumulate(turned), "s"),
-    ]
+    unit, reported = (effort_unit, fitted.effort) if current is None else ("A", current)
+    along = (
+        ("position", turn, kind.length_unit),
+        ("velocity", rows.values(lambda s: s.velocity), kind.speed_unit),
+        ("acceleration", fitted.columns[:, fitted.owners == INERTIA][:, 0], kind.acceleration_unit),
+        ("current", modelled, unit),
+        ("time", time, "s"),
+        ("direction", sign, "dimensionless"),
+        ("reversal", time - np.maximum.accumulate(turned), "s"),
+    )
+    return [(name, values, unit, reported if name == "current" else values) for name, values, unit in along]
 
 
 def bins_of(values: Array) -> NDArray[np.int64]:
@@ -136,12 +127,13 @@ def by_chance(index: NDArray[np.int64], kept: NDArray[np.bool_], rows: Rows) -> 
     return max(own - whole * float(np.mean(kept[index])), 0.0) / max(time.size - whole, 1.0)
 
 
-def _account(coordinate: Coordinate, fitted: Fit, whole: Fit | None) -> Where:
+def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array]) -> Where:
     """Share of variance between bins, less what chance puts between them."""
+    name, values, unit, labels = coordinate
     gap = fitted.residual - fitted.residual.mean()
-    index = bins_of(coordinate.values)
+    index = bins_of(values)
     count, means = np.bincount(index), means_in(index, gap)
-    centres = means_in(index, coordinate.values if coordinate.called is None else coordinate.called)
+    centres = means_in(index, labels)
     kept = count >= LEAST
     between, total = float(np.sum(count[kept] * means[kept] ** 2)), float(np.sum(gap**2))
     chance = total * by_chance(index, kept, fitted.rows)
@@ -150,10 +142,8 @@ def _account(coordinate: Coordinate, fitted: Fit, whole: Fit | None) -> Where:
     weight = np.cumsum((count * means**2)[order])
     main = order[: int(np.searchsorted(weight, 0.5 * weight[-1])) + 1]
     region = (float(centres[main].min()), float(centres[main].max()))
-    after = np.empty(0) if whole is None else means_in(index, whole.left)[kept]
-    return Where(
-        coordinate.name, region, coordinate.unit, share, centres[kept], means_in(index, fitted.left)[kept], after
-    )
+    before, *later = (means_in(index, values)[kept] for values in (fitted.left, *after))
+    return Where(name, region, unit, share, centres[kept], before, tuple(later))
 
 
 def _frequency(fitted: Fit) -> Where:

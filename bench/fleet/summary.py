@@ -1,4 +1,4 @@
-"""What a fleet's table says: which axes changed and since when, what was named, and who needs a person and why.
+"""What a fleet's table says: which axes changed and since when, what was named, and which axes need attention and why.
 
 An axis changed where what its recordings tell of inertia or friction steps (`bench.fleet.change_point`).
 """
@@ -30,7 +30,7 @@ COMPARED = (INERTIA, VISCOUS, COULOMB, OFFSET)
 #: Share of the effort's variance below which the model of an axis misses too much to be believed unseen.
 EXPLAINED = 0.9
 STATUSES = ("done", "missing", "refused", "failed", "timed_out")
-#: Why a person should look, from gravest to least.
+#: Why an axis needs attention, from gravest to least.
 KINDS = ("failed", "timed_out", "missing", "refused", "unexplained", "checks")
 
 
@@ -89,7 +89,7 @@ class ShownEffect:
 
 @dataclass(frozen=True)
 class Concern:
-    """Why a person should look, one of `KINDS`: in so many recordings `of` the axis, the latest and its reason."""
+    """Why an axis needs attention, one of `KINDS`: in so many recordings `of` the axis, the latest and its reason."""
 
     axis: str
     kind: str
@@ -219,7 +219,7 @@ def _shown(axis: str, times: Sequence[str], results: Sequence[Plain], rows: Sequ
 
 
 def _concerns(axis: str, files: Sequence[str], results: Sequence[Plain], rows: Sequence[int]) -> Iterator[Concern]:
-    """Why a person should look at the recordings of one axis, in the order of time."""
+    """Why the recordings of one axis need attention, in the order of time."""
     reasons = {row: _why(results[row]) for row in rows}
     for kind in KINDS:
         affected = [row for row in rows if kind in reasons[row]]
@@ -229,7 +229,7 @@ def _concerns(axis: str, files: Sequence[str], results: Sequence[Plain], rows: S
 
 
 def _why(found: Plain) -> dict[str, str]:
-    """What of one recording needs a person, by kind."""
+    """What of one recording needs attention, by kind."""
     if found["status"] != "done":
         return {found["status"]: found["reason"]}
     why, explained = {}, found["explained"]

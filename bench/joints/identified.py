@@ -213,7 +213,7 @@ def _frictionless(joint: str, found: Diagnosis, rig: Rig) -> Iterator[str]:
 
 def _any_friction(found: Diagnosis, kind: AxisKind) -> dict[str, str]:
     """Why a friction is not determined: its interval contains zero and allows more than the measured torque."""
-    fitted, refused = found.courses[0], {}
+    fitted, refused = found.time_series[0], {}
     for term, reach in ((VISCOUS, rms(fitted.velocity)), (COULOMB, 1.0)):
         one = found.parameters.get(kind.parameter(term))
         if one is not None and one.half_width > abs(one.value) and one.half_width * reach > rms(fitted.torque):

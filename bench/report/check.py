@@ -23,7 +23,7 @@ SCHEMA = "bench.check/1"
 DISPLAYED = {"rad": ("deg", 180.0 / math.pi)}
 #: Quantities that change as a consequence of others.
 FOLLOWING = frozenset({*GAPS, RESPONSE_TORQUE})
-COLOURS: dict[str, doc.Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "left"}
+COLOURS: dict[str, doc.Colour] = {CHANGED: "model", UNDECIDED: "ink", SAME: "residual"}
 TONES: dict[str, doc.Tone] = {SAME: "sure", UNDECIDED: "open", CHANGED: "refused"}
 #: What to do next, by the result; and by what keeps it undecided.
 NEXT = {
@@ -171,7 +171,7 @@ def check_document(checked: Checked, title: str) -> doc.Document:
         sections=doc.sections(
             doc.section("comparisons", "What was compared", *_compared(checked)),
             doc.section("conditions", "Like with like", _unlike(checked), detail=alike),
-            doc.section("gaps", "What the models leave", *gaps, detail=True),
+            doc.section("gaps", "Residuals of the models", *gaps, detail=True),
         ),
         origin=(_basis("now", checked.now.provenance), _basis("baseline", checked.baseline.provenance)),
     )
@@ -192,7 +192,7 @@ def _answers(checked: Checked) -> dict[str, str]:
     return {
         "What came or went?": came,
         "How many differ?": f"{count} of {len(results)} comparisons." if results else "Nothing could be compared.",
-        "How sure?": sure if checked.false_alarm_rate else "Two models are compared by what they say, without noise.",
+        "How sure?": sure if checked.false_alarm_rate else "The values of two models are exact, without noise.",
         "What next?": NEXT[held_up if checked.result == UNDECIDED else checked.result],
     }
 
@@ -247,7 +247,7 @@ def _unlike(checked: Checked) -> doc.Points | doc.Paragraph:
     if lines:
         return doc.points(lines)
     if not checked.now.conditions:
-        return doc.Paragraph(text="Nothing beside the models differs: neither rests on a recording here.")
+        return doc.Paragraph(text="The two models are compared: neither rests on a recording here.")
     return doc.Paragraph(text="The rig, the motion and the sampling are those of the baseline.")
 
 
@@ -258,7 +258,7 @@ def _gaps_table(checked: Checked) -> doc.Table:
     ]
     for name, unit, *gaps in _gaps(checked):
         what = effort_word(unit) if name == "torque" else words(name)
-        for of, value in (("left", "after"), ("noise alone", "noise_floor")):
+        for of, value in (("residual", "after"), ("noise alone", "noise_floor")):
             both = (None if gap is None else number(getattr(gap, value).value, digits=3) for gap in gaps)
             rows.append((f"{what}, {of} (RMS)", *both, unit_text(unit)))
     caption = "Verdicts, and what inertia, friction and effects do not explain"

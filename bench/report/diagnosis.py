@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from bench.axis_kind import ARMATURE, KINDS, AxisKind
-from bench.diagnosis.diagnosis import PACKED, Course, Diagnosis, Shrunk
+from bench.diagnosis.diagnosis import PACKED, Diagnosis, Step, TimeSeries
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.probability import CALIBRATED_ON
 from bench.diagnosis.same_axis import SameAxis
-from bench.diagnosis.tabulated import UnknownEffect
+from bench.diagnosis.tabulated import UNKNOWN, UnknownEffect
 from bench.diagnosis.verdict import Gap
 from bench.diagnosis.where import Where
 from bench.gate.gate import warnings_of
@@ -23,14 +23,14 @@ from bench.names import words
 from bench.packed import pack
 from bench.plant.model_file import model_toml, model_xml, tables_toml
 from bench.report import document as doc
-from bench.report.gap import at_a_glance, gap_chart, remainder, rms_gaps, states, where_picture
+from bench.report.gap import at_a_glance, gap_chart, remainder, rms_gaps, states, unknown_effect, where_picture
 from bench.report.identification import recordings_json
 from bench.report.numbers import brief, chance, coordinate_word, effort_word, listed, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
 from bench.report.serial import as_json, known, picked, serialised
-from bench.report.verdict import reasons
+from bench.report.verdict import reason, reasons
 
 SCHEMA = "bench.diagnose/1"
 #: Between rows of the motion to record next - s.
@@ -88,8 +88,8 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
         "parameters": found.parameters,
         **recordings_json(found.recordings, found.between, provenance),
         "gap": {"torque": found.torque, "velocity": velocity},
-        "steps": found.steps[1:],
-        "rejected": [{"name": name, "reason": reason} for name, reason in found.rejected],
+        "steps": [step for step in found.steps[1:] if step.effect != UNKNOWN],
+        "rejected": [{"name": name, "reason": reason(why)} for name, why in found.rejected],
         "refused": found.refused,
         "holdout": found.holdout,
         "next_experiment": _experiment_json(found),
@@ -125,7 +125,7 @@ def _(gap: Gap) -> dict[str, Any]:
 
 
 @as_json.register
-def _(step: Shrunk) -> dict[str, Any]:
+def _(step: Step) -> dict[str, Any]:
     """Gaps after an addition, of the recording and of the holdout; null where there is none."""
     content: dict[str, Any] = {"effect": step.effect}
     for name, gaps in (("torque_gap", step.torque), ("velocity_gap", step.velocity)):
@@ -182,7 +182,7 @@ def diagnosis(
         parameters_table(f"{sentence(words(one.name))}: {one.effect.summary}", one.parameters) for one in found.effects
     ]
     tables += recordings_table(found.recordings, found.between, found.parameters)
-    beside, verdict, following = _beside(found), verdict_sentence(found), found.next_experiment
+    notes, verdict, following = _notes(found), verdict_sentence(found), found.next_experiment
     glance, units = at_a_glance(found), [(unit, 1.0) for unit in (_kind(found).length_unit, found.velocity.unit)]
     return doc.Document(
         title=title,
@@ -196,7 +196,7 @@ def diagnosis(
             *moving,
             _where(found),
             doc.section("parameters", "Parameters", *tables),
-            *([doc.section("beside", "Beside it", doc.points(beside))] if beside else []),
+            *([doc.section("notes", "Further results", doc.points(notes))] if notes else []),
             _suspects(found),
             _next(found),
             checks_section(found.checks, found.warnings),
@@ -208,7 +208,7 @@ def diagnosis(
             where_picture(found, title),
             doc.Picture(name="gaps", title=title, rows=(rms_gaps(found),)),
         ),
-        beside={} if following is None else {"next_experiment.csv": following.motion.csv(PERIOD, *units)},
+        files_in_folder={} if following is None else {"next_experiment.csv": following.motion.csv(PERIOD, *units)},
         warnings=(*found.warnings, *warnings_of(found.checks)),
     )
 
@@ -224,7 +224,7 @@ def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[doc.F
     files = [doc.file("model.toml", about, toml)]
     if found.model is not None:
         files.append(doc.file("model.xml", "what MuJoCo has of it natively; opens alone", model_xml(found.model)))
-    return [*files, doc.file("diagnosis.json", "all of it as numbers", diagnosis_json(found, provenance) + "\n")]
+    return [*files, doc.file("diagnosis.json", "all results as numbers", diagnosis_json(found, provenance) + "\n")]
 
 
 def verdict_sentence(found: Diagnosis) -> str:
@@ -282,7 +282,7 @@ def _tabulated(found: Diagnosis) -> str:
         return ""
     before, after = (number(gap, digits=3) for gap in unknown.torque)
     return (
-        f"{'.' if found.effects else ''} The model contains an unknown effect, tabulated over {listed(unknown.over)}: "
+        f"{'.' if found.effects else ''} The model contains an {unknown_effect(found)}: "
         f"it explains {share(unknown.share)} of the squared {effort_word(found.torque.unit)} residual of held-out "
         f"motion ({before} to {after} {unit_text(found.torque.unit)})."
     )
@@ -292,7 +292,7 @@ def _sure(found: Diagnosis) -> str:
     """What confirms the verdict, and what speaks against it."""
     gap, lines, effort = found.torque, [likely_names(found)], effort_word(found.torque.unit)
     if found.objections[1:]:
-        lines.append(f"Also against it: {'; '.join(map(words, reasons(found)[1:]))}.")
+        lines.append(f"Further evidence of a missing effect: {'; '.join(map(words, reasons(found)[1:]))}.")
     if gap.holdout is not None:
         before, after = gap.holdout
         changes = f"falls from {number(before, digits=3)} to" if after < before else "is"
@@ -328,9 +328,9 @@ def likely_names(found: Diagnosis) -> str:
         }
         instead = f" (or {_chances(others)})" if _chances(others) else ""
         parts.append(f"{_chances({called(effect): likely.of_any(alike)})}{instead}")
-    beside = {} if found.effects else likely.names | {"no missing effect": likely.nothing}
+    others = {} if found.effects else likely.names | {"no missing effect": likely.nothing}
     none = "an unknown effect in addition" if likely.detected else "an unknown effect"
-    parts.append(_chances({**beside, none: likely.none}))
+    parts.append(_chances({**others, none: likely.none}))
     return f"{sentence(', '.join(filter(None, parts)))}."
 
 
@@ -368,7 +368,7 @@ def following(found: Diagnosis) -> str:
 
 def _motion(found: Diagnosis) -> doc.Section:
     """Speed and torque over time for each recording, and the gaps after each addition."""
-    names = [course.name for course in found.courses]
+    names = [series.name for series in found.time_series]
     both = (effort_word(found.torque.unit), found.torque), ("speed", found.velocity)
     headings = [f"{what} gap, {name} / {unit_text(gap.unit)}>" for what, gap in both for name in names]
     rows = [
@@ -377,32 +377,32 @@ def _motion(found: Diagnosis) -> doc.Section:
     ]
     rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in both for _ in names)))
     steps = doc.table("RMS gaps before and after each addition", ("model", *headings), rows)
-    graphs = (_over_time(found, course) for course in found.courses)
+    graphs = (_over_time(found, series) for series in found.time_series)
     loop = "The models run in MuJoCo on the recorded torque, weakly coupled to the recorded motion at "
     held = doc.Paragraph(text=f"{loop}{number(found.velocity.bandwidth, 'rad/s', 3)}.")
     return doc.section("motion", "Measured and simulated", steps, *rms_gaps(found), *graphs, held)
 
 
-def _over_time(found: Diagnosis, course: Course) -> doc.TimeGraph:
+def _over_time(found: Diagnosis, series: TimeSeries) -> doc.TimeGraph:
     shown = [0, *range(max(1, len(found.steps) - STEPS), len(found.steps))]
     labels, effort = states(found), effort_word(found.torque.unit)
     first, last = found.steps[0], found.steps[-1]
-    place = [one.name for one in found.courses].index(course.name)
-    speed_left, torque_left = ([left[k] for k in shown] for left in (course.velocity_left, course.torque_left))
+    place = [one.name for one in found.time_series].index(series.name)
+    speeds, torques = ([rest[k] for k in shown] for rest in (series.velocity_residuals, series.torque_residuals))
     signals = [
-        Plotted("speed", found.velocity.unit, course.time, course.velocity, speed_left),
-        Plotted(effort, found.torque.unit, course.time[course.rows], course.torque, torque_left, "modelled"),
+        Plotted("speed", found.velocity.unit, series.time, series.velocity, speeds),
+        Plotted(effort, found.torque.unit, series.time[series.rows], series.torque, torques, "modelled"),
     ]
     alternative = (
-        f"Speed and {effort} of {Path(course.origin).name}, measured and modelled. RMS residuals "
+        f"Speed and {effort} of {Path(series.origin).name}, measured and modelled. RMS residuals "
         f"with inertia and friction alone, then with all that was found: speed "
         f"{number(first.velocity[place], digits=3)}, {number(last.velocity[place], found.velocity.unit, 3)}; {effort} "
         f"{number(first.torque[place], digits=3)}, {number(last.torque[place], found.torque.unit, 3)}. "
         f"{sentence(effort)} has holes about standstill, where the direction of friction is not known."
     )
-    title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[course.name]
-    part = course.time.size / sum(one.time.size for one in found.courses)
-    return time_graph(title, alternative, course.time, signals, [labels[k] for k in shown], part)
+    title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[series.name]
+    part = series.time.size / sum(one.time.size for one in found.time_series)
+    return time_graph(title, alternative, series.time, signals, [labels[k] for k in shown], part)
 
 
 def _where(found: Diagnosis) -> doc.Section:
@@ -413,11 +413,11 @@ def _where(found: Diagnosis) -> doc.Section:
     headings = ("coordinate", "share of the gap>", "most of it between>", "unit")
     shares = doc.table("Share of the gap's variance that each coordinate accounts for", headings, rows)
     blocks = (gap_chart(found, DRAWN), shares)
-    return doc.section("where", "Where the gap sits", *blocks, detail=True)
+    return doc.section("where", "Where the gap is", *blocks, detail=True)
 
 
-def _beside(found: Diagnosis) -> list[str]:
-    """What was found beside effects and parameters."""
+def _notes(found: Diagnosis) -> list[str]:
+    """What was found in addition to effects and parameters."""
     unit, sensors = found.velocity.unit, _sensors(found)
     lines = [f"at fault is the sensor, not the axis: {', '.join(sensors)}"] if sensors else []
     lines += [
@@ -431,7 +431,7 @@ def _beside(found: Diagnosis) -> list[str]:
     lines += [
         f"velocity gap {name}: {number(pair[0])} to {number(pair[1], unit)}" for name, pair in pairs.items() if pair
     ]
-    lines += [f"rejected: {words(name)}, {reason}" for name, reason in found.rejected]
+    lines += [f"rejected: {words(name)}, {reason(why)}" for name, why in found.rejected]
     lines += [f"refused: {words(name)}, {reason}" for name, reason in found.refused.items()]
     lines += [f"stopped: {found.stopped}"] if found.stopped else []
     lines += [f"unexplained: {share(found.unexplained_share)} of the gap"] if found.unexplained_where else []
@@ -442,16 +442,19 @@ def _suspects(found: Diagnosis) -> doc.Section:
     rows = (
         (
             words(one.effect.name),
-            "yes" if one.taken else "no",
+            "yes" if one.accepted else "no",
             chance(one.probability),
-            *(None if value is None else share(value) for value in (one.alone, one.beside)),
-            one.reason,
+            *(None if value is None else share(value) for value in (one.of_gap, one.of_residual)),
+            reason(one.reason),
         )
         for one in found.considered
     )
-    caption = "Every effect of the catalogue: the share that it explains, and why it was or was not added"
-    headings = ("effect", "added", "probability>", "of the gap, alone>", "of the residual, with the others>", "why~")
-    marked = (k for k, one in enumerate(found.considered) if one.taken)
+    caption = (
+        "Every effect of the catalogue: the share of the squared gap that it explains as the only effect, the share of "
+        "the squared residual that it explains in addition to those found, and why it was or was not added"
+    )
+    headings = ("effect", "added", "probability>", "of the gap>", "of the residual>", "reason~")
+    marked = (k for k, one in enumerate(found.considered) if one.accepted)
     return doc.section("suspects", "Suspects", doc.table(caption, headings, rows, marked), detail=True)
 
 

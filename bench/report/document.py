@@ -20,10 +20,10 @@ SCHEMA = "bench.page/1"
 
 #: How a headline is meant: all is well, something is left to do, or the answer is no.
 Tone = Literal["sure", "open", "refused"]
-#: What something drawn stands for: what was measured, a model, what is left, noise, or what comes first; and four more.
-Colour = Literal["ink", "model", "left", "floor", "first", "violet", "ochre", "blue", "red"]
+#: What something drawn stands for: what was measured, a model, a residual, noise, or what comes first; and four more.
+Colour = Literal["ink", "model", "residual", "floor", "first", "violet", "ochre", "blue", "red"]
 #: Of the curves of a chart that stand for nothing of these, in their order.
-COLOURS: tuple[Colour, ...] = ("ink", "model", "left", "violet", "ochre", "blue", "red", "first")
+COLOURS: tuple[Colour, ...] = ("ink", "model", "residual", "violet", "ochre", "blue", "red", "first")
 #: How a series is drawn: dots, large ones or rings; a line, full, dashed, dotted or wide; or a band between its bounds.
 Style = Literal["dots", "large dots", "rings", "line", "dashes", "dotted", "wide", "band"]
 #: How many times slower than it was a motion plays.
@@ -136,8 +136,8 @@ class Table(Part):
     @model_validator(mode="after")
     def _is_whole(self) -> Table:
         _require(all(len(row) == len(self.columns) for row in self.rows), "a cell for each column in every row")
-        beside = {len(each) for each in (self.links, self.sketches) if each}
-        _require(beside <= {len(self.rows)}, "a link and a sketch for every row, or for none")
+        counts = {len(each) for each in (self.links, self.sketches) if each}
+        _require(counts <= {len(self.rows)}, "a link and a sketch for every row, or for none")
         return self
 
 
@@ -282,7 +282,7 @@ class TimeCurve(Part):
     """A curve over time, drawn by its role; shown where its graph's choice is `choice`, always where that is None."""
 
     name: str
-    role: Literal["measured", "model", "left"]
+    role: Literal["measured", "model", "residual"]
     choice: int | None
     samples: Samples
 
@@ -511,7 +511,7 @@ class Document(Part):
         glance: what shows it best, drawn below the answers beside each other.
         origin: version and digests, so that anybody can tell what it rests on.
         pictures: figures for paper, which are no part of the page.
-        beside: texts of files by their names, which lie in its folder and are no part of the page.
+        files_in_folder: texts of files by their names, which lie in its folder and are no part of the page.
         warnings: what a user should know before relying on it, for standard error; the page has them in a section.
     """
 
@@ -525,7 +525,7 @@ class Document(Part):
     sections: tuple[Section, ...]
     origin: tuple[str, ...] = ()
     pictures: tuple[Picture, ...] = Field(default=(), exclude=True)
-    beside: Mapping[str, str] = Field(default_factory=dict, exclude=True)
+    files_in_folder: Mapping[str, str] = Field(default_factory=dict, exclude=True)
     warnings: tuple[str, ...] = Field(default=(), exclude=True)
 
     @property

@@ -30,7 +30,7 @@ POINTS = 8000
 #: What is measured, what a model makes, what is left, and noise: the same everywhere, and distinct in grey too.
 MEASURED, MODELLED, REST, NOISE = "#4c5c6e", "#c0480a", "#25704e", "#d6e0e8"
 #: Colours of a document on paper.
-COLOURS = {"ink": MEASURED, "model": MODELLED, "left": REST, "floor": NOISE, "first": "#7d8894"}
+COLOURS = {"ink": MEASURED, "model": MODELLED, "residual": REST, "floor": NOISE, "first": "#7d8894"}
 COLOURS |= {"violet": "#7a4a8c", "ochre": "#a07a1e", "blue": "#2f7fb5", "red": "#9c2626"}
 #: How every figure is set.
 STYLE = rc_params_from_file(Path(__file__).parent / "page" / "figures.mplstyle", use_default_template=False)
@@ -62,7 +62,7 @@ DRAWN: dict[str, dict[str, Any]] = {
 ROLES: dict[str, dict[str, Any]] = {
     "measured": {"color": MEASURED, "alpha": 0.55, "lw": 2.4},
     "model": {"color": MODELLED},
-    "left": {"color": REST},
+    "residual": {"color": REST},
     "alone": {"color": MEASURED},
 }
 

@@ -1,4 +1,4 @@
-"""A fleet: every axis by how much it needs a person and why, what changed since when, and how the recordings went.
+"""A fleet: every axis by how much it needs attention and why, what changed since when, and how the recordings went.
 
 As the contract's JSON (`bench.fleet/1`), which has all, and as a document, which stays small however large a fleet is;
 below it a page of each axis, with its quantities over time, and one of each recording.
@@ -146,7 +146,7 @@ def fleet_document(fleet: Fleet, provenance: Mapping[str, Any]) -> doc.Document:
         answers=_answers(summary, reasons),
         sections=doc.sections(
             doc.section("axes", "All axes", _dashboard(pages), detail=True),
-            doc.section("people", "Who needs a person first", _people(summary, reasons)),
+            doc.section("people", "Axes that need attention", _people(summary, reasons)),
             doc.section("changes", "What changed", *_changes(pages)),
             doc.section("effects", "Effects that axes show", *shown),
             doc.section("recordings", "Recordings", recordings, doc.neighbours(files)),
@@ -163,9 +163,11 @@ def _verdict(summary: Summary) -> str:
     beside = len(called - changed)
     verb = "needs" if beside == 1 else "need"
     if changed:
-        return f"{first}; {beside} more {verb} a person for another reason." if beside else f"{first}."
+        return f"{first}; {beside} more {verb} attention for another reason." if beside else f"{first}."
     return (
-        f"{first}, but {beside} of {summary.axes} {verb} a person." if beside else f"{first}, and none needs a person."
+        f"{first}, but {beside} of {summary.axes} {verb} attention."
+        if beside
+        else f"{first}, and none needs attention."
     )
 
 
@@ -182,7 +184,7 @@ def _answers(summary: Summary, reasons: Mapping[str, Sequence[str]]) -> dict[str
 
 
 def _reasons(summary: Summary) -> dict[str, list[str]]:
-    """By axis, why a person should look: what changed surely comes before what could not be decided, gravest first."""
+    """By axis, why it needs attention: what changed surely comes before what could not be decided, gravest first."""
     reasons: dict[str, list[str]] = {}
     for one in summary.changed:
         reasons.setdefault(one.axis, []).append(news(one))
@@ -201,7 +203,7 @@ def _dashboard(pages: FleetPages) -> doc.Table:
     rows, sketches = zip(*(_row(pages, axis) for axis in axes), strict=True)
     headings = ("axis", "over time", "last change", "noted", "inertia>", "viscous>", "Coulomb>", "effects")
     marked = (k for k, axis in enumerate(axes) if axis.changed)
-    caption = f"Those that need a person most come first{more}; values by the latest recording that has a result"
+    caption = f"Those that need attention most come first{more}; values by the latest recording that has a result"
     made = doc.table(caption, headings, rows, marked)
     links = tuple(pages.axis_place(axis.name) for axis in axes)
     return made.model_copy(update={"links": links, "sketches": sketches, "sought": True})

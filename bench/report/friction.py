@@ -127,7 +127,7 @@ def _charts(found: FrictionMap) -> tuple[doc.Chart, doc.Chart]:
         curves.append((words(found.name), found.best))
     drawn, left = [], []
     for label, curve in curves:
-        style, colour = ("rings", "left") if curve is found.plain else ("dots", "model")
+        style, colour = ("rings", "residual") if curve is found.plain else ("dots", "model")
         left.append(doc.series(label, style, colour, found.velocity, found.effort - curve.effort(found.velocity)))
         for direction in (-1.0, 1.0):
             speeds = found.velocity[direction * found.velocity > 0.0]
@@ -140,7 +140,5 @@ def _charts(found: FrictionMap) -> tuple[doc.Chart, doc.Chart]:
     alternative = f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them."
     return (
         one_panel("Friction.", alternative, over, (effort, found.effort_unit), drawn),
-        one_panel(
-            "What is left.", "What each curve leaves of the recordings.", over, ("left", found.effort_unit), left
-        ),
+        one_panel("Residual.", "Residual of each curve.", over, ("residual", found.effort_unit), left),
     )

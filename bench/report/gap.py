@@ -1,6 +1,6 @@
-"""The gap between measured and modelled: drawn over time and coordinates, its RMS, and what is left of it in words.
+"""The gap between measured and modelled: drawn over time and coordinates, its RMS, and the remaining residual in words.
 
-Of what is left: its shape, the nearest suspects, what speaks against them, and what to record to decide.
+Of the residual: its shape, the closest effects, the reasons against them, and what to record to decide.
 """
 
 from __future__ import annotations
@@ -14,25 +14,34 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.tabulated import UNKNOWN
 from bench.diagnosis.where import Where
 from bench.names import words
 from bench.report import document as doc
 from bench.report.numbers import coordinate_word, effort_word, listed, number, sentence, share, unit_text
 from bench.report.parts import noise_band, one_panel
+from bench.report.verdict import reason
 
-#: Empty space beside the outermost gaps - factor on a logarithmic axis.
-BESIDE = 1.5
+#: Empty space around the outermost gaps - factor on a logarithmic axis.
+SPACE = 1.5
 #: A recording is cut so often for a stretch that shows the gap; a longer one is as good with this share of the best.
 CUTS, NEARLY = (2, 4, 8, 16, 32), 0.7
 #: Of a stretch: samples at least, and points that are drawn at most.
 LEAST, POINTS = 60, 400
+#: Coordinates of the gap, by those of a table.
+TABULATED = {"position": "position", "speed": "velocity", "torque": "current"}
 #: Share of all that it spans which a stretch does at least: where an axis stands, steps of its sensor are all there is.
 MOVES = 0.05
 
 
 def at_a_glance(found: Diagnosis) -> tuple[doc.Chart, ...]:
-    """The axis and what models make of it over a stretch that shows the gap, and the gap with what was found in it."""
-    most = next(one for one in found.where if one.after.size)
+    """Measured and modelled over a stretch that shows the gap, and the gap over the coordinate that it depends on.
+
+    Without a named effect that is the coordinate of an unknown one, where there is a table of it.
+    """
+    profiles = {one.coordinate: one for one in found.where if one.after}
+    of_table = found.unknown_effect.over[0] if found.unknown_effect and not found.effects else ""
+    most = profiles.get(TABULATED.get(of_table, ""), next(iter(profiles.values())))
     over = gap_chart(found, [most.coordinate])
     panels = tuple(panel.model_copy(update={"note": ""}) for panel in over.panels)
     title = f"{share(most.share)} of the gap depends on {panels[0].x_label}."
@@ -42,25 +51,27 @@ def at_a_glance(found: Diagnosis) -> tuple[doc.Chart, ...]:
 
 def _stretch_chart(found: Diagnosis) -> doc.Chart | None:
     """Measured, before and after over the stretch that shows the gap best; None of a recording too short for one."""
-    course, best, chart = found.courses[0], 0.0, None
-    for what, unit, rows, measured, left in (
-        (effort_word(found.torque.unit), found.torque.unit, course.rows, course.torque, course.torque_left),
-        ("speed", found.velocity.unit, np.arange(course.time.size), course.velocity, course.velocity_left),
+    series, best, chart = found.time_series[0], 0.0, None
+    named = len(found.steps) - (1 if found.unknown_effect else 0) - 1
+    for what, unit, rows, measured, residuals in (
+        (effort_word(found.torque.unit), found.torque.unit, series.rows, series.torque, series.torque_residuals),
+        ("speed", found.velocity.unit, np.arange(series.time.size), series.velocity, series.velocity_residuals),
     ):
-        if left[0] is None or left[-1] is None:
+        known = [one for one in (residuals[0], *residuals[named:]) if one is not None]
+        if len(known) < len(residuals[named:]) + 1:
             continue
-        curves = np.stack([measured, measured - left[0], measured - left[-1]])
-        score, part = _telling(curves, _whole(rows, curves))
+        curves = np.stack([measured, *(measured - one for one in known)])
+        score, part = _telling(curves[:3], _whole(rows, curves[:3]))
         if part is None or (chart is not None and score <= best):
             continue
         few = slice(part.start, part.stop, -(-(part.stop - part.start) // POINTS))
-        time, (measured, before, after) = course.time[rows[few]], curves[:, few]
+        time, (measured, before, after, *tabulated) = series.time[rows[few]], curves[:, few]
         drawn = [doc.series("measured", "wide", "ink", time, measured)]
-        drawn.append(doc.series("inertia and friction alone", "dashes", "blue", time, before))
+        drawn.append(doc.series("inertia and friction", "dashes", "blue", time, before))
         if (before != after).any():
-            drawn.append(doc.series("with what was found", "line", "model", time, after))
-        title = f"{sentence(what)} over a stretch that shows it."
-        best, chart = score, one_panel(title, "", ("time", "s"), (what, unit), drawn)
+            drawn.append(doc.series("with the effects found", "line", "model", time, after))
+        drawn += [doc.series(f"with the {unknown_effect(found)}", "line", "violet", time, one) for one in tabulated]
+        best, chart = score, one_panel(f"{sentence(what)} in detail.", "", ("time", "s"), (what, unit), drawn)
     return chart
 
 
@@ -74,7 +85,7 @@ def _whole(rows: NDArray[np.int64], curves: Array) -> list[slice]:
 
 
 def _telling(curves: Array, whole: Sequence[slice]) -> tuple[float, slice | None]:
-    """The longest stretch in which what was found is nearly as large beside the motion as anywhere, and how large."""
+    """The longest stretch in which the effects are nearly as large a part of the motion as anywhere, and that part."""
     ranked: list[tuple[float, slice]] = []
     least = MOVES * float(np.ptp(curves[:, ~np.isnan(curves.sum(axis=0))])) if whole else 0.0
     for cut in CUTS:
@@ -89,20 +100,26 @@ def _telling(curves: Array, whole: Sequence[slice]) -> tuple[float, slice | None
     return next(((score, part) for score, part in ranked if score >= NEARLY * best), (0.0, None))
 
 
+def unknown_effect(found: Diagnosis) -> str:
+    """An unknown effect in words: `unknown effect, tabulated over position`; empty without one."""
+    one = found.unknown_effect
+    return "" if one is None else f"unknown effect, tabulated over {listed(one.over)}"
+
+
 def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
-    """The gap in bins of these coordinates before and after, what was found in it, and the noise of a row."""
-    profiles = {one.coordinate: one for one in found.where if one.after.size}
+    """The gap in bins of these coordinates, the part that the effects explain, the residual, and the noise of a row."""
+    profiles = {one.coordinate: one for one in found.where if one.after}
     most = next(iter(profiles.values()))
-    names = dict.fromkeys(words(effect.name) for effect in found.effects)
-    made = f"what {listed(names)} {'make' if len(names) > 1 else 'makes'} of it"
+    explained = listed(dict.fromkeys(words(effect.name) for effect in found.effects))
     panels = []
     for profile in (profiles[name] for name in coordinates if name in profiles):
         order = np.argsort(profile.centres)
-        x, before, after = (values[order] for values in (profile.centres, profile.means, profile.after))
-        drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap before", "dots", "ink", x, before)]
+        x, before, after, *tabulated = (v[order] for v in (profile.centres, profile.means, *profile.after))
+        drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap", "dots", "ink", x, before)]
         if found.effects:
-            drawn.append(doc.series(made, "line", "model", x, before - after))
-            drawn.append(doc.series("left after", "rings", "left", x, after))
+            drawn.append(doc.series(f"{explained}, fitted", "line", "model", x, before - after))
+            drawn.append(doc.series("remaining residual", "rings", "residual", x, after))
+        drawn += [doc.series(unknown_effect(found), "line", "violet", x, after - one) for one in tabulated]
         panels.append(
             doc.Panel(
                 x_label=coordinate_word(profile.coordinate, profile.unit),
@@ -112,7 +129,7 @@ def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
             )
         )
     return doc.Chart(
-        title="The gap, and what was found in it.",
+        title="The gap, and the effects found in it.",
         alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate. "
         f"Most of it depends on {most.coordinate}, {share(most.share)} of its variance.",
         y_label="gap",
@@ -127,12 +144,12 @@ def where_picture(found: Diagnosis, title: str) -> doc.Picture:
     panel = doc.Panel(
         x_label="frequency",
         x_unit="Hz",
-        y_label=f"gap before / ({unit_text(found.torque.unit)}/√Hz)",
+        y_label=f"gap / ({unit_text(found.torque.unit)}/√Hz)",
         note=f"{share(spectrum.share)} of the gap in one band",
         series=(doc.series("", "line", "ink", spectrum.centres[1:], spectrum.means[1:]),),
     )
     over = gap_chart(found, [one.coordinate for one in found.where])
-    below = doc.Chart(title="", alternative="Spectrum of the gap before.", panels=(panel,))
+    below = doc.Chart(title="", alternative="Spectrum of the gap.", panels=(panel,))
     return doc.Picture(name="where", title=title, rows=((over,), (below,)))
 
 
@@ -144,15 +161,15 @@ def rms_gaps(found: Diagnosis) -> tuple[doc.Intervals, ...]:
         ("speed", found.velocity, [step.velocity for step in found.steps]),
     ):
         spans = [
-            doc.Span(name=f"{label}, {course.name}", colour=colour, value=value, low=value, high=value)
+            doc.Span(name=f"{label}, {series.name}", colour=colour, value=value, low=value, high=value)
             for label, values in zip(states(found), steps, strict=True)
-            for course, colour, value in zip(found.courses, ("ink", "model"), values, strict=False)
+            for series, colour, value in zip(found.time_series, ("ink", "model"), values, strict=False)
             if math.isfinite(value) and value > 0.0
         ]
         if not spans or not gap.noise_floor > 0.0:
             continue
         ends = [gap.noise_floor, *(span.value for span in spans)]
-        limits = min(ends) / BESIDE, max(ends) * BESIDE
+        limits = min(ends) / SPACE, max(ends) * SPACE
         charts.append(
             doc.Intervals(
                 title=f"{sentence(what)} gap.",
@@ -169,14 +186,15 @@ def rms_gaps(found: Diagnosis) -> tuple[doc.Intervals, ...]:
 
 
 def states(found: Diagnosis) -> list[str]:
-    """The bare axis, then each addition."""
-    return ["inertia and friction", *(f"+ {words(step.effect)}" for step in found.steps[1:])]
+    """The bare axis, then each addition, an unknown effect last."""
+    names = [unknown_effect(found) if step.effect == UNKNOWN else words(step.effect) for step in found.steps[1:]]
+    return ["inertia and friction", *(f"+ {name}" for name in names)]
 
 
 #: A region is narrow, or near zero, within this share of what was seen; a trend and a wave are clear from this share.
 NARROW, CLEAR = 0.15, 0.6
 #: Suspects that are named, and the least share of the residual worth a word.
-NEAREST, LEAST = 2, 0.01
+NEAREST, WORTH = 2, 0.01
 #: By coordinate: what to record, and the command for it.
 DECIDES = {
     "position": ("the whole travel slowly, both ways: what stays at its place is the axis'", "diagnose slow.csv"),
@@ -194,15 +212,15 @@ OTHERWISE = (
 
 
 def remainder(found: Diagnosis) -> Iterator[str]:
-    """Sentences about what is left; none where nothing is."""
+    """Sentences about the remaining residual; none where it is noise."""
     if not found.unexplained_where:
         return
-    shapes = [f"{shape(one)} ({share(one.share)} of it)" for one in found.unexplained_where if one.share >= LEAST]
+    shapes = [f"{shape(one)} ({share(one.share)} of it)" for one in found.unexplained_where if one.share >= WORTH]
     if shapes:
         yield f"Remaining residual: {'; '.join(shapes)}."
-    parts = [(one.beside if found.effects else one.alone, one) for one in found.considered if not one.taken]
-    near = sorted(((part, one) for part, one in parts if part and part >= LEAST), key=lambda pair: -pair[0])[:NEAREST]
-    nearest = [f"{words(one.effect.name)}, {share(part)} of it, but {one.reason}" for part, one in near]
+    parts = [(one.of_residual if found.effects else one.of_gap, one) for one in found.considered if not one.accepted]
+    near = sorted(((part, one) for part, one in parts if part and part >= WORTH), key=lambda pair: -pair[0])[:NEAREST]
+    nearest = [f"{words(one.effect.name)}, {share(part)} of it, but {reason(one.reason)}" for part, one in near]
     yield (
         f"Closest effects of the catalogue: {'; '.join(nearest)}."
         if nearest
@@ -213,7 +231,7 @@ def remainder(found: Diagnosis) -> Iterator[str]:
 
 
 def shape(one: Where) -> str:
-    """How what is left lies over a coordinate, in words."""
+    """How the residual depends on a coordinate, in words."""
     (low, high), centres, name = one.region, one.centres, coordinate_word(one.coordinate, one.unit)
     between = f"between {number(low, digits=3)} and {number(high, one.unit, 3)}"
     reach, size = float(np.ptp(centres)), float(np.abs(centres).max())
@@ -242,6 +260,6 @@ def _wave(x: Array, y: Array) -> float:
     for waves in range(1, x.size // 4 + 1):
         phase = 2.0 * np.pi * waves * x / reach
         columns = np.column_stack([np.sin(phase), np.cos(phase)])
-        left = y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0]
-        best = max(best, (1.0 - float(left @ left) / max(float(y @ y), 1e-300), reach / waves))
+        rest = y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0]
+        best = max(best, (1.0 - float(rest @ rest) / max(float(y @ y), 1e-300), reach / waves))
     return best[1] if best[0] >= CLEAR else 0.0

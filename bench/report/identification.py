@@ -142,10 +142,10 @@ def identification(
     if motions:
         graphs = (_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
         text = identification_json(estimate, refinement, None, provenance) + "\n"
-        file = doc.file("identify.json", "all of it as numbers", text)
+        file = doc.file("identify.json", "all results as numbers", text)
         sections[1:1] = [
             doc.section("motion", "Measured and modelled", *graphs),
-            doc.section("where", "Where the rest sits", _rest(estimate, motions)),
+            doc.section("where", "Where the residual is", _rest(estimate, motions)),
         ]
         sections.append(doc.section("files", "The numbers", doc.downloads(file)))
     return doc.Document(
@@ -241,7 +241,7 @@ def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeG
         signals.append(Plotted("acceleration", one.kind.acceleration_unit, moved.time, moved.acceleration))
     signals.append(Plotted(effort, unit, moved.time, moved.effort, [one.left], "modelled"))
     alternative = (
-        f"Speed of {one.name}, its {effort} as measured and as inertia and friction make it, and what is left of it."
+        f"Speed of {one.name}, its {effort} as measured and with inertia and friction alone, and the residual."
     )
     return time_graph("Over time.", alternative, moved.time, signals, (), 1.0 / graphs)
 
@@ -264,14 +264,16 @@ def _rest(estimate: Estimate, motions: Sequence[Moved]) -> doc.Chart:
         values = np.concatenate(parts)[known]
         index = bins_of(values)
         kept = np.bincount(index) >= LEAST
-        dots = doc.series("left", "dots", "left", means_in(index, values)[kept], means_in(index, left[known])[kept])
+        dots = doc.series(
+            "residual", "dots", "residual", means_in(index, values)[kept], means_in(index, left[known])[kept]
+        )
         band = [noise_band(dots.x, floor)] if math.isfinite(floor) else []
         panels.append(doc.Panel(x_label=name, x_unit=unit_text(of), series=(*band, dots)))
     return doc.Chart(
         title="Residual.",
         alternative=f"Mean of measured less modelled {effort_word(unit)} in bins; what stands out of the noise floor "
-        "has a cause beside inertia and friction.",
-        y_label="left",
+        "has a cause in addition to inertia and friction.",
+        y_label="residual",
         y_unit=unit_text(unit),
         panels=tuple(panels),
     )

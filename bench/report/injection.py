@@ -79,7 +79,7 @@ def injections(found: Injections, provenance: Mapping[str, Any], recording: str)
             doc.section("cases", "All that was tried", *tried, detail=found.sought),
         ),
         origin=origin(provenance),
-        beside={"injections.json": injections_json(found, provenance) + "\n"},
+        files_in_folder={"injections.json": injections_json(found, provenance) + "\n"},
         warnings=tuple(f"{name} gave no result: {reason}" for name, reason in found.failed.items()),
     )
 

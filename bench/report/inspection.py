@@ -23,7 +23,7 @@ from bench.trace.inspect import ColumnSummary, Inspection
 from bench.trace.trace import Trace, assemble
 
 #: How the signals of one unit are distinguished, in their order.
-ROLES: tuple[Literal["measured", "model", "left"], ...] = ("measured", "model", "left")
+ROLES: tuple[Literal["measured", "model", "residual"], ...] = ("measured", "model", "residual")
 #: Holes that are listed one by one.
 MOST_HOLES = 20
 #: Columns of a picture that can still be read.
@@ -139,7 +139,7 @@ def _lost(found: Inspection) -> str:
     more = len(found.holes) - len(holes)
     parts = [f"holes of {', '.join(holes)}" + (f" and {more} more" if more > 0 else "")] if holes else ["no hole"]
     parts += [f"{found.interpolated} samples interpolated"] if found.interpolated else []
-    parts += [f"{found.duplicates} samples stood there twice"] if found.duplicates else []
+    parts += [f"{found.duplicates} duplicate samples"] if found.duplicates else []
     return "; ".join(parts)
 
 

@@ -137,8 +137,8 @@ def time_graph(
         for k, rest in signal.shown:
             samples = grid.samples(places, signal.values - rest)
             curves.append(TimeCurve(name=signal.modelled, role="model", choice=k, samples=samples))
-            name = choices[k] if k < len(choices) else "left"
-            left.append(TimeCurve(name=name, role="left", choice=k, samples=grid.samples(places, rest)))
+            name = choices[k] if k < len(choices) else "residual"
+            left.append(TimeCurve(name=name, role="residual", choice=k, samples=grid.samples(places, rest)))
         panels.append(TimePanel(label=signal.label, unit=unit, curves=tuple(curves)))
         if left:
             label = f"{signal.label}, {signal.name} less {signal.modelled}"

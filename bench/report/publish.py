@@ -26,7 +26,7 @@ def write_document(folder: Path, document: Document, ending: str = ".png") -> li
     Raises:
         InputError: the folder cannot be written to.
     """
-    texts = {**{file.name: file.content for file in document.files}, **document.beside}
+    texts = {**{file.name: file.content for file in document.files}, **document.files_in_folder}
     with held(folder):
         write_text(folder / DATA, document.model_dump_json() + "\n")
         write_text(folder / HTML, html(document))

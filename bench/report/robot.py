@@ -27,7 +27,7 @@ from bench.report.verdict import reasons
 SCHEMA = "bench.robot/1"
 MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
 #: Sections of a diagnosis that a robot's page has of each joint.
-SHOWN = ("motion", "where", "parameters", "beside", "checks")
+SHOWN = ("motion", "where", "parameters", "notes", "checks")
 
 
 def robot_json(found: IdentifiedRobot, provenance: Mapping[str, Any] | None = None) -> str:
@@ -80,7 +80,7 @@ def robot(
         files = doc.downloads(
             doc.file(MJCF, "the MJCF with the joints as found", text),
             doc.file(EFFECTS_FILE, "models of all joints, for bench.Effects", joints_toml(found.models)),
-            doc.file(JSON, "all of it as numbers", robot_json(found, provenance) + "\n"),
+            doc.file(JSON, "all results as numbers", robot_json(found, provenance) + "\n"),
         )
         sections.append(doc.section("model", "The model", doc.points(took), files, detail=True))
     warnings = (f"{name}: {warning}" for name, joint in found.joints.items() for warning in joint.warnings)
@@ -135,7 +135,7 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
         tables.append(doc.table(caption, ("joint", "inertia~"), rows))
     lacking = [(name, why, motion) for name, joint in found.joints.items() for why, motion in _open(joint)]
     if lacking:
-        tables.append(doc.table("What the logs cannot tell", ("joint", "what~", "the motion that would~"), lacking))
+        tables.append(doc.table("Not determined by the logs", ("joint", "what~", "record instead~"), lacking))
     return tables
 
 

@@ -32,7 +32,7 @@ MOST = 40_000
 #: Part of what a page may hold of graphs over time that is left beside them.
 PART = 0.8
 #: The axis of a model that nothing holds.
-LET_FREE = ("time since it was started", "s")
+FREE_RUNNING = ("time since it was started", "s")
 #: Points that are drawn of the curve of how far off it is.
 DRAWN = 300
 #: How much slower a page plays; what turns plays at first so that it goes round at most once a second.
@@ -195,7 +195,7 @@ def view(
         sections=doc.sections(
             doc.section("moving", "Moving", motion_of(shown, robot)),
             doc.section("motion", "Over time", graph),
-            doc.section("free", "Let free", *let_free),
+            doc.section("free", "Free-running simulation", *let_free),
             *model_sections(model, warnings),
         ),
         origin=origin(None),
@@ -221,7 +221,7 @@ def _let_free(free: FreeRun, kind: AxisKind) -> Iterator[doc.Chart]:
     for name, unit, off in (("position", kind.length_unit, free.position), ("speed", kind.speed_unit, free.velocity)):
         label = f"{name} off (RMS)"
         drawn = doc.series(label, "line", "model", free.time[::every], off[::every])
-        yield one_panel(f"{sentence(name)}.", alternative, LET_FREE, (label, unit), [drawn])
+        yield one_panel(f"{sentence(name)}.", alternative, FREE_RUNNING, (label, unit), [drawn])
 
 
 def motion_of(shown: SideBySide, robot: RobotAlong | None = None) -> doc.Moving:
@@ -275,7 +275,9 @@ def moving_section(mjcf: Path, motions: Mapping[str, JointMotion]) -> doc.Sectio
                 f"RMS of simulated less measured position of the joints that {move}, over the time since the model of"
                 " each was started, driven by its recorded torque, with the others as measured."
             )
-            charts.append(one_panel("Let free.", alternative, LET_FREE, ("position off (RMS)", unit), drawn))
+            charts.append(
+                one_panel("Free-running simulation.", alternative, FREE_RUNNING, ("position off (RMS)", unit), drawn)
+            )
     robot = _robot_motion(mjcf, max(origins, key=origins.count), motions)
     return doc.section("moving", "Moving", robot, *charts)
 

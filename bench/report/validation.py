@@ -120,7 +120,7 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
         ),
         origin=origin(provenance),
         pictures=tuple(_pictures(found)),
-        beside={"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"},
+        files_in_folder={"validation.json": validation_json(found, provenance) + "\n", "validation.md": text + "\n"},
     )
 
 

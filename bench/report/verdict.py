@@ -1,13 +1,28 @@
-"""Why a diagnosis is incomplete, in words."""
+"""Why a diagnosis is incomplete, and why an effect is in the model or is not, in words."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.name import with_interval
-from bench.diagnosis.verdict import Objection
+from bench.diagnosis.reason import Reason
 from bench.names import words
+from bench.parameter import Parameter
+
+#: Criteria that have no figures.
+PLAIN = {
+    "withheld": "an excluded effect was found",
+    "excluded": "excluded",
+    "removed": "added and removed again: the others explain it too, or another set is more likely",
+    "invisible": "this recording cannot show it",
+    "chance": "no more than chance",
+    "impossible": "it fits only with values that are physically impossible",
+    "damps": "it takes no more than noise that it damps",
+    "small": "it explains too small a part of what remains",
+    "others": "others explain more",
+    "same_as_added": "the recording does not distinguish it from an added effect",
+    "no_sign": "nothing in the recording points to it",
+}
 
 
 def reasons(found: Diagnosis) -> list[str]:
@@ -15,16 +30,22 @@ def reasons(found: Diagnosis) -> list[str]:
     return [reason(one) for one in found.objections]
 
 
-def reason(one: Objection) -> str:
-    """An objection in a line."""
+def reason(one: Reason) -> str:
+    """A criterion with its figures in a line."""
     figures: dict[str, Any] = dict(one.figures)
     match one.criterion:
+        case "accepted":
+            return ", ".join(f"{words(key)} {value:.3g}" for key, value in figures.items()) or "named"
+        case "alike":
+            return f"this recording does not distinguish it from {words(figures['effect'])}"
+        case "grows":
+            where = f"of the {figures['recording']}" if "recording" in figures else "under the rig's drive"
+            change = f"{figures['before']:.3g} -> {figures['after']:.3g} {figures['unit']}".rstrip()
+            return f"the {figures['gap']} gap {where} grows with it: {change}"
         case "residual":
             return f"the torque residual is {figures['times_noise']:.3g} times the noise"
         case "refused":
             return f"{words(figures['parameter'])} is not determined: {figures['reason']}"
-        case "excluded":
-            return "an excluded effect was found"
         case "moves_otherwise":
             gap = f"{figures['after']:.3g} {figures['unit']} RMS"
             return f"the simulated speed differs by {gap}, {figures['times_noise']:.2g} times the noise"
@@ -42,4 +63,9 @@ def reason(one: Objection) -> str:
         case "likelier":
             likely, nothing = (f"({100.0 * figures[key]:.0f} %)" for key in ("probability", "nothing"))
             return f"{words(figures['name'])} is more likely {likely} than no missing effect {nothing}"
-    return figures["reason"]
+    return PLAIN[one.criterion] if one.criterion in PLAIN else figures["reason"]
+
+
+def with_interval(name: str, found: Parameter) -> str:
+    """A quantity with half of its interval in words."""
+    return f"{words(name)} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"

@@ -50,11 +50,11 @@ def joint_motion(
     The trace begins the first recording of the diagnosis; `poses` are where the robot's joints were at times of the log
     - s, rad (m).
     """
-    course, count = found.courses[0], len(trace)
-    held = {HELD: course.velocity_left[-1], BARE: course.velocity_left[0] if found.effects else None}
-    if held[HELD] is None or not np.array_equal(course.time[:count], trace.time):
+    series, count = found.time_series[0], len(trace)
+    held = {HELD: series.velocity_residuals[-1], BARE: series.velocity_residuals[0] if found.effects else None}
+    if held[HELD] is None or not np.array_equal(series.time[:count], trace.time):
         return None
-    runs = {how: _position(course.velocity - left, trace) for how, left in held.items() if left is not None}
+    runs = {how: _position(series.velocity - left, trace) for how, left in held.items() if left is not None}
     free, ratio = restarted(found, trace, rig, EVERY), rig.load.gear_ratio if rig.load is not None else 1.0
     few = np.linspace(trace.time[0], trace.time[-1], min(count, INSTANTS))
     return JointMotion(

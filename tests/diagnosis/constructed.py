@@ -116,7 +116,7 @@ def likely(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace 
 def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> tuple[str, ...]:
     """The likeliest names."""
     found = likely(policy, trace, effects, holdout)
-    return found.fits[found.chosen.names].hypothesis.names
+    return found.fits[found.chosen].hypothesis.names
 
 
 def sought(policy: Policy, trace: Trace, effects: Sequence[str]) -> tuple[str, ...]:

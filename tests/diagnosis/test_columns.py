@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from bench.axis_kind import INERTIA, ROTARY
 from bench.diagnosis.recordings import fit_bare
-from bench.diagnosis.where import BINS, LEAST, Coordinate, _account, _welch, bins_of, by_chance, coordinates, where
+from bench.diagnosis.where import BINS, LEAST, _account, _welch, bins_of, by_chance, coordinates, where
 from bench.effects.catalogue import catalogue
 from bench.effects.dead_zone import load_positions
 from bench.effects.effect import lagged
@@ -120,7 +120,7 @@ def test_a_gap_of_two_directions_belongs_to_direction():
         time=np.arange(4000) * PERIOD, conditioning=SimpleNamespace(filter=GaussianFilter(1e-6, PERIOD))
     )
     fitted = SimpleNamespace(residual=gap, left=gap, rows=rows)
-    account = _account(Coordinate("direction", sign, "dimensionless"), fitted, None)
+    account = _account(("direction", sign, "dimensionless", sign), fitted, [])
     assert account.centres == pytest.approx([-1.0, 1.0])
     assert account.share == pytest.approx(0.25 / 0.26, abs=0.01)
 
@@ -161,7 +161,7 @@ def test_a_sine_has_turned_as_long_ago_as_its_last_crest():
     fitted = SimpleNamespace(
         rows=rows, columns=np.ones((4000, 1)), owners=np.array([INERTIA]), effort=time, left=0.0 * time
     )
-    since = {one.name: one.values for one in coordinates(fitted, ROTARY, "N*m")}["reversal"]
+    since = {name: values for name, values, *_ in coordinates(fitted, ROTARY, "N*m")}["reversal"]
     assert since == pytest.approx(np.mod(time + 0.25e-3, np.pi / 4.0), abs=1.1 * PERIOD)
 
 

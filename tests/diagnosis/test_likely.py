@@ -7,7 +7,7 @@ import pytest
 
 from bench.diagnosis import probability
 from bench.diagnosis.policy import POLICY
-from bench.diagnosis.probability import DETECTED, Contender, NameSet, Probabilities, probabilities, weighed
+from bench.diagnosis.probability import DETECTED, Contender, Probabilities, probabilities, weighed
 from bench.effects.rivals import RIVALS
 from bench.fit.hypothesis import Term
 from tests.diagnosis.hand_made import level, made, term
@@ -17,8 +17,7 @@ OUTSIDE = Term(RIVALS[0], tuple(shape.grid[0] for shape in RIVALS[0].shapes))
 
 
 def of(sets, none, detected=()):
-    every = [NameSet(frozenset(names), share) for names, share in sets]
-    return Probabilities(tuple(every), none, frozenset(detected))
+    return Probabilities({frozenset(names): share for names, share in sets}, none, frozenset(detected))
 
 
 THREE = of([(("a", "b"), 0.6), (("a", "c"), 0.25), ((), 0.05)], 0.1)
@@ -27,13 +26,13 @@ THREE = of([(("a", "b"), 0.6), (("a", "c"), 0.25), ((), 0.05)], 0.1)
 def test_a_name_is_as_likely_as_the_sets_that_hold_it():
     assert THREE.names == pytest.approx({"a": 0.85, "b": 0.6, "c": 0.25})
     assert THREE.nothing == pytest.approx(0.05)
-    assert THREE.chosen.names == {"a", "b"}
+    assert THREE.chosen == {"a", "b"}
 
 
 def test_a_set_is_chosen_only_of_names_that_are_likelier_than_not():
     split = of([(("a", "b"), 0.4), (("a", "c"), 0.35), (("a",), 0.2), ((), 0.01)], 0.04)
-    assert split.chosen.names == {"a"}
-    assert of([(("a",), 0.4), ((), 0.1)], 0.5).chosen.names == frozenset()
+    assert split.chosen == {"a"}
+    assert of([(("a",), 0.4), ((), 0.1)], 0.5).chosen == frozenset()
 
 
 def test_what_stands_in_the_place_of_a_name():
@@ -72,7 +71,7 @@ def contender(left, over, *terms, numbers=0, outside=False):
 def test_the_logarithm_is_the_sum_of_what_speaks_for_and_against():
     bare, spring = contender(0.0, 2.0), contender(-4.0, 1.0, SPRING, numbers=1)
     found = probabilities([bare, spring], frozenset(), POLICY)
-    ahead = 4.0 * POLICY.left + 1.0 * POLICY.over - POLICY.number
+    ahead = 4.0 * POLICY.remaining + 1.0 * POLICY.over - POLICY.number
     assert math.log(found.names["torsion_spring"] / found.nothing) == pytest.approx(ahead)
     assert math.log(found.none / found.nothing) == pytest.approx(POLICY.none + 2.0 * POLICY.over)
     assert found.nothing + found.none + found.names["torsion_spring"] == pytest.approx(1.0)
@@ -97,7 +96,7 @@ def test_a_name_counts_that_what_no_catalogue_holds_cannot_make_up_for(monkeypat
     less = SimpleNamespace(chi=without * every[-1].fitted.chi)
     monkeypatch.setattr(probability, "fit", lambda rows, hypothesis, start=None: less)
     found = probabilities(every, frozenset(), POLICY)
-    (both,) = (each.probability for each in found.sets if each.names)
+    (both,) = (share for names, share in found.sets.items() if names)
     beside = counts * both * math.exp(-weighs)
     assert found.names == pytest.approx({"torsion_spring": both + beside, "cogging_torque": both}, rel=1e-6)
     assert found.none == pytest.approx(1.0 - both, abs=1e-6)
@@ -112,11 +111,12 @@ def test_sets_that_a_recording_cannot_tell_apart_count_as_one():
     every = [contender(0.0, 3.0), *(contender(-6.0, 0.0, one, numbers=1) for one in (offset, difference))]
     found = probabilities(every, frozenset(), POLICY)
     assert len(found.names) == 1
-    assert found.chosen.probability > 0.99
+    assert found.sets[found.chosen] > 0.99
 
 
 def test_of_two_that_leave_less_than_was_taken_for_noise_the_one_that_leaves_less_is_likelier():
-    """By half of `left` rows: (v2/v1)**left."""
+    """By half of `remaining` rows: (v2/v1)**remaining."""
     every = [made(level(9e3)), made(level(54.0), SPRING, floor=1.0), made(level(94.0), COGGING, floor=1.0)]
     found = probabilities(weighed(every, None, POLICY), frozenset(), POLICY)
-    assert found.names["torsion_spring"] / found.names["cogging_torque"] == pytest.approx((94.0 / 54.0) ** POLICY.left)
+    ratio = found.names["torsion_spring"] / found.names["cogging_torque"]
+    assert ratio == pytest.approx((94.0 / 54.0) ** POLICY.remaining)

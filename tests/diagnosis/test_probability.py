@@ -8,7 +8,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import NameSet, Probabilities, probabilities, weighed
+from bench.diagnosis.probability import Probabilities, probabilities, weighed
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
 from tests.diagnosis.constructed import (
@@ -155,13 +155,13 @@ def test_what_rings_beside_impacts_is_not_nothing(determined, nothing):
 
 
 def sets(*pairs):
-    return Probabilities(tuple(NameSet(frozenset(names), share) for names, share in pairs), 0.2)
+    return Probabilities({frozenset(names): share for names, share in pairs}, 0.2)
 
 
 def test_what_stands_in_every_likely_set_is_named_without_what_differs_between_them():
     """P(a) = 0.46 + 0.29 + 0.01, P(b) = 0.46, P(c) = 0.29; no likely set is of names likelier than not alone."""
-    assert sets(("ab", 0.46), ("ac", 0.29), ("", 0.04), ("a", 0.01)).chosen.names == {"a"}
+    assert sets(("ab", 0.46), ("ac", 0.29), ("", 0.04), ("a", 0.01)).chosen == {"a"}
 
 
 def test_of_names_that_were_never_tried_by_themselves_as_many_are_named_as_were():
-    assert sets(("abd", 0.46), ("abc", 0.29), ("", 0.04), ("b", 0.0)).chosen.names == {"b"}
+    assert sets(("abd", 0.46), ("abc", 0.29), ("", 0.04), ("b", 0.0)).chosen == {"b"}

@@ -10,7 +10,6 @@ from bench.diagnosis.name import Suspects
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.recordings import Recordings
-from bench.diagnosis.search import Round, Searched
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
 from bench.parameter import Parameter
@@ -54,7 +53,7 @@ def whole():
     recordings = Recordings.of(TRACE, RIG, None)
     fitted = fit(recordings.rows, Hypothesis((term("torsion_spring"),)))
     stage = Extension(recordings.rows, fitted.hypothesis, {}, RIG)
-    suspects = Suspects(Searched((Round(fitted),), (fitted,)), Probabilities((), 1.0), {}, False, Policy())
+    suspects = Suspects(fitted, (fitted,), Probabilities({}, 1.0), {}, Policy())
     return recordings, HeldOut.of(recordings, False, True, fitted), stage, suspects
 
 

@@ -82,8 +82,8 @@ def test_it_is_reported_in_json_on_the_terminal_and_on_the_page(lacking):
     assert content["gap"]["velocity"]["identify"] is None
     shown = diagnosis(lacking, "axis")
     assert "Not determined together with the missing effects: its interval" in shown.answers["Moment of inertia?"]
-    (beside,) = (section for section in shown.sections if section.key == "beside")
-    assert any("refused: moment of inertia, its interval" in item for item in beside.blocks[0].items)
+    (notes,) = (section for section in shown.sections if section.key == "notes")
+    assert any("refused: moment of inertia, its interval" in item for item in notes.blocks[0].items)
 
 
 def test_physics_of_the_catalogue_names_the_spring(recorded):

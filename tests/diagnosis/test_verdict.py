@@ -11,7 +11,7 @@ from bench.axis_kind import VISCOUS
 from bench.diagnosis.diagnosis import diagnose, out_of_phase
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.probability import NameSet, Probabilities
+from bench.diagnosis.probability import Probabilities
 from bench.diagnosis.verdict import Gap, frictions, verdict
 from bench.effects.catalogue import catalogue
 from bench.fit.dependence import Dependence
@@ -44,7 +44,6 @@ def added(
 ):
     """Effects that were added, with what a test does not ask for as it is where all is well."""
     fitted = SimpleNamespace(chi=chi, depends=on, columns=np.ones((5, 2)), owners=np.array([VISCOUS, DRY]))
-    searched = SimpleNamespace(stopped=stopped)
     return SimpleNamespace(
         effects=list(effects),
         parameters={
@@ -52,7 +51,7 @@ def added(
             "coulomb_friction_torque": parameter(*friction),
         },
         recordings=SimpleNamespace(rig=RIG, trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
-        suspects=SimpleNamespace(policy=Policy(), searched=searched, withheld=withheld),
+        suspects=SimpleNamespace(policy=Policy(), stopped=stopped, withheld=withheld),
         refused=refused or {},
         recorded=[SimpleNamespace(name="recording"), SimpleNamespace(name="holdout")],
         extension=SimpleNamespace(fitted=fitted),
@@ -63,7 +62,7 @@ def added(
 def against(*effects, velocity=None, torque=None, unknown=0.1, **otherwise):
     """What speaks against a diagnosis, in words by the criterion."""
     quiet = Gap("SI", 0.01, (0.1, 0.01), None)
-    likely = Probabilities((NameSet(frozenset(), 1.0 - unknown),), unknown)
+    likely = Probabilities({frozenset(): 1.0 - unknown}, unknown)
     said, objections = verdict(added(*effects, **otherwise), likely, torque or quiet, velocity or quiet)
     assert said == ("unexplained_remainder" if objections else "explained" if effects else "nothing_missing")
     return {one.criterion: reason(one) for one in objections}
@@ -210,7 +209,7 @@ AGAINST = {
     "moves_otherwise": against(velocity=Gap("rad/s", 0.01, (0.1, 0.1), limit=0.035)),
     "likelier": against(unknown=0.6),
     "stopped": against(SPRING, stopped="limit of effects reached"),
-    "excluded": against(SPRING, withheld=True),
+    "withheld": against(SPRING, withheld=True),
     "moves_worse": against(SPRING, velocity=Gap("rad/s", 0.01, (0.1, 0.2), None)),
     "undetermined": against(named("torsion_spring", stiffness=(0.1, 0.11))),
     "negative": against(SPRING, friction=(-0.08, 0.001)),

@@ -8,13 +8,14 @@ import pytest
 
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.name import NamedEffect
-from bench.diagnosis.verdict import Objection
+from bench.diagnosis.reason import Reason
 from bench.effects.catalogue import catalogue
 from bench.report.diagnosis import diagnosis, verdict_sentence
 from bench.report.document import Chart, Table, TimeGraph
 from bench.report.gap import _telling
 from bench.report.over_time import unpacked
 from bench.report.publish import read_document
+from bench.report.verdict import reason
 from bench.rig.rig import Rig
 from tests.diagnosis.test_commands import run_of, with_unbalance
 
@@ -64,34 +65,34 @@ def test_the_found_effect_is_drawn_into_the_gap(page):
     assert [panel.x_label for panel in chart.panels] == ["position", "velocity", "current", "time"]
     assert [panel.x_unit for panel in chart.panels] == ["rad", "rad/s", "A", "s"]
     series = {one.name: one for one in over.series}
-    line, floor = series["what unbalance makes of it"], series["noise floor"]
+    line, floor = series["unbalance, fitted"], series["noise floor"]
     # an eccentric mass: 0.12 N*m times the sine of the angle, less what inertia and friction took up of it
     wave = 0.12 * np.sin(np.array(line.x))
     assert np.corrcoef(wave, np.array(line.y))[0, 1] > 0.95
-    assert np.max(np.abs(series["left after"].y)) < floor.high[0] < np.max(np.abs(line.y))
+    assert np.max(np.abs(series["remaining residual"].y)) < floor.high[0] < np.max(np.abs(line.y))
 
 
 def test_every_effect_is_reported_with_a_reason(diagnosed):
     assert {one.effect.name for one in diagnosed.considered} == set(catalogue())
-    assert all(one.reason for one in diagnosed.considered)
-    taken = [one.effect.name for one in diagnosed.considered if one.taken]
-    assert taken == [effect.name for effect in diagnosed.effects] == ["unbalance"]
+    assert all(reason(one.reason) for one in diagnosed.considered)
+    accepted = [one.effect.name for one in diagnosed.considered if one.accepted]
+    assert accepted == [effect.name for effect in diagnosed.effects] == ["unbalance"]
     reasons = {one.effect.name: one for one in diagnosed.considered}
-    assert reasons["torsion_spring"].reason == "excluded"
-    assert reasons["unbalance"].alone > 0.9
-    assert reasons["quadratic_drag"].alone < 0.2
-    assert all(0.0 <= one.alone <= 1.0 for one in diagnosed.considered if one.alone is not None)
+    assert reasons["torsion_spring"].reason.criterion == "excluded"
+    assert reasons["unbalance"].of_gap > 0.9
+    assert reasons["quadratic_drag"].of_gap < 0.2
+    assert all(0.0 <= one.of_gap <= 1.0 for one in diagnosed.considered if one.of_gap is not None)
 
 
-def test_profiles_and_courses_agree_with_the_steps(diagnosed):
-    (course,) = diagnosed.courses
-    assert len(course.velocity_left) == len(course.torque_left) == len(diagnosed.steps) == 2
+def test_profiles_and_time_series_agree_with_the_steps(diagnosed):
+    (series,) = diagnosed.time_series
+    assert len(series.velocity_residuals) == len(series.torque_residuals) == len(diagnosed.steps) == 2
     for k, step in enumerate(diagnosed.steps):
-        assert rms(course.torque_left[k]) == pytest.approx(step.torque[0])
-        assert rms(course.velocity_left[k].astype(float)) == pytest.approx(step.velocity[0])
+        assert rms(series.torque_residuals[k]) == pytest.approx(step.torque[0])
+        assert rms(series.velocity_residuals[k].astype(float)) == pytest.approx(step.velocity[0])
     for one in diagnosed.where:
         assert one.centres.size == one.means.size
-        assert one.after.size == (0 if one.coordinate == "frequency" else one.means.size)
+        assert [each.size for each in one.after] == ([] if one.coordinate == "frequency" else [one.means.size])
     shares = [one.share for one in diagnosed.where]
     assert shares == sorted(shares, reverse=True)
 
@@ -100,7 +101,7 @@ def test_the_verdict_fits_what_was_found(diagnosed):
     assert "was missing" in verdict_sentence(diagnosed)
     assert "the torque residual is noise" in verdict_sentence(diagnosed)
     unsure = replace(
-        diagnosed, verdict="unexplained_remainder", objections=(Objection("stopped", {"reason": "something remains"}),)
+        diagnosed, verdict="unexplained_remainder", objections=(Reason("stopped", {"reason": "something remains"}),)
     )
     assert verdict_sentence(unsure).endswith("but something remains.")
     page = diagnosis(unsure, "t")
@@ -122,11 +123,11 @@ def test_the_picture_shows_the_recording_over_a_stretch_where_what_was_found_sta
     """Measured, before and after are the recording's own; after follows what before does not."""
     stretch, over = diagnosis(diagnosed, "t").glance
     measured, before, after = (one for one in stretch.panels[0].series)
-    (course,) = diagnosed.courses
-    kept = np.isin(course.time[course.rows], measured.x)
+    (series,) = diagnosed.time_series
+    kept = np.isin(series.time[series.rows], measured.x)
     assert kept.sum() == len(measured.x) >= 30
-    np.testing.assert_allclose(course.torque[kept], measured.y)
-    np.testing.assert_allclose(course.torque[kept] - course.torque_left[0][kept], before.y)
+    np.testing.assert_allclose(series.torque[kept], measured.y)
+    np.testing.assert_allclose(series.torque[kept] - series.torque_residuals[0][kept], before.y)
     off, left = (rms(np.subtract(measured.y, one.y)) for one in (before, after))
     assert off > 5.0 * left
     assert off > 0.1 * np.ptp(measured.y)
@@ -134,24 +135,24 @@ def test_the_picture_shows_the_recording_over_a_stretch_where_what_was_found_sta
 
 
 def test_a_recording_too_short_for_a_stretch_has_the_gap_alone(diagnosed):
-    (course,) = diagnosed.courses
+    (series,) = diagnosed.time_series
     few = replace(
-        course,
-        time=course.time[:50],
-        velocity=course.velocity[:50],
-        velocity_left=(None, None),
+        series,
+        time=series.time[:50],
+        velocity=series.velocity[:50],
+        velocity_residuals=(None, None),
         rows=np.arange(50),
-        torque=course.torque[:50],
-        torque_left=tuple(left[:50] for left in course.torque_left),
+        torque=series.torque[:50],
+        torque_residuals=tuple(left[:50] for left in series.torque_residuals),
     )
-    assert len(diagnosis(replace(diagnosed, courses=(few,)), "t").glance) == 1
+    assert len(diagnosis(replace(diagnosed, time_series=(few,)), "t").glance) == 1
 
 
 def test_a_page_says_where_no_model_could_be_had(diagnosed):
     unknown = replace(
         diagnosed,
         velocity=replace(diagnosed.velocity, identify=None),
-        courses=tuple(replace(course, velocity_left=(None, None)) for course in diagnosed.courses),
+        time_series=tuple(replace(one, velocity_residuals=(None, None)) for one in diagnosed.time_series),
     )
     page = diagnosis(unknown, "t")
     assert page.answers["Does it move like the axis now?"].startswith("Not known")

@@ -1,4 +1,4 @@
-"""The page of a fleet: who needs a person first, what changed with its prediction band, and small."""
+"""The page of a fleet: which axes need attention, what changed with its prediction band, and small."""
 
 import dataclasses
 import os
@@ -83,7 +83,7 @@ def refused(reason):
 
 def test_who_needs_a_person_first_comes_first_with_the_reason():
     page = page_of(fleet_of(stepped(6, 10, [4]), {3: refused("too short")}))
-    assert page.verdict == "1 of 6 axes changed; 1 more needs a person for another reason."
+    assert page.verdict == "1 of 6 axes changed; 1 more needs attention for another reason."
     assert page.tone == "refused"
     people = blocks(page, Table)[1]
     assert [row[0] for row in people.rows] == ["axis 4", "axis 0"]
@@ -96,9 +96,9 @@ def test_who_needs_a_person_first_comes_first_with_the_reason():
 @pytest.mark.parametrize(
     ("fleet", "verdict", "tone"),
     [
-        (fleet_of(stepped(3, 8, [])), "None of 3 axes changed, and none needs a person.", "sure"),
-        (fleet_of(stepped(3, 8, []), {0: refused("x")}), "None of 3 axes changed, but 1 of 3 needs a person.", "open"),
-        (fleet_of(np.ones((3, 1))), "No axis could be compared over time, and none needs a person.", "open"),
+        (fleet_of(stepped(3, 8, [])), "None of 3 axes changed, and none needs attention.", "sure"),
+        (fleet_of(stepped(3, 8, []), {0: refused("x")}), "None of 3 axes changed, but 1 of 3 needs attention.", "open"),
+        (fleet_of(np.ones((3, 1))), "No axis could be compared over time, and none needs attention.", "open"),
     ],
 )
 def test_where_nothing_changed_the_page_says_so(fleet, verdict, tone):

@@ -73,7 +73,7 @@ def tried(recordings: Recordings, bare: Fit, policy: Policy) -> list[Contender]:
 def named(recordings: Recordings, hypotheses: Sequence[Contender], policy: Policy) -> Named:
     """The likeliest names under a policy."""
     likely = probabilities(hypotheses, frozenset(), policy)
-    last = likely.fits[likely.chosen.names]
+    last = likely.fits[likely.chosen]
     names = (*last.hypothesis.names, *(effect.name for effect in recordings.detected))
     return Named(names, policy.remains(last))
 

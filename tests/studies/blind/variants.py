@@ -19,7 +19,7 @@ OF_EFFECTS = (
 )
 FACTORS = {"off": 0.0, "half": 0.5, "double": 2.0}
 #: Weights of the score: each may be zero.
-WEIGHTS = frozenset({"left", "over", "number", "outside", "none", "beside"})
+WEIGHTS = frozenset({"remaining", "over", "number", "outside", "none", "with_unknown"})
 
 
 @dataclass(frozen=True)

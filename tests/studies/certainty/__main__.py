@@ -27,7 +27,7 @@ from tests.studies.blind.score import same
 from tests.studies.certainty.features import Hypothesis, Known, folders, kept, known
 from tests.studies.frame import publish, running
 
-WEIGHTS = ("left", "over", "number", "outside", "none")
+WEIGHTS = ("remaining", "over", "number", "outside", "none")
 #: Of the squares of weights in the loss: they stay finite where cases are separated without an error.
 PENALTY = 2e-4
 #: A right answer is never taken for less likely.
@@ -59,7 +59,7 @@ class Table:
     def shares(self, weights: Mapping[str, float]) -> Array:
         """Probabilities (c, h + 1), the last one of what was not tried."""
         logs = (
-            -weights["left"] * (np.maximum(self.of["left"], LEAST) + self.of["below"])
+            -weights["remaining"] * (np.maximum(self.of["remaining"], LEAST) + self.of["below"])
             - weights["over"] * np.minimum(self.of["over"], MUCH)
             - weights["number"] * self.of["numbers"]
             - weights["outside"] * self.of["outside"]

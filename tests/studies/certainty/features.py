@@ -28,7 +28,7 @@ class Hypothesis:
     """
 
     names: tuple[str, ...]
-    left: float
+    remaining: float
     over: float
     below: float
     numbers: int
@@ -96,7 +96,7 @@ def known(folder: Path, withheld: bool) -> Known | None:
     hypotheses = [
         Hypothesis(
             one.fitted.hypothesis.names,
-            one.left,
+            one.remaining,
             one.over,
             one.below,
             one.numbers,

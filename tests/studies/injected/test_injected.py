@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import bench
-from bench.diagnosis.probability import NameSet, Probabilities
+from bench.diagnosis.probability import Probabilities
 from bench.effects.catalogue import catalogue
 from bench.trace.trace import Trace
 from bench.validation.independent.effects import LoadDependentFriction, TorqueOffset
@@ -193,7 +193,7 @@ def test_how_likely_the_effect_is_and_others_that_are_new():
     def probabilities(*said, **more):
         diagnosis = found(*said, **more)
         names = frozenset(one.name for one in diagnosis.effects)
-        sets = (NameSet(names, 0.9), NameSet(frozenset({"torsion_spring"}), 0.06))
+        sets = {names: 0.9, frozenset({"torsion_spring"}): 0.06}
         diagnosis.probabilities = Probabilities(sets, 0.04)
         return believed(diagnosis, "cogging_torque", OWN.names)
 
