@@ -19,6 +19,7 @@ from bench.rig import values
 from bench.rig.motor import Motor, catalogue_motor
 from bench.rig.values import RigTable, tolerance_of
 from bench.structured import read_toml
+from bench.trace.motion import measured_velocity
 from bench.trace.trace import Trace, less_known, require_plausible
 from bench.validated import input_error
 
@@ -320,9 +321,11 @@ class Rig(RigTable):
             return (current, "A") if constant is None else (constant.torque(current), self.effort_unit)
         if "voltage" in trace:
             return self._effort_of_voltage(trace)
+        kinds = ("current", "torque", "force", "voltage")
+        unread = [note for note in trace.notes if note.startswith(tuple(f"{kind} left out" for kind in kinds))]
         raise InputError(
             trace.origin,
-            "holds no current, torque, force or voltage",
+            "; ".join(["holds no current, torque, force or voltage", *unread]),
             "identification needs one of them; `bench inspect` lists which column it may be: map that in the rig's "
             "[trace.columns]",
         )
@@ -346,8 +349,10 @@ class Rig(RigTable):
 
     def driven(self, trace: Trace) -> Array:
         """Effort by the recorded signal alone: with what a motion induces or weighs, it is `own_effort` (n,)."""
-        still = {"velocity": np.zeros(len(trace))} if "velocity" in trace and self.needs_speed(trace) else {}
-        return self.effort(trace.with_signals(still, {}))[0]
+        if not self.needs_speed(trace):
+            return self.effort(trace)[0]
+        still = trace.with_signals({"velocity": np.zeros(len(trace))}, {"velocity": self.axis_kind.speed_unit})
+        return self.effort(still)[0]
 
     def needs_speed(self, trace: Trace) -> bool:
         """Whether the effort in a trace is made of a voltage less what the speed induces, kT*(U - Ke*w)/R."""
@@ -356,15 +361,25 @@ class Rig(RigTable):
         return self.motor.force_per_volt is None and self.motor.torque_per_volt is None
 
     def _effort_of_voltage(self, trace: Trace) -> tuple[Array, str]:
-        gain = self.motor.force_per_volt or self.motor.torque_per_volt
+        gain, voltage = self.motor.force_per_volt or self.motor.torque_per_volt, self._voltage(trace)
         if gain is not None:
-            return trace["voltage"] * gain, self.effort_unit
+            return voltage * gain, self.effort_unit
         constant, resistance = self.motor.torque_per_ampere, self.motor.resistance
         if constant is not None and resistance is not None:
             back_emf = self.motor.back_emf_constant or constant.constant
-            current = (trace["voltage"] - back_emf * trace["velocity"]) / resistance
+            current = (voltage - back_emf * measured_velocity(trace)) / resistance
             return constant.torque(current), self.effort_unit
-        return trace["voltage"], "V"
+        return voltage, "V"
+
+    def _voltage(self, trace: Trace) -> Array:
+        """Of the motor (n,) - V; InputError for a duty cycle where nothing tells the supply's voltage."""
+        if trace.units["voltage"] == "V":
+            return trace["voltage"]
+        supply = trace.signals.get("supply_voltage", self.motor.supply_voltage)
+        if supply is None:
+            allowed = 'allowed: with a column of the supply\'s voltage, or motor.supply_voltage = "12 V" in the rig'
+            raise InputError(trace.origin, "found the voltage as a duty cycle", allowed)
+        return trace["voltage"] * supply
 
     def within_tolerance(self) -> Iterator[Rig]:
         """This rig with one value at the end of its tolerance, for each value of motor and load that has one.

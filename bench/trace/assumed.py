@@ -7,6 +7,7 @@ only taken from physics: the position's derivative is the velocity.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from bench.arrays import Array, correlation
 from bench.trace.channel import Channel
-from bench.trace.signals import SI_UNITS, wanted_units
+from bench.trace.signals import RELATIVE, SI_UNITS, wanted_units
 from bench.units.conversion import scale_or_none
 
 #: Units of time, and the share by which a position and the integral of its velocity may differ in the right one.
@@ -26,6 +27,8 @@ _USUAL = {
 }
 #: Largest magnitude that is plausible without a unit - SI; a servo axis at 700 rad/s turns 6700 times a minute.
 _PLAUSIBLE = {"velocity": 700.0, "current": 1e3, "torque": 1e4, "force": 1e6, "voltage": 2e3}
+#: Names of a voltage as a share of the supply's, and the largest share without a unit, which rounding may exceed.
+_DUTY, _FULL = re.compile(r"duty|pwm|tastgrad", re.IGNORECASE), 1.01
 #: Whole numbers beyond this are counts, or thousandths; sample periods of recorders - s.
 _COUNTS, _PERIODS = 30.0, (2e-4, 2e-2)
 #: Samples that are looked at, stretches they are cut into, and correlation below which motion determines no unit.
@@ -55,9 +58,15 @@ def assumed_units(channels: Mapping[str, Channel], units: Mapping[str, str | Non
     usual = {name: units_of_kind[linear] for name, units_of_kind in _USUAL.items() if name in channels}
     for name, channel in channels.items():
         if units[name] is None and name != "time" and name != "temperature":
-            si = SI_UNITS[name][min(linear, len(SI_UNITS[name]) - 1)]
-            reason = _implausible(name, channel.values[:_ENOUGH], si) if bare else "where other columns have theirs"
-            found.refused |= {name: (reason, usual.get(name, (si,))[-1] if bare else si)} if reason else {}
+            duty = name == "voltage" and _DUTY.search(channel.name) is not None
+            si = RELATIVE if duty else SI_UNITS[name][min(linear, len(SI_UNITS[name]) - 1)]
+            if duty:
+                reason = "and exceeds 1" if np.nanmax(np.abs(channel.values[:_ENOUGH])) > _FULL else ""
+            else:
+                reason = _implausible(name, channel.values[:_ENOUGH], si) if bare else "where other columns have theirs"
+            found.refused |= (
+                {name: (reason, "%" if duty else usual.get(name, (si,))[-1] if bare else si)} if reason else {}
+            )
             found.units |= {} if reason else {name: si}
     known = {name: units[name] or found.units.get(name) or usual[name][0] for name in usual}
     moved = _moved(channels, known)

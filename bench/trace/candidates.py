@@ -16,7 +16,7 @@ from bench.arrays import Array
 from bench.trace.channel import Channel
 from bench.trace.signals import (
     LETTERS,
-    RELATIVE_TORQUE,
+    RELATIVE,
     SI_UNITS,
     VAGUE,
     WORDS,
@@ -154,8 +154,10 @@ def _reasons(channel: Channel, name: ColumnName, bare: bool) -> Reasons:
     if "torque" in told and unit is not None and not _fits("torque", unit) and _fits("force", unit):
         told = {"force"}
     found: Reasons = {}
-    for signal in (*WORDS, "force"):
+    for signal in (*WORDS, "force", "supply_voltage"):
         fits = _fits(signal, unit)
+        if signal == "supply_voltage" and signal_of(_bare(channel)) != signal:
+            continue
         if (told and signal not in told) or (fits is False and not known):
             continue
         if name.supply and signal in ("current", "voltage") and not known:
@@ -190,7 +192,7 @@ def _of_name(
 
 
 def _of_unit(signal: str, unit: str | None, fits: bool | None) -> Iterator[tuple[float, str]]:
-    if fits and unit is not None and scale_of(unit, wanted_units(signal)).unit != RELATIVE_TORQUE:
+    if fits and unit is not None and scale_of(unit, wanted_units(signal)).unit != RELATIVE:
         yield UNIT, f"is in {unit}"
 
 

@@ -22,6 +22,7 @@ SI_UNITS: dict[str, tuple[str, str]] = {
     "torque": ("N*m", "N*m"),
     "force": ("N", "N"),
     "voltage": ("V", "V"),
+    "supply_voltage": ("V", "V"),
     "temperature": ("K", "K"),
     "position_reference": ("rad", "m"),
     "velocity_reference": ("rad/s", "m/s"),
@@ -34,8 +35,8 @@ KNOWN_TORQUE, KNOWN_MOMENTUM = "known_torque", "known_momentum"
 #: one of them that is felt most would put on the axis where it moves - N*m (N).
 STANDING, STANDING_ASK = "standing", "standing_ask"
 
-#: Torque may also come as a share of the rated torque (EPOS reports %); a rig's `rated_torque` makes it N*m.
-RELATIVE_TORQUE = "dimensionless"
+#: Torque may also come as a share of the rated torque (EPOS reports %), voltage as one of the supply's (a duty cycle).
+RELATIVE = "dimensionless"
 #: Other names of signals; compared in lower case, with `_` as a space, after the last dot of a PLC path.
 ALIASES: dict[str, str] = {
     "time": "t|timestamp|zeit",
@@ -43,6 +44,8 @@ ALIASES: dict[str, str] = {
     "velocity": "actual velocity|actvel|speed|geschwindigkeit|velocity actual value|velocity actual value averaged",
     "acceleration": "actual acceleration|actacc",
     "current": "iq|strom|current actual value|current actual value averaged",
+    "voltage": "duty|duty cycle|pwm|pwm duty|pwm duty cycle|tastgrad",
+    "supply_voltage": "bus voltage|dc bus voltage|dc link voltage|battery voltage|input voltage|vbus|vbat|udc",
     "torque": "actual torque|torque actual value|torque actual value averaged|effort",
     "position_reference": "reference position|position demand value|goal|target|setpoint|desired|command|cmd",
     "velocity_reference": "reference velocity|velocity demand value",
@@ -301,7 +304,7 @@ def wanted_units(signal: str) -> tuple[str, ...]:
     """SI units in which a signal (or `time`) may be kept."""
     if signal == "time":
         return ("s",)
-    relative = (RELATIVE_TORQUE,) if signal.startswith("torque") else ()
+    relative = (RELATIVE,) if signal.startswith("torque") or signal == "voltage" else ()
     return (*dict.fromkeys(SI_UNITS[signal]), *relative)
 
 

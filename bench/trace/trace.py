@@ -44,6 +44,7 @@ LARGEST = {
     "torque": 1e10,
     "force": 1e12,
     "voltage": 1e8,
+    "supply_voltage": 1e8,
     "temperature": 1e8,
     KNOWN_TORQUE: 1e12,
     KNOWN_MOMENTUM: 1e12,
