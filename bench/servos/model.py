@@ -12,8 +12,8 @@ position error; y is q behind a play, as an encoder on the output has it.
 
 Each step is exact for the linear part (the 2x2 matrix exponential of its regime: in control, or with no torque that
 depends on position); a stop inside a step is located and the rest of the step continues from there, so that the error
-is of second order in the step also with stick-slip. Against `mujoco.rollout` it simulates 20 stretches of ten
-parameter sets in the time of about ten, since a NumPy call costs the same for one state and for 200.
+is of second order in the step also with stick-slip. Stretches and parameter sets are stepped together, since a NumPy
+call costs about the same for one state and for 200.
 """
 
 from __future__ import annotations
