@@ -126,7 +126,7 @@ def _glance(found: Servo) -> doc.Chart:
     drawn = [
         doc.series("goal", "dotted", "first", motion.time[part], motion.goal[part]),
         doc.series("measured", "wide", "ink", motion.time[part], motion.measured[part]),
-        doc.series("before", "dashes", "left", motion.time[part], motion.before[part]),
+        doc.series("before", "dashes", "residual", motion.time[part], motion.before[part]),
         doc.series("after", "line", "model", motion.time[part], motion.after[part]),
     ]
     alternative = f"Goal, measured position, and free-running simulations: {found.before}, and the fitted servo."
