@@ -116,15 +116,14 @@ def over_coordinates(places: list[Axes], found: Signature) -> None:
     """The gap, every row and the mean in bins, on one scale over as many coordinates as there are places."""
     kind, rows = rig().axis_kind, found.bare.rows
     unit, current = rig().net_effort(found.affected)[1], found.affected["current"][rows.samples()]
-    lies = {one.name: one for one in coordinates(found.bare, kind, unit, current)}
+    lies = {name: (values, called) for name, values, _, called in coordinates(found.bare, kind, unit, current)}
     accounts = [one for one in where(found.bare, kind, unit, current) if one.coordinate in lies]
     for axes, account in zip(places, accounts, strict=False):
         if axes is not places[0]:
             axes.sharey(places[0])
             axes.tick_params(labelleft=False)
-        along = lies[account.coordinate]
-        x = along.values if along.called is None else along.called
-        index = bins_of(along.values)
+        values, x = lies[account.coordinate]
+        index = bins_of(values)
         filled = np.bincount(index) >= LEAST
         centres, means = means_in(index, x)[filled], means_in(index, found.bare.left)[filled]
         order = np.argsort(centres)
