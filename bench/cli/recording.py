@@ -319,7 +319,7 @@ def fleet(
     ] = None,
     json: common.JsonOption = None,
 ) -> None:
-    """Evaluate many recordings of many axes: one row each, which axes changed since when, and which need a person."""
+    """Evaluate many recordings of many axes: one row each, which axes changed since when, and which need attention."""
     from bench.fleet.fleet import TABLE
     from bench.fleet.fleet import fleet as run_fleet
     from bench.jobs.process import Limits

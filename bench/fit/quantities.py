@@ -164,14 +164,15 @@ def _free_shapes(fitted: Fit) -> tuple[tuple[int, int], ...]:
 
 
 def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
-    """Derivative of the modelled torque by strengths and shapes (m, p + s)."""
+    """Derivative of the modelled torque by strengths and shapes (m, p + s), what columns take from a fit held."""
     columns = [fitted.columns]
+    here = lay_out(rows, fitted.hypothesis, fitted.found, fitted.missing) if slots else fitted.layout
     for index, k in slots:
         term = fitted.terms[index]
         step = term.effect.shapes[k].step * max(abs(term.shape[k]), 1e-3)
         moved = tuple(value + step * (j == k) for j, value in enumerate(term.shape))
         other = lay_out(rows, fitted.hypothesis.reshaped(index, moved), fitted.found, fitted.missing)
-        modelled = (other.columns - fitted.columns) @ fitted.theta - (other.effort - fitted.effort)
+        modelled = (other.columns - here.columns) @ fitted.theta - (other.effort - here.effort)
         columns.append(modelled[:, None] / step)
     return np.concatenate(columns, axis=1)
 
@@ -183,13 +184,13 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
     """
     if not fitted.terms or not fitted.determined.all():
         return
-    plain = least_squares(fitted.columns, fitted.effort, fitted.layout.noise)
-    scope = fitted.scope
+    here = lay_out(fitted.rows, fitted.hypothesis, fitted.found, fitted.missing)
+    plain, scope = least_squares(here.columns, here.effort, here.noise), fitted.scope
 
     def refitted(change: Callable[[Signals], Signals]) -> Array:
         layout = lay_out(fitted.rows.with_signals(change), fitted.hypothesis, fitted.found, fitted.missing)
-        columns = np.where([isinstance(owner, int) for owner in layout.owners], layout.columns, fitted.columns)
-        return least_squares(columns, fitted.effort, layout.noise) - plain
+        columns = np.where([isinstance(owner, int) for owner in layout.owners], layout.columns, here.columns)
+        return least_squares(columns, here.effort, layout.noise) - plain
 
     def older(s: Signals) -> Signals:
         position, velocity = (

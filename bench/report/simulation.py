@@ -93,7 +93,7 @@ def _recorded(simulated: Simulated) -> doc.TimeGraph:
     signals = []
     for name, (label, true) in was.items():
         if name in trace:
-            left = trace[name] - true[ticks, 0]
+            left = trace[name] - true[ticks]
             signals.append(Plotted(label, trace.units[name], trace.time, trace[name], [left], "true", "recorded"))
     efforts = [name for name in ("current", "torque", "force") if name in trace]
     signals += [Plotted(name, trace.units[name], trace.time, trace[name], name="recorded") for name in efforts]
