@@ -54,8 +54,8 @@ def demo(out: Path, seed: int, progress: Callable[[float], None]) -> tuple[Docum
         known = {k: v for present in truth.effects if present.effect is one.effect for k, v in present.values}
         tables.append(parameters_table(words(one.name), one.parameters, known))
     answers = {"What was hidden?": f"{_hidden(truth)}.", **shown.answers}
-    beside = section("truth", "Found and true values", *tables)
-    return shown.model_copy(update={"answers": answers, "sections": (beside,)}), list(dict.fromkeys(files))
+    compared = section("truth", "Found and true values", *tables)
+    return shown.model_copy(update={"answers": answers, "sections": (compared,)}), list(dict.fromkeys(files))
 
 
 def _hidden(truth: Truth) -> str:

@@ -286,22 +286,21 @@ def limits(
     report: common.ReportOption = None,
     draft: common.DraftOption = None,
 ) -> None:
-    """Draw torque over speed: reserve to the datasheet, or without one the limits that the log runs into."""
+    """Draw torque over speed: the reserve to the datasheet, or without one the limits that the log reaches."""
     from bench.report.drive import limits as against_datasheet
     from bench.report.envelope import envelope_document, envelope_json
     from bench.rig.envelope import envelope_of
 
     of = common.subject(rig, axis_name, None, None, None, trace, draft)
     axis, recording = of.rig, of.read(trace)
-    found = envelope_of(recording, axis)
     if axis.motor.peak_curves:
         document = against_datasheet(recording, axis)
     else:
         ratio = axis.load.gear_ratio if axis.load is not None else 1.0
-        document = envelope_document(found, readable(trace.name), axis.axis_kind, ratio)
+        document = envelope_document(envelope_of(recording, axis), readable(trace.name), axis.axis_kind, ratio)
     common.write_picture(out, document.pictures[0])
     common.write_page(report, document)
-    common.write_json(json, lambda: envelope_json(found, axis.axis_kind))
+    common.write_json(json, lambda: envelope_json(envelope_of(recording, axis), axis.axis_kind))
     common.tell(document, [out, report, draft], json)
 
 

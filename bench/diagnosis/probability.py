@@ -11,13 +11,14 @@ gave, leaves of it beyond twice what the best one does. Then
 
     ln P = -remaining*(max(U, LEAST) + B) - over*min(V, MUCH) - number*numbers + constant
 
-U, V - logarithms of E over that of the bare axis and over that of noise alone, V on all rows for a hypothesis that
-determines all: who claims no gap has to explain what is beside impacts, too; B - logarithm of v/f**2 where that is
-negative and the bare axis leaves more than noise, else 0: the noise is then weaker than it was taken for; numbers -
-fitted. What holds an effect from outside the catalogue weighs `outside` less and, together with a constant weight for
-what was not tried, makes up "none of the catalogue"; a name beside such an effect is there if without it at least twice
-as much is left, as that makes up for what is small. The weights, of `bench.diagnosis.policy`, are those under which
-recordings whose truth is known were likeliest (`python -m tests.studies.certainty`).
+U, V - logarithm of E relative to the bare axis and relative to noise alone. V counts all rows for a hypothesis that
+determines all of them: without impacts it has to explain the rows next to impacts, too. B - logarithm of v/f**2 where
+that is negative and the residual of the bare axis exceeds noise, else 0: the true noise is then weaker than its
+estimate f. numbers - fitted numbers. A hypothesis with an effect from outside the catalogue has the weight `outside`;
+these hypotheses and a constant weight for those that were not tried make up the unknown effect. A name next to such an
+effect counts if the residual without it is at least twice as large, as an outside effect can replace smaller ones. The
+weights, of `bench.diagnosis.policy`, maximise the likelihood of recordings whose truth is known
+(`python -m tests.studies.certainty`).
 """
 
 from __future__ import annotations
@@ -120,7 +121,7 @@ class Probabilities:
         return self.of_any([name, *alike]) if all(self.names[other] < own for other in alike) else own
 
     def instead_of(self, name: str) -> dict[str | None, float]:
-        """What the sets without a chosen name have in its place; None: none of the catalogue."""
+        """Probability of what replaces a chosen name in the sets without it; None: an unknown effect."""
         found: dict[str | None, float] = {None: self.none - self.with_unknown.get(name, 0.0)}
         for names, probability in self.sets.items():
             for other in names - self.chosen if name not in names else ():
@@ -128,7 +129,7 @@ class Probabilities:
         return dict(sorted(found.items(), key=lambda one: -one[1]))
 
     def holding(self, level: float) -> list[frozenset[str] | None]:
-        """The fewest sets that hold the truth with a probability of at least `level`; None: none of the catalogue."""
+        """The fewest sets that hold the truth with a probability of at least `level`; None: an unknown effect."""
         ranked = [(probability, names | self.detected) for names, probability in self.sets.items()] + [
             (self.none, None)
         ]
@@ -139,7 +140,7 @@ class Probabilities:
     def without(self, names: frozenset[str]) -> Probabilities:
         """Given that something else is in the place of some names: what held-out motion spoke against.
 
-        The other names are as likely as before; where nothing else would be missing it is none of the catalogue.
+        The other names are as likely as before; a set that would be empty without it becomes an unknown effect.
         """
         bare, rest = self.sets.get(frozenset(), 0.0), dict[frozenset[str], float]()
         for each, probability in self.sets.items():
@@ -162,8 +163,7 @@ class Contender:
         fitted: to the recording.
         remaining: logarithm of its residual beyond noise over that of the bare axis.
         over: the same over BESIDE_NOISE of the noise.
-        below: logarithm of what it leaves over the noise where that is less, else 0: the noise is then less, too, and
-            the other that leaves as much as was thought is not as likely.
+        below: logarithm of its residual power relative to the noise where that is less, else 0.
         numbers: fitted beyond those of the bare axis, and RESCALED for a scale of the torque.
         outside: whether it has an effect that no catalogue holds.
     """

@@ -90,7 +90,7 @@ class Joints:
                 self._field("actuator_biasprm")[:, self._bristles[k], BRISTLE_LEVELS] = own
 
     def apply(self, torque: Number) -> None:
-        """Apply a torque beside those of actuators - N*m (N)."""
+        """Apply a torque in addition to those of actuators - N*m (N)."""
         self.applied[:, self._columns] = torque
 
     def restore_inertia(self) -> None:

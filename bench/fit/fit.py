@@ -437,11 +437,11 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
         return None  # a floor in colour, which takes long, is no lower
     least = fitted.chance
     for effect in sorted((effect for effect in linear if gains[effect] > least), key=lambda effect: -gains[effect]):
-        beside = fit(fitted.rows, fitted.hypothesis.plus(Term(effect)), fitted)
-        strengths = beside.strengths(len(fitted.terms))
-        physical = effect.physical(strengths, (), beside.base) and effect.plausible([strengths], [()], fitted.scope)
-        if physical and beside.base.inertia > 0.0 and explained(fitted, beside) > least:
-            return beside
+        extended = fit(fitted.rows, fitted.hypothesis.plus(Term(effect)), fitted)
+        strengths = extended.strengths(len(fitted.terms))
+        physical = effect.physical(strengths, (), extended.base) and effect.plausible([strengths], [()], fitted.scope)
+        if physical and extended.base.inertia > 0.0 and explained(fitted, extended) > least:
+            return extended
     return None
 
 

@@ -43,7 +43,7 @@ CORRELATION = 35.0 / 18.0
 ROUNDS, RINGS = 12, 0.3
 #: Largest delay that is sought - samples.
 DELAY = 3.0
-#: Largest half width of a frequency that is told, as a share of it.
+#: Largest relative half width of a frequency that is reported.
 KNOWN = 0.1
 
 
@@ -55,7 +55,7 @@ class FrequencyResponse:
         frequency: Hz (k,).
         response: rad/s/(N*m) (m/s/N) (k,).
         coherence, error: of it, the latter the relative standard error of its size (k,).
-        carried: whether the coherence is high enough for the response to be told (k,).
+        coherent: whether the coherence is high enough for the response to be reported (k,).
         windows: that were averaged.
         resonance, antiresonance: of an elastic load - Hz; None where the response shows none.
     """
@@ -64,7 +64,7 @@ class FrequencyResponse:
     response: Complex
     coherence: Array
     error: Array
-    carried: NDArray[np.bool_]
+    coherent: NDArray[np.bool_]
     windows: int
     resonance: Parameter | None
     antiresonance: Parameter | None
@@ -105,17 +105,19 @@ def response_of(stretches: list[tuple[Array, Array]], sample_period: float) -> F
     coherence = np.abs(cross) ** 2 / np.maximum(drive * motion, 1e-300)
     count = len(torque)
     error = np.sqrt((1.0 - coherence) / np.maximum(2.0 * coherence * INDEPENDENT * count, 1e-300))
-    carried = (coherence >= COHERENT) & (frequency > frequency[1])
-    if np.count_nonzero(carried) < FEWEST:
+    coherent = (coherence >= COHERENT) & (frequency > frequency[1])
+    if np.count_nonzero(coherent) < FEWEST:
         return None
     whole = cross / np.maximum(drive, 1e-300)
-    used = frequency[carried], 1.0 / np.maximum(error[carried], 1e-3)
+    used = frequency[coherent], 1.0 / np.maximum(error[coherent], 1e-3)
     delay = scipy.optimize.minimize_scalar(
-        lambda shift: _fitted(*used, whole[carried], shift)[1], bounds=(-DELAY * sample_period, DELAY * sample_period)
+        lambda shift: _fitted(*used, whole[coherent], shift)[1], bounds=(-DELAY * sample_period, DELAY * sample_period)
     ).x
-    pairs, spread = _pairs(*used, whole[carried], delay)
-    resonance, antiresonance = (_told(value, std, frequency[carried]) for value, std in zip(pairs, spread, strict=True))
-    return FrequencyResponse(frequency, whole, coherence, error, carried, count, resonance, antiresonance)
+    pairs, spread = _pairs(*used, whole[coherent], delay)
+    resonance, antiresonance = (
+        _reported(value, std, frequency[coherent]) for value, std in zip(pairs, spread, strict=True)
+    )
+    return FrequencyResponse(frequency, whole, coherence, error, coherent, count, resonance, antiresonance)
 
 
 def _windows(signals: Array, length: int) -> Complex:
@@ -126,23 +128,23 @@ def _windows(signals: Array, length: int) -> Complex:
 
 
 def _fitted(frequency: Array, weight: Array, response: Complex, delay: float) -> tuple[Array, float, Array]:
-    """Coefficients (6,), b before a, of s over the highest frequency, the squares that are left, and the covariance.
+    """Coefficients (6,), b before a, of s over the highest frequency, the squared residual, and the covariance.
 
     frequency (k,) - Hz -, weight (k,): one over the relative error; delay - s.
     """
     s = 1j * frequency / frequency.max()
     h = response * np.exp(2j * np.pi * frequency * delay)
     columns = np.stack([np.ones_like(s), s, s**2, -h, -h * s, -h * s**2], axis=1)
-    theta, below, rows, left = np.zeros(6), np.ones_like(s), np.empty((0, 6)), np.empty(0)
+    theta, below, rows, residual = np.zeros(6), np.ones_like(s), np.empty((0, 6)), np.empty(0)
     for _ in range(ROUNDS):  # each time over the denominator found before
         factor = (weight / np.abs(h) / np.abs(below))[:, None]
         rows, goal = columns * factor, (h * s**3)[:, None] * factor
         rows, goal = (np.concatenate([part.real, part.imag]) for part in (rows, goal))
         theta = np.linalg.lstsq(rows, goal[:, 0], rcond=None)[0]
-        left = rows @ theta - goal[:, 0]
+        residual = rows @ theta - goal[:, 0]
         below = np.polyval([1.0, *theta[:2:-1]], s)
-    squares = float(left @ left)
-    misfit = max(squares / max(left.size - 6, 1), 0.5)
+    squares = float(residual @ residual)
+    misfit = max(squares / max(residual.size - 6, 1), 0.5)
     covariance = CORRELATION * misfit * np.linalg.pinv(rows.T @ rows)
     return theta.astype(np.float64), squares, covariance.astype(np.float64)
 
@@ -170,9 +172,9 @@ def _ringing(polynomial: Array) -> float:
     return float(abs(min(found, key=lambda root: abs(root.real) / abs(root)))) if found else math.nan
 
 
-def _told(value: float, std: float, carried: Array) -> Parameter | None:
-    """A frequency inside those carried, if it is known well enough - Hz."""
-    half = math.hypot(NORMAL95 * std, 0.5 * float(np.diff(carried).min()))
-    if not carried.min() < value < carried.max() or not half < KNOWN * value:
+def _reported(value: float, std: float, coherent: Array) -> Parameter | None:
+    """A frequency within the coherent ones, if its interval is narrow enough - Hz."""
+    half = math.hypot(NORMAL95 * std, 0.5 * float(np.diff(coherent).min()))
+    if not coherent.min() < value < coherent.max() or not half < KNOWN * value:
         return None
     return Parameter(value, "Hz", half / NORMAL95, (value - half, value + half))

@@ -1,4 +1,4 @@
-"""Torque over speed that a log reaches: where it stays at a limit, what the limit is, and what simulators take.
+"""Torque over speed that a log reaches: the limits with intervals, and the lines that simulators take.
 
 As JSON (`bench.limits/1`) and as a document.
 """
@@ -18,13 +18,13 @@ from bench.report.serial import serialised
 from bench.rig.envelope import Envelope
 
 SCHEMA = "bench.limits/1"
-#: What ends the sentence about a limit that was not met.
-NEXT_PEAK = "command steps of speed in both directions, as hard as the axis bears"
-NEXT_VOLTAGE = "command a speed beyond what it reaches, three times or more"
+#: What to record where a limit was not reached.
+NEXT_PEAK = "command large steps of speed in both directions"
+NEXT_VOLTAGE = "command a speed that the axis cannot reach, three times or more"
 
 
 def envelope_json(found: Envelope, kind: AxisKind) -> str:
-    """What was reached, the limits with intervals, and what simulators take; without what is not determined."""
+    """Largest torque over speed, and the limits with intervals that the log determines."""
     return serialised(
         {
             "schema": SCHEMA,
@@ -39,7 +39,7 @@ def envelope_json(found: Envelope, kind: AxisKind) -> str:
 
 
 def limits_of(found: Envelope, kind: AxisKind) -> dict[str, Parameter]:
-    """The limits that the log stays at, by name."""
+    """The limits that the log reaches, by name."""
     every = {
         f"peak_{kind.effort}": found.peak,
         "no_load_speed": found.no_load,
@@ -73,21 +73,21 @@ def envelope_document(found: Envelope, title: str, kind: AxisKind, ratio: float)
 
 def _answers(found: Envelope, kind: AxisKind) -> Iterator[tuple[str, str]]:
     if found.peak is not None:
-        held = f"{interval(found.peak)}, held in {found.at_peak} stretches: the drive's limit, if more was asked for"
+        held = f"{interval(found.peak)}, reached in {found.at_peak} stretches; the drive's limit if more was requested"
         yield f"Largest {kind.effort}?", f"{held}."
     else:
         yield (
             f"Largest {kind.effort}?",
-            f"At least {number(found.largest, kind.effort_unit, 3)}; the log never stays there.",
+            f"At least {number(found.largest, kind.effort_unit, 3)}; the log has no stretch at a limit.",
         )
     if found.no_load is not None:
         line = f"{interval(found.no_load)}, from {found.at_voltage} stretches in which the {kind.effort} falls"
         yield "No-load speed?", f"{line} along one straight line."
     else:
         fastest = number(found.fastest, kind.speed_unit, 3)
-        yield "No-load speed?", f"More than {fastest}; the log never stays at the limit of the voltage."
+        yield "No-load speed?", f"More than {fastest}; the log does not reach the limit of the voltage."
     if found.corner is not None:
-        yield "Corner?", f"{interval(found.corner)}: up to there the voltage drives the largest {kind.effort}."
+        yield "Corner?", f"{interval(found.corner)}: above it the voltage limits the {kind.effort}."
     missing = [text for text, one in ((NEXT_PEAK, found.peak), (NEXT_VOLTAGE, found.no_load)) if one is None]
     if missing:
         yield "What next?", f"For what is missing, {'; and '.join(missing)}: bench limits harder.csv."
@@ -104,14 +104,14 @@ def _chart(found: Envelope, kind: AxisKind) -> doc.Chart:
         shown = falling <= 1.1 * found.largest
         drawn.append(doc.series("limit of the voltage", "line", "model", along[shown], falling[shown]))
     names = (kind.effort, kind.effort_unit)
-    about = f"Largest {kind.effort} over speed, and the limits that the log stays at."
+    about = f"Largest {kind.effort} over speed, and the limits that the log reaches."
     return one_panel(f"{sentence(kind.effort)} over speed", about, ("speed", kind.speed_unit), names, drawn)
 
 
 def _simulators(found: Envelope, ratio: float) -> Iterator[doc.Paragraph | doc.Code]:
-    """Lines to copy, on the joint's side of the gear; of what the log does not reach there are none."""
+    """Lines to copy, on the joint's side of the gear; only of limits that the log reaches."""
     if found.peak is None:
-        yield doc.Paragraph(text="None: a limit that was not reached would hold a simulated motor back too early.")
+        yield doc.Paragraph(text="None: a limit that the log does not reach would make the simulated motor too weak.")
         return
     peak = found.peak.value * ratio
     yield doc.Paragraph(text="At the joint. MuJoCo (torque alone):")

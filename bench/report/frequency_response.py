@@ -1,4 +1,4 @@
-"""The frequency response of an axis in a page: as measured, as modelled, and where it resonates."""
+"""The frequency response of an axis in a page: as measured, as modelled, and its resonance and antiresonance."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from bench.fit.frequency_response import COHERENT, FrequencyResponse
 from bench.plant.axis_model import AxisModel
 from bench.plant.linear import speed_over_torque
 from bench.report import document as doc
-from bench.report.numbers import interval, number, unit_text
+from bench.report.numbers import number, unit_text
 from bench.report.parts import parameters_table
 
 
 def frequency_section(found: FrequencyResponse, model: AxisModel | None, kind: AxisKind) -> doc.Section:
-    """Size of the response over frequency with its intervals, of the model too, and the coherence below it."""
-    carried, frequency = found.carried, found.frequency
+    """Size of the response over frequency with intervals, that of the model, and the coherence."""
+    coherent, frequency = found.coherent, found.frequency
     size, reach = np.abs(found.response), 2.0 * np.minimum(found.error, 0.45)
-    x, y = frequency[carried], size[carried]
-    drawn = [doc.series("measured", "dots", "ink", x, y, (y * (1.0 - reach[carried]), y * (1.0 + reach[carried])))]
+    x, y = frequency[coherent], size[coherent]
+    drawn = [doc.series("measured", "dots", "ink", x, y, (y * (1.0 - reach[coherent]), y * (1.0 + reach[coherent])))]
     along = np.geomspace(x.min(), x.max(), 300)
     modelled = None if model is None else speed_over_torque(model, along)
     if modelled is not None:
@@ -39,11 +39,6 @@ def frequency_section(found: FrequencyResponse, model: AxisModel | None, kind: A
         f"intervals, from {number(float(x.min()), 'Hz', 3)} to {number(float(x.max()), 'Hz', 3)}. Dry friction lowers "
         "the coherence at low frequencies."
     )
-    if found.antiresonance is not None and found.resonance is not None:
-        text += (
-            f" The load behind a spring stands at {interval(found.antiresonance)} and resonates with the motor at "
-            f"{interval(found.resonance)}."
-        )
     tables = [parameters_table("Of an elastic load", known)] if known else []
     chart = doc.Chart(title=title, alternative=about, panels=panels)
     return doc.section("frequency", title, doc.Paragraph(text=text), chart, *tables, detail=True)

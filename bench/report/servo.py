@@ -17,7 +17,7 @@ from bench.parameter import Parameter
 from bench.report import document as doc
 from bench.report.numbers import brief, interval, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import one_panel, origin, parameters_table
+from bench.report.parts import checks_section, one_panel, origin, parameters_table
 from bench.report.serial import as_json, serialised
 from bench.servos.servo import Servo
 
@@ -41,7 +41,7 @@ def servo_json(found: Servo, provenance: Mapping[str, Any] | None = None) -> str
             "separated_by": of.advice,
             "refused": of.refused,
             "gap": {"position": {"unit": found.kind.length_unit, "noise_floor": found.noise_floor, **gaps}},
-            "checks": [],
+            "checks": found.checks,
             "warnings": found.warnings,
             "actuator": of.actuator or None,
             "provenance": provenance,
@@ -76,7 +76,7 @@ def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None)
             doc.section("parameters", "Parameters", *tables),
             doc.section("separate", "What would separate them", *([doc.points(of.advice)] if of.advice else [])),
             doc.section("motion", "Goal, measured and simulated", graph, detail=True),
-            doc.section("warnings", "Warnings", *([doc.points(found.warnings)] if found.warnings else [])),
+            checks_section(found.checks, found.warnings),
             doc.section("model", "The model", doc.downloads(*files), detail=True),
         ),
         origin=origin(provenance),

@@ -1,14 +1,14 @@
-"""Torque that a log reaches at each speed, and the limits that it runs into: those of a drive whose datasheet is lost.
+"""Torque over speed that a log reaches, and the limits of a drive without a datasheet that follow from it.
 
     |M| <= M_p,    driving:  |M| <= s*(w_0 - |w|)
 
 M_p - largest torque, of current or magnets - N*m (N); w_0 - no-load speed, at which the back-EMF takes all the voltage
 - rad/s (m/s); s - slope, kT*Ke/R - N*m*s/rad (N*s/m). Both meet at the corner, w_c = w_0 - M_p/s.
 
-At a limit torque does not follow what is asked for: samples lie dense on one straight edge of the cloud, in stretch
-after stretch, with no more than noise beyond. Both limits bound a concave region, so they are edges of the samples'
-convex hull. The standard errors count each stretch at a limit as one observation (cluster-robust covariance).
-Source: K.-Y. Liang, S. L. Zeger, Biometrika 73 (1986) 13-22.
+At a limit the torque does not follow its demand: in several stretches of the log the samples are dense along one
+straight edge of the point cloud, and only noise exceeds it. Both limits bound a convex region, so they are edges of the
+convex hull of the samples. The standard errors count each stretch at a limit as one observation
+(cluster-robust covariance). Source: K.-Y. Liang, S. L. Zeger, Biometrika 73 (1986) 13-22.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ from bench.trace.trace import Trace
 
 #: Deviations of the noise within which a sample is at a limit.
 REACH = 3.0
-#: Samples of a stretch at a limit at least, and of the running median that takes spikes away.
+#: Least number of samples of a stretch at a limit, and samples of the running median that removes spikes.
 SHORTEST, MEDIAN = 8, 5
-#: Samples at each end of a stretch that are left out, as there the torque may be on its way from or to the limit.
+#: Samples at each end of a stretch that are not used, as the torque may approach or leave the limit there.
 ENDS = 6
-#: Stretches that make a limit.
+#: Least number of stretches at a limit.
 STRETCHES = 3
 #: Share of the speeds that the samples at the voltage's limit must span, and of the samples that may lie beyond.
 SPAN, BEYOND = 0.1, 0.01
-#: Deviations of the noise by which the samples at a limit may bend or slope: a planned motion does, and repeats it.
+#: Span of the trend of the samples at a limit, in deviations of the noise: the torque of a planned motion bends more.
 STRAIGHT = 0.5
-#: Times that samples are chosen anew around the line fitted to them.
+#: Iterations of choosing the samples near the line and fitting the line to them.
 ROUNDS = 8
-#: Intervals of the speed in each of which the largest torque is told.
+#: Intervals of the speed in each of which the largest torque is reported.
 BINS = 30
 
 
@@ -52,7 +52,7 @@ class Limit:
 
     Attributes:
         values: level - N*m (N) - and slope - N*m*s/rad (N*s/m).
-        covariances: of both, by stretches, and by samples that the running median correlates (2, 2, 2).
+        covariances: of both, from the scatter between stretches and from that of the samples (2, 2, 2).
         stretches: how many.
         at: which samples (n,).
     """
@@ -61,10 +61,6 @@ class Limit:
     covariances: Array
     stretches: int
     at: NDArray[np.bool_]
-
-    def falls(self, most: float) -> bool:
-        """Whether it cuts the largest torque - N*m (N) - at a positive speed."""
-        return bool(self.values[0] > most)
 
     def parameter(self, value: float, slopes: Array, unit: str) -> Parameter:
         """A quantity with these derivatives to level and slope, its interval by Student's t."""
@@ -75,13 +71,13 @@ class Limit:
 
 @dataclass(frozen=True)
 class Envelope:
-    """What a log reaches.
+    """Largest torque over speed of a log, and the limits that it reaches.
 
     Attributes:
-        speed, reached: the largest torque while driving in each of BINS intervals of the speed - N*m (N) -, and the
-            speed at which it is - rad/s (m/s); of intervals in which some sample drives, (b,) each.
+        speed, reached: largest torque while driving in each of BINS intervals of the speed - N*m (N) -, and the speed
+            at which it occurs - rad/s (m/s); of intervals with a sample that drives, (b,) each.
         largest, fastest: largest torque, driving or braking - N*m (N) -, and largest speed - rad/s (m/s).
-        peak, slope, no_load, corner: M_p, s, w_0 and w_c; None where the log does not stay at what limits them.
+        peak, slope, no_load, corner: M_p, s, w_0 and w_c; None where the log does not reach their limit.
         at_peak, at_voltage: stretches at the two limits.
     """
 
@@ -98,15 +94,15 @@ class Envelope:
 
     @property
     def stall(self) -> float | None:
-        """Torque that the voltage alone would leave at standstill, s*w_0 - N*m (N); None without that limit."""
+        """Torque at standstill by the limit of the voltage alone, s*w_0 - N*m (N); None without that limit."""
         return None if self.slope is None or self.no_load is None else self.slope.value * self.no_load.value
 
 
 def envelope_of(trace: Trace, rig: Rig) -> Envelope:
-    """What a recording reaches.
+    """The envelope of a recording.
 
     Raises:
-        InputError: neither speed nor position, or no torque in N*m (force in N) to be had.
+        InputError: neither speed nor position, or no torque in N*m (force in N).
         UndeterminedError: its torque never acts along the motion.
     """
     effort, unit = rig.effort(trace)
@@ -117,7 +113,7 @@ def envelope_of(trace: Trace, rig: Rig) -> Envelope:
 
 
 def envelope(speed: Array, torque: Array, speed_unit: str, torque_unit: str) -> Envelope:
-    """What a log of regular samples reaches, speed (n,) - rad/s (m/s) -, torque (n,) - N*m (N).
+    """The envelope of regular samples: speed (n,) - rad/s (m/s) -, torque (n,) - N*m (N).
 
     Raises:
         UndeterminedError: its torque never acts along the motion.
@@ -164,7 +160,7 @@ def _noise(values: Array) -> float:
 
 
 def _voltage(fast: Array, strong: Array, noise: tuple[float, float], chosen: NDArray[np.bool_]) -> Limit | None:
-    """The falling edge of the samples' convex hull that most samples lie on, if it is a limit."""
+    """The falling edge of the convex hull of the samples with most samples along it, if it is a limit."""
     points = np.column_stack([fast[chosen], strong[chosen]])
     if len(points) < STRETCHES * SHORTEST or np.ptp(points, axis=0).min() <= 0.0:
         return None
@@ -175,17 +171,17 @@ def _voltage(fast: Array, strong: Array, noise: tuple[float, float], chosen: NDA
         if w1 > w2 and m1 < m2:
             rate = (m2 - m1) / (w1 - w2)
             limit = _limit(fast, strong, np.array([m1 + rate * w1, rate]), noise, chosen)
-            if limit is not None and np.ptp(fast[limit.at]) >= SPAN * fast.max() and limit.falls(strong.max()):
-                found.append(limit)
+            if limit is not None and np.ptp(fast[limit.at]) >= SPAN * fast.max() and limit.values[0] > strong.max():
+                found.append(limit)  # it meets the largest torque at a positive speed
     return max(found, key=lambda limit: np.count_nonzero(limit.at), default=None)
 
 
 def _limit(
     fast: Array, strong: Array, start: Array, noise: tuple[float, float], chosen: NDArray[np.bool_]
 ) -> Limit | None:
-    """The line fitted to the samples on it, from a start (2,); None if few stretches stay there or samples pass beyond.
+    """The line fitted to the samples near it, from a start (2,); None if few stretches follow it or samples exceed it.
 
-    A limit that does not fall has the level alone.
+    A limit without a slope has the level alone.
     """
 
     def place(values: Array) -> tuple[Array, float, NDArray[np.intp]]:

@@ -25,11 +25,11 @@ from bench.servos.model import NULL, STEP, Stretches, simulated
 #: Time in which a loop forgets its start; a stretch compared is not longer than `LONGEST` - s. With about `STRETCHES`
 #: of them the jackknife has enough to average.
 FORGETS, SHORTEST, LONGEST, STRETCHES = 0.5, 0.25, 1.0, 24
-#: Factor of what the jackknife says: it is linearised and does not know the controller's own period, so that of 30
-#: servos its intervals held 70 to 87 % (`python -m tests.studies.servos --seed 1`).
-WIDER = 1.7
 #: Least number of them, below which there is no interval.
 FEWEST = 6
+#: Factor on the standard errors of the jackknife, which is linearised and does not include the controller's own
+#: period: without it intervals of 95 % cover 70 to 87 % (`python -m tests.studies.servos --seed 1`).
+WIDER = 1.7
 #: Longest dead time that is tried - s.
 LONGEST_DEAD_TIME = 0.25
 #: What every servo has; `known torque per inertia` joins it where a torque is known.

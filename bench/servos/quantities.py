@@ -167,8 +167,8 @@ def warnings_of(fit: ServoFit, floor: float, noise: bool, period: float) -> list
         )
     if not noise:
         found.append(
-            f"the residual is {fit.error / floor:.2g} times the noise: something acts that this servo has not, "
-            "and gains may have absorbed part of it; intervals do not cover that"
+            f"the residual is {fit.error / floor:.2g} times the noise: the servo model lacks an effect, "
+            "the gains may contain part of it, and the intervals do not cover that"
         )
     if np.sqrt(fit.values["stiffness"]) * period > 0.6:
         found.append(

@@ -11,7 +11,7 @@ the controller reaches its limit: only then K_w brakes and kv does not.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -20,6 +20,8 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.axis_kind import AxisKind
 from bench.errors import InputError, UndeterminedError
+from bench.gate.check import Check
+from bench.gate.gate import gate, joined
 from bench.parameter import Parameter
 from bench.presented import Presented
 from bench.rig.rig import Rig
@@ -77,6 +79,7 @@ class Servo(Presented):
         gaps: of the log (`identify`), and of a holdout.
         before: what is simulated before the fit, in words.
         motion: of the first log.
+        checks: of goal and position in the logs.
         warnings: what a user should know before relying on it.
         joint: name of the joint.
         values: of the simulated servo, parameters of `bench.servos.model.NULL`.
@@ -89,6 +92,7 @@ class Servo(Presented):
     gaps: Mapping[str, PositionGap]
     before: str
     motion: ServoMotion
+    checks: tuple[Check, ...]
     warnings: tuple[str, ...]
     joint: str
     values: Mapping[str, float]
@@ -303,6 +307,8 @@ def _result(
     noise = fit.error <= NOISE * floor
     found = quantities(fit, inertia, kind, model)
     notes = [note for trace in traces for note in trace.notes]
+    used = ({name: trace[name] for name in ("position", "position_reference")} for trace in traces)
+    checks = joined([gate(replace(trace, signals=each)).checks for trace, each in zip(traces, used, strict=True)])
     return Servo(
         kind=kind,
         found=found,
@@ -311,6 +317,7 @@ def _result(
         gaps=gaps,
         before="the MJCF's actuator" if first is not None else "a servo that is always at its goal",
         motion=pairs[0][1],
+        checks=checks,
         warnings=(*notes, *warnings_of(fit, floor, noise, traces[0].sample_period)),
         joint="axis" if model is None else model.name,
         values=dict(fit.values),

@@ -60,7 +60,7 @@ def test_one_mass_is_one_over_inertia_and_resonates_nowhere():
     found = response_of([rigid()], PERIOD)
     assert found is not None
     assert (found.resonance, found.antiresonance) == (None, None)
-    low = found.carried & (found.frequency < 50.0) & (found.frequency > 2.0)
+    low = found.coherent & (found.frequency < 50.0) & (found.frequency > 2.0)
     size = np.abs(found.response[low]) * 2.0 * np.pi * found.frequency[low]
     assert size * 3e-3 == pytest.approx(np.ones(size.size), abs=0.1)
     away = (size * 3e-3 - 1.0) / found.error[low]

@@ -60,6 +60,7 @@ def test_the_residual_is_noise_and_a_limit_never_reached_is_a_lower_bound(quick)
     assert found.verdict == "nothing_missing"
     assert found.gaps["identify"].after < 0.2 * found.gaps["identify"].before
     assert re.search(r"not reached; it is at least [\d.]+", found.found.refused["force_limit"])
+    assert {check.name: check.status for check in found.checks}["time_is_regular"] == "pass"
 
 
 def test_a_limit_that_is_reached_is_found():
