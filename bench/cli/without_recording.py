@@ -66,6 +66,7 @@ def simulate(
 
         common.write_page(report, simulation(simulated, readable(out.name)))
     common.list_files([out, truth, report])
+    common.warn(simulated.warnings)
 
 
 def plan(

@@ -15,7 +15,7 @@ import mujoco
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.effect import Bristles
+from bench.effects.effect import Bristles, Coupling
 from bench.effects.present import Present
 from bench.effects.torque import Friction
 from bench.errors import InputError
@@ -27,6 +27,8 @@ from bench.rig.rig import Rig
 #: before another, held from each to the next - (ticks, inputs + 1). The last two are the motor's effort, and what is
 #: known to resist it beside the axis.
 PlannedInputs: TypeAlias = Callable[[int, int], Array]
+#: Effects with which a drive cannot make the friction.
+OF_MECHANICS = (Friction, Bristles, Coupling)
 DIVERGED = "the simulation diverged: lower the drive's gains or its control period"
 
 
@@ -117,24 +119,36 @@ class Plant:
         if abs(self.substeps * self.timestep / period - 1.0) > 1e-9:
             allowed = f"allowed: the control period of {period:g} s or a whole part of it"
             raise InputError("simulation.timestep", f"found {self.timestep:g} s", allowed)
-        friction = self.model.of_kind((Friction, Bristles))
-        if self.emulated and friction:
-            allowed = 'allowed: in the rig, `[simulation] friction = "mechanics"`'
-            raise InputError(f"effect {friction[0].name}", "found friction made by the drive", allowed)
 
     @classmethod
     def from_rig(cls, rig: Rig, effects: Sequence[Present] = ()) -> Plant:
-        """The simulated axis that a rig describes; InputError where `[drive]` or `[simulation]` lack or contradict."""
+        """The simulated axis that a rig describes; InputError where `[drive]` or `[simulation]` lack or contradict.
+
+        All friction acts in the mechanics, even where the drive makes the rig's, if an effect is friction too, or frees
+        the load from the motor: the drive's software takes both for one rigid axis.
+        """
         parameters, cascade = AxisParameters.from_rig(rig), Cascade.from_rig(rig)
         timestep = rig.simulated.timestep or cascade.control_period
         axis = AxisModel(parameters, tuple(effects), cascade.torque_limit, winding_of(rig))
-        return cls(axis, cascade, timestep, rig.simulated.friction == "drive")
+        emulated = rig.simulated.friction == "drive" and not axis.of_kind(OF_MECHANICS)
+        return cls(axis, cascade, timestep, emulated)
 
     @cached_property
     def model(self) -> AxisModel:
         """The axis without its drive, whose limit is its peak effort; friction as the mechanics have it."""
         parameters = self.axis.parameters.frictionless if self.emulated else self.axis.parameters
         return replace(self.axis, parameters=parameters, peak_effort=self.cascade.torque_limit)
+
+    @property
+    def velocity_loop(self) -> float:
+        """Share of a speed error that the drive removes in one control period; above 1 it alternates, above 2 it grows.
+
+        K_v*T/J, with K_i*T/2 next to K_v; J is what the motor turns at once: without the load where an effect couples
+        it.
+        """
+        cascade, axis = self.cascade, self.axis.parameters
+        gain = cascade.velocity_gain + cascade.integral_gain * cascade.control_period / 2.0
+        return gain * cascade.control_period / (axis.motor_inertia if self.axis.coupled else axis.inertia)
 
     @property
     def substeps(self) -> int:

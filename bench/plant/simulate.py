@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,34 +12,42 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import gaussian_filter1d
 
-from bench.arrays import Array
+from bench.arrays import Array, rms
 from bench.effects.present import GivenEffects, Present, given_effects
 from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisParameters, effect_values
 from bench.plant.drive import References
-from bench.plant.plant import Plant, States
+from bench.plant.plant import OF_MECHANICS, Plant, States
 from bench.plant.profile_names import DEFAULT
 from bench.plant.profiles import MOST_TICKS, MotionLimits, plan
 from bench.plant.run import Progress, run
 from bench.plant.sensing import Sensors, reported_states
 from bench.rig.given import GivenRig, rig_of
+from bench.rig.rig import Rig
 from bench.structured import json_text
 from bench.trace.trace import Trace
 
 SCHEMA = "bench.truth/1"
+#: A torque alternates at a tick where it turns back by this share of its largest value; a drive whose torque does so in
+#: this share of the ticks chatters: rigid axes stay below 0.0005, unstable drives are above 0.03.
+TURNS_BACK, CHATTERS = 0.05, 0.01
+#: RMS deviation from the profile's speed, over the RMS of that speed, from which an axis does not follow: sound drives
+#: stay below 0.1.
+ASTRAY = 0.5
 
 
 @dataclass(frozen=True, repr=False)
 class Simulated:
-    """What the sensors recorded, what of, the true motion at the drive's ticks, and what the drive
-    followed.
+    """What the sensors recorded, what of, the true motion at the drive's ticks, what the drive followed, and what the
+    user should know of the simulation.
     """
 
     trace: Trace
     truth: Truth
     states: States
     references: References
+    warnings: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         hidden = ", ".join(present.name for present in self.truth.effects) or "no effect"
@@ -88,7 +97,39 @@ def simulate(
     trace = sensors.record(reported_states(plant.model, states), references, np.random.default_rng(seed), origin)
     friction = "drive" if plant.emulated else "mechanics"
     truth = Truth(rig.name, plant.axis.parameters, friction, sensors, profile, seed, plant.model.effects)
-    return Simulated(trace, truth, states, references)
+    warnings = (*_moved_friction(rig, plant), *_drive_warnings(plant, states, references))
+    return Simulated(trace, truth, states, references, warnings)
+
+
+def _moved_friction(rig: Rig, plant: Plant) -> Iterator[str]:
+    """Where friction acts, if not as the rig has it."""
+    if rig.simulated.friction == "drive" and not plant.emulated:
+        names = ", ".join(present.name for present in plant.axis.of_kind(OF_MECHANICS))
+        yield f"all friction acts in the mechanics, as {names} needs; in the rig the drive makes it"
+
+
+def _drive_warnings(plant: Plant, states: States, references: References) -> Iterator[str]:
+    """Whether the drive chatters or leaves its profile, and why."""
+    loop, cascade = plant.velocity_loop, plant.cascade
+    change, largest = np.diff(states.motor_torque), float(np.abs(states.motor_torque).max())
+    back = (change[1:] * change[:-1] < 0.0) & (np.abs(change[1:]) > TURNS_BACK * largest)
+    if (share := float(np.mean(back))) > CHATTERS:
+        why = "its velocity loop is not the reason: lower the other gains"
+        if loop >= 1.0:
+            inertia = "of the motor without its load" if plant.axis.coupled else "of the axis"
+            why = (
+                f"in each it removes {loop:.2g} times the speed error (velocity_gain*control_period over the inertia "
+                f"{inertia}), which alternates above 1 and grows above 2; set [drive] control_period to "
+                f'"{1e6 * cascade.control_period / (1 + int(loop)):.3g} us"'
+            )
+        yield f"the simulated drive chatters: its torque alternates in {share:.0%} of the control periods; {why}"
+    missed, planned = rms(states.velocity - references.velocity), rms(references.velocity)
+    if missed > ASTRAY * planned:
+        full = float(np.mean(np.abs(states.torque) >= (1.0 - 1e-6) * cascade.torque_limit))
+        yield (
+            f"the simulated axis does not follow its profile: the speed is off by {missed / planned:.2g} times the "
+            f"profile's RMS speed, with the torque at its limit for {full:.0%} of the time"
+        )
 
 
 def _require_possible(plant: Plant) -> None:

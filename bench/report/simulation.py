@@ -70,18 +70,20 @@ def simulation(simulated: Simulated, name: str) -> doc.Document:
         title=name,
         subject=f"Simulation of {truth.rig}: {name}",
         verdict=f"{seconds} of the profile {words(truth.profile)} were simulated{hidden}.",
-        tone="sure",
+        tone="open" if simulated.warnings else "sure",
         answers={
             f"{kind.in_words(INERTIA).capitalize()}?": number(truth.parameters.inertia, kind.inertia_unit, 5),
             "What is hidden?": "; ".join(effects) or "Nothing beyond inertia and friction.",
             "Where is the friction?": f"In the {truth.friction}.",
         },
-        sections=(
+        sections=doc.sections(
+            doc.section("warnings", "Warnings", *([doc.points(simulated.warnings)] if simulated.warnings else [])),
             doc.section("motion", "Recorded and true", _recorded(simulated)),
             doc.section("truth", "The truth", *true),
             doc.section("files", "The numbers", doc.downloads(doc.file("truth.json", "the truth", truth.as_json()))),
         ),
         origin=(*origin(None), f"seed {truth.seed}"),
+        warnings=simulated.warnings,
     )
 
 

@@ -4,11 +4,15 @@ import json
 
 import pytest
 
+from bench.assets import asset
 from bench.axis_kind import LINEAR
 from bench.effects.catalogue import catalogue
 from bench.effects.present import parse_effect
 from bench.errors import InputError
+from bench.plant.simulate import simulate
+from bench.rig.rig import load_rig
 from tests.command import bench
+from tests.effects.axes import VALUES
 from tests.plant.conftest import RIG
 
 
@@ -81,13 +85,28 @@ def test_simulate_refuses_in_one_line_and_writes_nothing(tmp_path, effect, says)
     assert not out.exists()
 
 
-def test_friction_made_by_the_drive_has_no_effects(tmp_path):
-    rig = tmp_path / "rig.toml"
-    rig.write_text(RIG.format(simulation='friction = "drive"', motor=""), encoding="utf-8")
-    effect = "load_dependent_friction:load_friction_coefficient=0.1"
-    code, _, error = bench("simulate", rig, "--out", tmp_path / "x.csv", "--effect", effect)
-    assert code == 2
-    assert "mechanics" in error
+def test_friction_acts_in_the_mechanics_where_the_drive_makes_that_of_the_rig(tmp_path):
+    """The recording is that of the same rig with friction in its mechanics, and both user and truth are told."""
+    effect, recordings = "load_dependent_friction:load_friction_coefficient=0.1", []
+    for friction in ("drive", "mechanics"):
+        rig, out = tmp_path / f"{friction}.toml", tmp_path / f"{friction}.csv"
+        rig.write_text(RIG.format(simulation=f'friction = "{friction}"', motor=""), encoding="utf-8")
+        code, _, error = bench("simulate", rig, "--out", out, "--profile", "multisine", "--effect", effect)
+        warned = "all friction acts in the mechanics, as load_dependent_friction needs"
+        assert (code, warned in error) == (0, friction == "drive")
+        assert json.loads((tmp_path / f"{out.name}.truth.json").read_text(encoding="utf-8"))["friction"] == "mechanics"
+        recordings.append(out.read_text(encoding="utf-8"))
+    assert recordings[0] == recordings[1]
+
+
+def test_each_effect_is_simulated_on_the_axis_of_the_course():
+    """But a voltage limit, which needs a winding that the course's motor has not."""
+    lab = load_rig(asset("data", "rigs", "lab.toml"))
+    for name, values in VALUES.items():
+        if name != "voltage_limit":
+            found = simulate(lab, "multisine", effects={name: values})
+            chatters = any("chatters" in warning for warning in found.warnings)
+            assert chatters == (name in ("elastic_coupling", "backlash")), (name, found.warnings)
 
 
 def test_every_effect_is_listed_and_has_a_page():

@@ -143,3 +143,23 @@ def test_refuses_a_rotor_heavier_than_the_whole(rig_of):
 def test_friction_that_falls_towards_standstill_is_no_stribeck_friction():
     with pytest.raises(InputError, match=r"stribeck_friction\.static_friction: found 0.04 N\*m; allowed: from 0.085"):
         simulate("sh30701p", effects="stribeck_friction:static_friction=0.04,stribeck_velocity=4")
+
+
+def test_a_drive_chatters_from_the_gain_that_makes_its_velocity_loop_unstable(rig_of):
+    """Each control period leaves 1 - K_v*T/J of a speed error, so it alternates and grows from K_v*T/J = 2 on."""
+    rig = rig_of("")
+    inertia, drive = AxisParameters.from_rig(rig).inertia, rig.drive
+    limit = 2.0 * inertia / drive.control_period
+    for share, chatters in ((0.9, False), (1.1, True)):
+        gains = {"velocity_gain": share * limit, "integral_gain": 0.0}
+        found = simulate(rig.model_copy(update={"drive": drive.model_copy(update=gains)}), "multisine")
+        assert any("chatters" in warning for warning in found.warnings) == chatters
+        if chatters:
+            assert f"it removes {2.0 * share:.2g} times the speed error" in found.warnings[0]
+
+
+def test_an_axis_that_does_not_follow_its_profile_is_reported(rig_of):
+    """A torque above the motor's largest drags the axis away."""
+    sound, dragged = (simulate(rig_of(), "multisine", effects=[f"torque_offset:torque={load}"]) for load in (0.1, 9.0))
+    assert sound.warnings == ()
+    assert any("does not follow its profile" in warning and "100%" in warning for warning in dragged.warnings)
