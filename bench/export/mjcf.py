@@ -51,8 +51,6 @@ ACTUATOR += ("actdim", "actearly", "actlimited", "actrange")
 ACTUATOR += ("ctrllimited", "ctrlrange", "ctrlspec", "forcelimited", "forcerange", "nsample", "interp", "delay")
 #: Whether a joint of a type turns.
 TURNS = {mujoco.mjtJoint.mjJNT_HINGE: True, mujoco.mjtJoint.mjJNT_SLIDE: False}
-#: What makes an effect that is not native.
-STEPPED, SEEN = "bench.Effects steps it", "it is in what sensors report, not in the motion"
 
 
 class ArmatureShare(StrEnum):
@@ -216,8 +214,7 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature
     )
     couplings = joint.parent.joints[1:] if model.coupled else []
     between = [f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in couplings]
-    left = [(p.name, STEPPED if p in model.stepped else SEEN) for p in model.effects if p not in model.native]
-    return Carried(name, model.structure, tuple(left), (inertia, driven, *between))
+    return Carried(name, model.structure, stored.not_native, (inertia, driven, *between))
 
 
 def _mass_of(body: mujoco.MjsBody, stored: StoredModel) -> str:

@@ -17,9 +17,9 @@ import mujoco
 from bench.effects.mjcf import AXIS, DRIVE, LOAD_TORQUE
 from bench.effects.torque import Friction, FrictionLaw
 from bench.errors import InputError
-from bench.export.mjcf import SEEN, STEPPED, armature_of
+from bench.export.mjcf import armature_of
 from bench.names import plain
-from bench.plant.model_file import TIMESTEP, StoredModel
+from bench.plant.model_file import SEEN, STEPPED, TIMESTEP, StoredModel
 from bench.structured import json_text
 
 #: Constant and resistance of a motor whose torque is its voltage: it brakes by 1e-9 N*m*s/rad.

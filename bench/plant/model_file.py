@@ -43,6 +43,10 @@ BALANCE, SAME = "torque_balance", "same_parameters"
 #: Share of the larger by which inertia, viscous and dry friction may differ from the coefficients: where they are the
 #: same, and where a file does not say so. Refinement moves an inertia by some percent, weak frictions by more.
 EQUAL, REFINED = (1e-9, 1e-9, 1e-9), (0.5, 0.9, 0.9)
+#: What makes an effect that is not native.
+STEPPED, SEEN = "bench.Effects steps it", "it is in what sensors report, not in the motion"
+#: How a simulation of `model.xml` steps the rest.
+LOADED = 'effects = bench.Effects("model.toml"); effects.step(model, data)'
 #: A value of a model is beyond what any axis has - SI.
 LARGEST_VALUE = 1e12
 #: Step that the exported MuJoCo model runs at - s.
@@ -94,6 +98,12 @@ class StoredModel:
     misalignment: float = 0.0
     mounting: Mounting = Mounting()
 
+    @property
+    def not_native(self) -> tuple[tuple[str, str], ...]:
+        """Effects that no MJCF has, each with what makes it."""
+        model = self.model
+        return tuple((p.name, STEPPED if p in model.stepped else SEEN) for p in model.effects if p not in model.native)
+
 
 def model_xml(stored: StoredModel) -> str:
     """MJCF that MuJoCo opens alone, and that attaches to any body; a comment tells what it lacks, and assumes."""
@@ -102,13 +112,25 @@ def model_xml(stored: StoredModel) -> str:
     spec.delete(spec.geom(FLOOR))
     mass = _set_masses(spec, model.parameters.kind, mounting)
     spec.compile()
-    missing = sorted({present.name for present in model.effects} - set(model.structure))
-    rest = f"; not in it, but in model.toml: {', '.join(missing)}" if missing else ""
-    notes = [f"Axis at steps of {TIMESTEP:g} s, torque as input{rest}.", mass]
+    notes = [f"Axis at steps of {TIMESTEP:g} s, torque as input.", *lacking(stored), mass]
     if mounting.gear_ratio != 1.0:
         gear = f"a gear of {mounting.gear_ratio:g}"
         notes.append(f"All of it is on the motor's side of {gear}: the joint is the motor's shaft.")
     return "".join(f"<!-- {note} -->\n" for note in notes if note) + spec.to_xml()
+
+
+def lacking(stored: StoredModel) -> list[str]:
+    """What of a model its `model.xml` lacks, and how to simulate that too, in sentences; none where it has all."""
+    by_kind = {kind: ", ".join(name for name, made in stored.not_native if made == kind) for kind in (STEPPED, SEEN)}
+    sentences = []
+    if names := by_kind[STEPPED]:
+        stepped = f"{LOADED} instead of mujoco.mj_step(model, data)"
+        if stored.mounting.gear_ratio != 1.0:  # where bench.Effects acts on the joint, and it is the motor's shaft
+            stepped = "put the model onto a joint with bench export, and step it there with bench.Effects"
+        sentences.append(f"model.xml lacks {names}. To simulate it: {stepped}.")
+    if names := by_kind[SEEN]:
+        sentences.append(f"model.xml lacks {names}, which is in what sensors report, not in the motion.")
+    return sentences
 
 
 def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:

@@ -21,7 +21,7 @@ from bench.diagnosis.where import Where
 from bench.gate.gate import warnings_of
 from bench.names import words
 from bench.packed import pack
-from bench.plant.model_file import model_toml, model_xml, tables_toml
+from bench.plant.model_file import lacking, model_toml, model_xml, tables_toml
 from bench.report import document as doc
 from bench.report.gap import at_a_glance, gap_chart, remainder, rms_gaps, states, unknown_effect, where_picture
 from bench.report.identification import recordings_json
@@ -264,6 +264,7 @@ def _answers(found: Diagnosis) -> dict[str, str]:
         missing.append(called(effect) + (f" ({', '.join(values)})" if values else ""))
     inertia = ARMATURE if ARMATURE in found.parameters else of_axis
     value = found.parameters.get(inertia)
+    lacks = [] if found.model is None else lacking(found.model)
     return {
         "What was missing?": f"{sentence('; '.join(missing)) or 'No effect of the catalogue.'}{_tabulated(found)}",
         "How sure?": _sure(found),
@@ -272,6 +273,7 @@ def _answers(found: Diagnosis) -> dict[str, str]:
         if value
         else f"Not determined together with the missing effects: {found.refused[of_axis]}",
         "What next?": following(found) or "No further recording is needed.",
+        **({"Does MuJoCo have all of it?": f"No: {' '.join(lacks)}"} if lacks else {}),
     }
 
 

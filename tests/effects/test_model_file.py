@@ -16,7 +16,9 @@ from bench.errors import InputError
 from bench.files import write_text
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import (
+    LOADED,
     TIMESTEP,
+    Mounting,
     StoredModel,
     joints_toml,
     load_joints,
@@ -128,8 +130,12 @@ def test_xml_moves_as_the_model(names):
 
 
 def test_xml_names_what_it_lacks():
-    xml = model_xml(StoredModel("axis", model("stribeck_friction", "cogging_torque")))
-    assert "not in it, but in model.toml: stribeck_friction." in xml.splitlines()[0]
+    xml = model_xml(StoredModel("axis", model("stribeck_friction", "cogging_torque", "velocity_filter_lag")))
+    assert f"<!-- model.xml lacks stribeck_friction. To simulate it: {LOADED} instead of" in xml
+    assert "<!-- model.xml lacks velocity_filter_lag, which is in what sensors report" in xml
+    assert "lacks" not in model_xml(StoredModel("axis", model("cogging_torque")))
+    geared = StoredModel("axis", model("torque_ripple"), mounting=Mounting(7.0))
+    assert "put the model onto a joint with bench export" in model_xml(geared)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,8 @@
 """Effects in a loop of one's own move a joint as the bench's own plant does, one simulation or many at once."""
 
+from pathlib import Path
+from types import SimpleNamespace
+
 import mujoco
 import numpy as np
 import pytest
@@ -12,7 +15,7 @@ from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
 from bench.export.mjcf import ArmatureShare, armature_of, onto
 from bench.plant.drive import CascadeDrive, FollowReferences, References
-from bench.plant.model_file import Mounting, StoredModel, model_toml
+from bench.plant.model_file import LOADED, Mounting, StoredModel, model_toml, model_xml
 from bench.plant.run import run
 from tests.effects.axes import CASCADE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant
 from tests.export.arms import ARM, stored
@@ -46,6 +49,24 @@ def test_it_agrees_with_the_plant(names):
     velocity = driven(plant(*names).spec().compile(), effects)
     # the native drive is MuJoCo's, which agrees with the one written out to 3e-5 of 100 rad/s (docs/plant.md)
     np.testing.assert_allclose(velocity, expected, atol=1e-4 if plant(*names).native else 1e-9)
+
+
+def test_the_line_that_model_xml_states_moves_it_as_the_plant(tmp_path, monkeypatch):
+    """In a loop around the file alone; without the line it moves otherwise."""
+    names = ("stribeck_friction", "torque_ripple", "position_dependent_inertia", "unbalance")
+    expected, stored = run(plant(*names), REFERENCES).velocity, StoredModel("axis", model(*names))
+    (tmp_path / "model.xml").write_text(model_xml(stored), encoding="utf-8")
+    (tmp_path / "model.toml").write_text(model_toml(stored), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert LOADED in Path("model.xml").read_text(encoding="utf-8")
+    made = dict[str, object](bench=bench)
+    exec(LOADED.split(";")[0], made)
+    xml = mujoco.MjModel.from_xml_path("model.xml")
+    xml.opt.timestep = PERIOD
+    loaded, plain = (driven(xml, stepped) for stepped in (made["effects"], SimpleNamespace(step=mujoco.mj_step)))
+    # the file's numbers have six digits, and its friction is for steps twice as long
+    assert np.abs(loaded - expected).max() < 1e-3 * np.abs(expected).max()
+    assert np.abs(plain - expected).max() > 20.0 * np.abs(loaded - expected).max()
 
 
 def test_it_agrees_on_a_joint_behind_a_gear(tmp_path):

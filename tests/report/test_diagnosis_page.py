@@ -10,6 +10,8 @@ from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.name import NamedEffect
 from bench.diagnosis.reason import Reason
 from bench.effects.catalogue import catalogue
+from bench.effects.present import Present
+from bench.plant.model_file import LOADED
 from bench.report.diagnosis import diagnosis, verdict_sentence
 from bench.report.document import Chart, Table, TimeGraph
 from bench.report.gap import _telling
@@ -158,6 +160,18 @@ def test_a_page_says_where_no_model_could_be_had(diagnosed):
     assert page.answers["Does it move like the axis now?"].startswith("Not known")
     (graph,) = blocks(page, TimeGraph)
     assert [panel.label for panel in graph.panels] == ["speed", "torque", "torque, measured less modelled"]
+
+
+def test_a_page_says_what_mujoco_lacks_of_the_model(diagnosed):
+    question, ripple = (
+        "Does MuJoCo have all of it?",
+        Present.of("torque_ripple", {"relative_amplitude": 0.1, "harmonic": 4.0}),
+    )
+    assert question not in diagnosis(diagnosed, "t").answers
+    model = diagnosed.model.model
+    more = replace(diagnosed.model, model=model.with_effects((*model.effects, ripple)))
+    answer = diagnosis(replace(diagnosed, model=more), "t").answers[question]
+    assert answer.startswith(f"No: model.xml lacks torque_ripple. To simulate it: {LOADED} ")
 
 
 def test_tables_have_a_cell_for_each_heading(page):
