@@ -27,7 +27,7 @@ def plain(text: str) -> str:
 
 def words(name: str) -> str:
     """A name of the bench in words, e.g. `Coulomb friction torque` for `coulomb_friction_torque`."""
-    return _PERSONS.sub(lambda match: match[0].capitalize(), name.replace("_", " "))
+    return _PERSONS.sub(lambda match: match[0].capitalize(), name.replace("_", " ").replace("back emf", "back-EMF"))
 
 
 def cell(text: str) -> str:

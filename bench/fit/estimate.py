@@ -59,6 +59,21 @@ class Alone:
     reason: str = ""
 
 
+@dataclass(frozen=True)
+class MotorConstants:
+    """Constants of a motor, as `bench.fit.motor` finds them.
+
+    Attributes:
+        parameters: those that the recording determines, by name.
+        refused: why it does not determine others, by name.
+        supply: lowest and highest supply voltage, where that is recorded - V.
+    """
+
+    parameters: Mapping[str, Parameter]
+    refused: Mapping[str, str]
+    supply: tuple[float, float] | None = None
+
+
 @dataclass(frozen=True, repr=False)
 class Estimate(Presented):
     """Result of an identification; by a parameter's name it gives the parameter, and it goes through their names.
@@ -75,6 +90,7 @@ class Estimate(Presented):
         checks: results of the gate.
         recordings: the estimate by each alone, where several were fitted together.
         between: their spread, by name of a quantity that at least two of them determine alone.
+        motor: constants of the motor, where a voltage is recorded.
         of: rig and recordings, where they are in memory, for a figure.
     """
 
@@ -90,6 +106,7 @@ class Estimate(Presented):
     checks: tuple[Check, ...] = ()
     recordings: tuple[Alone, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
+    motor: MotorConstants | None = None
     of: tuple[Rig, tuple[Trace, ...]] | None = field(default=None, compare=False)
 
     def __getitem__(self, name: str) -> Parameter:
@@ -139,6 +156,7 @@ class Estimate(Presented):
                 tuple(Check(**one) for one in table["checks"]),
                 tuple(alone),
                 spread,
+                _stored_motor(table.get("motor")),
             )
         except (KeyError, TypeError, AttributeError) as error:
             raise InputError(path, f"holds no estimate ({error})", "allowed: what Estimate.save writes") from error
@@ -151,6 +169,13 @@ def _with_nan(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def _stored(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Parameter]:
     return {name: Parameter(**{**_with_nan(one), "ci95": (*one["ci95"],)}) for name, one in table.items()}
+
+
+def _stored_motor(table: Mapping[str, Any] | None) -> MotorConstants | None:
+    if table is None:
+        return None
+    supply = table["supply"]
+    return MotorConstants(_stored(table["parameters"]), table["refused"], None if supply is None else (*supply,))
 
 
 class RefusedEstimateError(UndeterminedError):

@@ -40,6 +40,7 @@ from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, 
 from bench.fit.fit import by_hint
 from bench.fit.hum import mains
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
+from bench.fit.motor import motor_constants
 from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
     NOISE_ALONE,
@@ -57,6 +58,7 @@ from bench.parameter import Parameter
 from bench.rig.given import Given, GivenRig, Units, given
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
+from bench.trace.trace import join as join_traces
 
 #: Normal equations of a part of a recording, None where it never moves clearly, number of its samples, its checks.
 Summed = tuple[NormalEquations | None, int, tuple[Check, ...]]
@@ -98,7 +100,14 @@ def identify(
         found = _estimated_alone(gathered[0], gathered[0].solution, rig)
     else:
         found = _estimated_together(gathered, rig)
-    return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
+    motor = motor_constants(join_traces([one.first for one in gathered]), rig, found, _only)
+    return replace(found, motor=motor, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
+
+
+def _only(trace: Trace, rig: Rig) -> Estimate:
+    """Inertia and friction of a recording alone."""
+    gathered = _gather(trace, rig, None)
+    return _estimated_alone(gathered, gathered.solution, rig)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +126,7 @@ class Gathered:
         tolerance: half widths of coefficients from the rig's tolerances.
         warnings: about the cut-off.
         checks: of all parts.
+        first: of its parts that moves clearly.
     """
 
     solution: Solution
@@ -130,6 +140,7 @@ class Gathered:
     tolerance: Mapping[Name, float]
     warnings: tuple[str, ...]
     checks: tuple[Check, ...]
+    first: Trace
 
     def solved(self, offset: bool) -> Solution:
         """Its solution with or without a constant."""
@@ -176,6 +187,7 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
         tolerance=_by_tolerance(first, rig, found),
         warnings=chosen.warnings,
         checks=checks,
+        first=first,
     )
 
 

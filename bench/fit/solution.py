@@ -175,15 +175,17 @@ class NormalEquations:
 def equations_of(rows: Rows, laid: Layout, edges: NDArray[np.int64] | None = None) -> NormalEquations:
     """Normal equations of columns that are laid out and, behind them, a constant; of blocks between edges (b + 1,)."""
     edges = block_edges(rows.time, rows.conditioning.filter.width) if edges is None else edges
-    products = _products(np.vstack([laid.columns.T, np.ones(laid.effort.size), laid.effort]), edges)
-    return NormalEquations(
-        names=(*laid.owners, OFFSET),
-        gram=products[:, :-1, :-1],
-        moment=products[:, :-1, -1],
-        power=products[:, -1, -1],
-        rows=np.diff(edges),
-        noise=np.pad(laid.noise, (0, 1)),
-    )
+    table = np.vstack([laid.columns.T, np.ones(laid.effort.size), laid.effort])
+    return equations((*laid.owners, OFFSET), table, np.pad(laid.noise, (0, 1)), edges)
+
+
+def equations(names: tuple[Name, ...], table: Array, noise: Array, edges: NDArray[np.int64]) -> NormalEquations:
+    """Normal equations of columns of these names, which with the effort behind them are the rows of a table (p + 1, m).
+
+    `noise`: of the columns in a row (p, p); `edges`: of the blocks (b + 1,).
+    """
+    sums = _products(table, edges)
+    return NormalEquations(names, sums[:, :-1, :-1], sums[:, :-1, -1], sums[:, -1, -1], np.diff(edges), noise)
 
 
 def _products(table: Array, edges: NDArray[np.int64]) -> Array:

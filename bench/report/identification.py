@@ -17,12 +17,13 @@ import numpy as np
 from bench.arrays import Array
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS, AxisKind
 from bench.comparison.spread import Between
-from bench.fit.estimate import Alone, Estimate, modelled_effort
+from bench.fit.estimate import Alone, Estimate, MotorConstants, modelled_effort
+from bench.fit.motor import SPEED
 from bench.fit.solution import NOISE_ALONE
 from bench.gate.gate import gate, warnings_of
 from bench.names import readable, words
 from bench.report import document as doc
-from bench.report.numbers import effort_word, interval, number, share, unit_text
+from bench.report.numbers import brief, effort_word, interval, number, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
 from bench.report.serial import known, picked, serialised
@@ -34,6 +35,8 @@ if TYPE_CHECKING:  # MuJoCo: 0.1 s
     from bench.fit.refine import Refinement
 
 SCHEMA = "bench.identify/1"
+#: Revolutions per minute of 1 rad/s.
+RPM = 30.0 / math.pi
 #: Recordings whose motion is drawn; of more, the first ones.
 DRAWN = 6
 
@@ -66,7 +69,7 @@ def identification_json(
         },
         "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
         "filter": {"cutoff": known(estimate.cutoff), "unit": "Hz", "source": estimate.source},
-        **picked(estimate, "checks", "warnings"),
+        **picked(estimate, "motor", "checks", "warnings"),
     }
     return serialised(content if refinement is None else {**content, "refinement": refinement})
 
@@ -137,7 +140,7 @@ def identification(
         motions: of its recordings, for a page and pictures; () without.
     """
     alone = recordings_table(estimate.recordings, estimate.between, estimate.parameters)
-    tables = (parameters_table("The axis", estimate.parameters), *alone)
+    tables = (parameters_table("The axis", estimate.parameters), *_of_motor(estimate.motor), *alone)
     sections = [doc.section("parameters", "Parameters", *tables), checks_section(estimate.checks, estimate.warnings)]
     if motions:
         graphs = (_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
@@ -225,11 +228,29 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
         "How sure?": sure,
         "Residual?": f"{left}.",
         "From what?": f"{basis}.",
+        **({} if estimate.motor is None else {"Motor?": _motor(estimate.motor)}),
         **polished,
         "What next?": "The residual is noise. A recording of another motion can confirm it."
         if _noise(estimate)
         else "`bench diagnose` searches for what acts in addition to inertia and friction.",
     }
+
+
+def _of_motor(motor: MotorConstants | None) -> list[doc.Table]:
+    """Constants of the motor; none without a recorded voltage."""
+    return [parameters_table("The motor", motor.parameters)] if motor is not None and motor.parameters else []
+
+
+def _motor(motor: MotorConstants) -> str:
+    """What voltage and current show of the motor, and why not the rest."""
+    found = [f"{words(name)} {brief(one)}" for name, one in motor.parameters.items()]
+    speed = motor.parameters.get(SPEED)
+    if speed is not None and speed.unit.startswith("rad"):
+        found.append(f"KV {number(speed.value * RPM, 'rpm/V', 3)}")
+    if motor.supply is not None:
+        found.append(f"supply {number(motor.supply[0])} to {number(motor.supply[1], 'V')}")
+    refused = (f"{words(name)} cannot be determined: {why}" for name, why in motor.refused.items())
+    return f"{'; '.join([*found, *refused])}."
 
 
 def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeGraph:

@@ -361,7 +361,7 @@ class Rig(RigTable):
         return self.motor.force_per_volt is None and self.motor.torque_per_volt is None
 
     def _effort_of_voltage(self, trace: Trace) -> tuple[Array, str]:
-        gain, voltage = self.motor.force_per_volt or self.motor.torque_per_volt, self._voltage(trace)
+        gain, voltage = self.motor.force_per_volt or self.motor.torque_per_volt, self.voltage(trace)
         if gain is not None:
             return voltage * gain, self.effort_unit
         constant, resistance = self.motor.torque_per_ampere, self.motor.resistance
@@ -371,7 +371,16 @@ class Rig(RigTable):
             return constant.torque(current), self.effort_unit
         return voltage, "V"
 
-    def _voltage(self, trace: Trace) -> Array:
+    @property
+    def stated_inertia(self) -> float | None:
+        """Of all that moves, on the motor's side - kg*m**2 (kg), where the motor's and the load's are stated."""
+        if not self.motor.inertia or self.load is None:
+            return None
+        return (
+            self.motor.inertia + (self.load.gear_inertia or 0.0) + self.load.reflected(self.load.disk(self.axis_kind))
+        )
+
+    def voltage(self, trace: Trace) -> Array:
         """Of the motor (n,) - V; InputError for a duty cycle where nothing tells the supply's voltage."""
         if trace.units["voltage"] == "V":
             return trace["voltage"]

@@ -201,7 +201,9 @@ def _scaled(
     of: ServoLog, rig: Rig | None, model: JointModel | None, known: bool, progress: Callable[[float], None]
 ) -> tuple[ServoFit, Callable[[Mapping[str, float]], float] | None]:
     """The fit, and how its values give the inertia - kg*m**2 (kg); None where nothing gives the scale of torques."""
-    fit, stated = None, model.inertia if model is not None else _stated_inertia(rig)
+    fit, stated = None, rig.stated_inertia if rig is not None else None
+    if model is not None:
+        stated = model.inertia
     if known:
         fit = fitted(of, {}, progress)
         scale = fit.parameter(lambda values: values["mobility"], "")
@@ -210,13 +212,6 @@ def _scaled(
     if stated is None:
         return (fit if fit is not None else fitted(of, {}, progress)), None
     return fitted(of, {"mobility": 1.0 / stated} if known else {}, progress), lambda values: stated
-
-
-def _stated_inertia(rig: Rig | None) -> float | None:
-    """Of all that moves, on the motor's side - kg*m**2 (kg), where a rig states the motor's and the load's."""
-    if rig is None or not rig.motor.inertia or rig.load is None:
-        return None
-    return rig.motor.inertia + (rig.load.gear_inertia or 0.0) + rig.load.reflected(rig.load.disk(rig.axis_kind))
 
 
 def _require_answered(of: ServoLog, fit: ServoFit) -> None:

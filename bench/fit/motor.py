@@ -1,0 +1,280 @@
+"""Constants of a motor from a recording of its voltage, with its current where that is recorded too.
+
+    U = kS*sgn(w) + kV*w + kA*a            voltage and motion, by the names of WPILib's SysId
+    U = R*I + L*dI/dt + Ke*w               voltage, current and motion
+    kT = J*a/I  or  M/I                    from a known inertia J, or the known torque M of a weight
+
+U - voltage - V; I - current - A; w, a - speed, acceleration - rad/s, rad/s**2 (m/s, m/s**2); kS - V; kV, Ke - V*s/rad
+(V*s/m); kA - V*s**2/rad (V*s**2/m); R - ohm; kT - N*m/A (N/A).
+
+A voltage that is held between samples, or sent late, acts s later than it is recorded. s and the winding's L/R look
+alike - dU/dt differs from R*dI/dt only by the slow Ke*a - but s makes R and kA smaller: columns I, w, dI/dt are right
+for s = 0, and I, w, dU/dt for L = 0. R and kA are between the two, and their intervals cover what may be L/R.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bench.arrays import NORMAL95, Array, rms, splined
+from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
+from bench.errors import InputError, UndeterminedError
+from bench.fit.estimate import Estimate, MotorConstants
+from bench.fit.solution import INDEPENDENT_SHARE, block_edges, equations, estimated, misfit, solved
+from bench.gate.check import Seen
+from bench.gate.velocity import compared
+from bench.names import words
+from bench.parameter import Parameter
+from bench.rig.rig import Rig
+from bench.trace.filter import GaussianFilter
+from bench.trace.motion import ONE_SIGN, condition, known_sign, raw_speed
+from bench.trace.noise import white_noise
+from bench.trace.signals import KNOWN_TORQUE
+from bench.trace.trace import Trace
+
+#: Names of the coefficients of the equation of motion whose effort is a voltage.
+FEEDFORWARD = {COULOMB: "kS", VISCOUS: "kV", INERTIA: "kA", OFFSET: "kG"}
+RESISTANCE, BACK_EMF, SPEED = "resistance", "back_emf_constant", "speed_constant"
+#: A constant whose interval is wider to one side than this share of it is not determined.
+DETERMINED = 0.5
+#: Values by which a rig makes torque of a voltage or a current.
+SCALES = ("torque_constant", "force_constant", "torque_per_volt", "force_per_volt", "resistance", "back_emf_constant")
+SCALES += ("continuous_stall_torque", "continuous_stall_current", "peak_torque", "peak_current")
+#: Samples by which the motion must be late for a voltage to be held between samples.
+HELD = 0.25
+#: Longest L/R of a winding whose rig does not give it - s: small motors have 0.1 to 2 ms.
+LONGEST = 5e-3
+#: Inertia and friction of the effort that a signal of a recording is.
+By = Callable[[str, Trace], Estimate]
+#: Rows for each coefficient, and what to record for them.
+LEAST = 20
+STEPS = "steps of the voltage in both directions, from standstill to full speed"
+
+
+def motor_constants(
+    trace: Trace, rig: Rig, found: Estimate, identified: Callable[[Trace, Rig], Estimate]
+) -> MotorConstants | None:
+    """Of a recording and its estimate; None where it holds no voltage.
+
+    `identified`: inertia and friction of another recording of the axis, by its rig.
+    """
+    if "voltage" not in trace:
+        return None
+    known, refused = dict[str, Parameter](), dict[str, str]()
+    constant = f"{rig.axis_kind.effort}_constant"
+    parts = {"kS, kV, kA": _feedforward}
+    if "current" in trace:
+        parts |= {f"{RESISTANCE}, {BACK_EMF}": _circuit, constant: _scale}
+
+    def by(signal: str, of: Trace) -> Estimate:
+        """Inertia and friction of the effort that a signal of a recording is, in its unit."""
+        if of is trace and found.residual.unit == {"voltage": "V", "current": "A"}[signal]:
+            return found
+        only = of.with_signals({"voltage": rig.voltage(of)}, {"voltage": "V"})
+        for name in {"voltage", "current", rig.axis_kind.effort} - {signal}:
+            only = only.without(name) if name in only else only
+        return identified(only, _without_scales(rig))
+
+    for name, of in parts.items():
+        try:
+            known |= of(trace, rig, by)
+        except UndeterminedError as error:
+            refused[name] = f"{error.reason}; record instead: {error.record}"
+        except InputError as error:
+            refused[name] = str(error)
+    if constant in refused and BACK_EMF in known:
+        ideal = f"{known[BACK_EMF].value:.4g} {rig.axis_kind.effort_unit}/A"
+        refused[constant] += f"; in a motor without losses it is {ideal}, as the back-EMF constant"
+    supply = trace.signals.get("supply_voltage")
+    return MotorConstants(known, refused, None if supply is None else (float(supply.min()), float(supply.max())))
+
+
+def _without_scales(rig: Rig) -> Rig:
+    """A rig that makes no torque of voltage or current."""
+    return rig.model_copy(update={"motor": rig.motor.model_copy(update=dict.fromkeys(SCALES))})
+
+
+def _feedforward(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:
+    """kS, kV, kA, and kG of a constant load where it is fitted."""
+    if KNOWN_TORQUE in trace or _weighted(rig):
+        raise UndeterminedError("kS, kV, kA", "a known load acts in addition", "the axis without it")
+    names = {rig.axis_kind.parameter(term): name for term, name in FEEDFORWARD.items()}
+    late, found = rig.axis_kind.parameter(MISALIGNMENT), by("voltage", trace).parameters
+    total = -found[late].value
+    if total > HELD * trace.sample_period:  # a voltage that is held: as exactly later as that makes it
+        acting = trace.with_signals({"voltage": _held(trace, rig)}, {"voltage": "V"})
+        found = by("voltage", acting).parameters
+        total = 0.5 * trace.sample_period - found[late].value
+    known = {name: found[own] for own, name in names.items() if own in found}
+    if "kA" in known and "kV" in known:
+        low, high = _electrical(total, trace.sample_period, rig)
+        known["kA"] = _between(known["kA"], low * known["kV"].value, high * known["kV"].value)
+    return known
+
+
+def _held(trace: Trace, rig: Rig) -> Array:
+    """A voltage that is held from each sample to the next, as it acts at the samples - V - (n,).
+
+    Half a sample later, by a spline, and weaker by sin(x)/x = 1 - x**2/6 with x = w*T/2 for a period T.
+    """
+    voltage = rig.voltage(trace)
+    later = voltage.copy()
+    for part in trace.segments:
+        if part.stop - part.start > 3:
+            middle = splined(voltage[part], 2)[0][1::2]
+            middle[1:-1] += np.diff(middle, 2) / 24.0
+            later[part.start + 1 : part.stop] = middle
+    return later
+
+
+def _electrical(total: float, period: float, rig: Rig) -> tuple[float, float]:
+    """Least and most of a delay of the motion behind the voltage that may be L/R of the winding - s.
+
+    The rest is a delay of the voltage: a sample period at most, where that suffices.
+    """
+    motor, total = rig.motor, max(total, 0.0)
+    stated = motor.electrical_time_constant
+    if motor.inductance is not None and motor.resistance:
+        stated = motor.inductance / motor.resistance
+    if stated is not None:
+        return min(stated, total), min(stated, total)
+    return (total - period if period < total < period + LONGEST else 0.0), min(total, LONGEST)
+
+
+def _between(found: Parameter, low: float, high: float) -> Parameter:
+    """A parameter larger by something between two bounds, which its interval covers."""
+    value, half = found.value + 0.5 * (low + high), found.half_width + 0.5 * abs(high - low)
+    return replace(found, value=value, std_error=half / NORMAL95, ci95=(value - half, value + half))
+
+
+def _weighted(rig: Rig) -> bool:
+    """Whether a known weight pulls."""
+    return rig.load is not None and rig.load.eccentric_mass is not None
+
+
+def _scale(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:
+    """Torque (force) per current, from a known weight or inertia - N*m/A (N/A)."""
+    kind, torque, share = rig.axis_kind, 1.0, 0.0
+    name = f"{kind.effort}_constant"
+    if _weighted(rig):
+        per = _by_weight(trace, rig)
+    elif rig.stated_inertia:
+        found, winding = by("current", trace).parameters, _circuit(trace, rig, by)
+        torque, shift = rig.stated_inertia, found[kind.parameter(MISALIGNMENT)].value
+        # of the current as a whole, or only of the part that is not induced
+        induced = winding[BACK_EMF].value / winding[RESISTANCE].value
+        per = _between(found[kind.inertia], *sorted((0.0, induced * shift)))
+        moved = [(one.stated_inertia or 0.0) / torque - 1.0 for one in rig.within_tolerance()]
+        share = rms(np.array([*moved, 0.0])) * (len(moved) + 1) ** 0.5
+    else:
+        record = "the same, with the inertias of motor and load, or a weight (load.eccentric_mass), in the rig"
+        raise UndeterminedError(name, f"neither an inertia nor a weight is known that scales the {kind.effort}", record)
+    if not 0.0 < per.half_width < DETERMINED * per.value:
+        raise UndeterminedError(name, f"the current that it takes is {per}", STEPS)
+    value = torque / per.value
+    low, high = (torque / bound for bound in reversed(per.ci95))
+    found = Parameter(value, f"{kind.effort_unit}/A", value * per.std_error / per.value, (low, high))
+    return {name: found.widened(share * value)}
+
+
+def _by_weight(trace: Trace, rig: Rig) -> Parameter:
+    """Current for the torque of a known weight - A/(N*m) -, beside inertia, friction and the zero of the sensor."""
+    assert rig.load is not None
+    at, pull = condition(trace, trace["current"]), rig.load.gravity_torque(trace["position"])
+    source = trace[at.source]
+    sign = known_sign(raw_speed(source, at.source, trace.sample_period), at.sign_threshold)
+    signals = pull, sign, np.ones(len(trace)), source, source, trace["current"], trace["current"]
+    orders = 0, 0, 0, at.order, at.order + 1, 1, 0
+    time, table = _filtered(trace, at.filter, signals, orders)
+    moving = np.abs(table[1]) > 1.0 - ONE_SIGN
+    loud = 0.0, 0.0, 0.0, at.source_noise, at.source_noise, at.effort_noise
+    noise = [(size * at.filter.noise_gain(order)) ** 2 for size, order in zip(loud, orders, strict=False)]
+    return _regressed(time[moving], table[:, moving], noise, at.effort_noise, at.filter)[0]
+
+
+def _circuit(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:
+    """R and Ke, and one over Ke."""
+    late = compared(Seen(trace)) if {"position", "velocity"} <= set(trace.signals) else None
+    if late is not None and abs(late[1]) > 0.5 * trace.sample_period:
+        trace = trace.without("velocity")  # which a filter of the drive makes late
+    at, voltage, kind = condition(trace, trace["current"]), rig.voltage(trace), rig.axis_kind
+    loud = at.effort_noise, at.source_noise, at.effort_noise
+    noise = [(size * at.filter.noise_gain(order)) ** 2 for size, order in zip(loud, (0, at.order, 1), strict=True)]
+    own = white_noise(*(voltage[part] for part in trace.segments))
+
+    def fitted(volts: Array, lag: Array, known: float) -> list[Parameter]:
+        """R, Ke and what a third signal's rate takes, of a noise - V, A - that is known."""
+        signals = trace["current"], trace[at.source], lag, volts
+        time, table = _filtered(trace, at.filter, signals, (0, at.order, 1, 0))
+        return _regressed(time, table, [*noise[:2], known], own, at.filter)
+
+    in_step = fitted(voltage, trace["current"], noise[2])
+    total = in_step[2].value / max(in_step[0].value, 1e-300)
+    acting = _held(trace, rig) if total > HELD * trace.sample_period else voltage
+    held = fitted(acting, acting, 0.0)
+    low, high = (part / total if total > 0.0 else 0.0 for part in _electrical(total, trace.sample_period, rig))
+    names = {RESISTANCE: "ohm", BACK_EMF: f"V*s/{kind.length_unit}"}
+    known = {}
+    for (name, unit), one, other in zip(names.items(), held, in_step, strict=False):
+        away = other.value - one.value
+        known[name] = replace(_between(one, low * away, high * away), unit=unit)
+    _require_motor(known)
+    emf = known[BACK_EMF]
+    low, high = (1.0 / bound for bound in reversed(emf.ci95))
+    known[SPEED] = Parameter(1.0 / emf.value, f"{kind.length_unit}/(V*s)", emf.std_error / emf.value**2, (low, high))
+    return known
+
+
+def _require_motor(known: Mapping[str, Parameter]) -> None:
+    """UndeterminedError where no motor has these constants, or a recording hardly determines one."""
+    for name, found in known.items():
+        if found.value <= 0.0:
+            reason = f"{words(name)} would be {found}: a sign is wrong, or the current is the supply's"
+            raise UndeterminedError(words(name), reason, "current and voltage of the motor, positive where it drives")
+        if found.half_width > DETERMINED * found.value:
+            raise UndeterminedError(words(name), f"{words(name)} would be {found}", STEPS)
+
+
+def _filtered(
+    trace: Trace, smooth: GaussianFilter, signals: Sequence[Array], orders: Sequence[int]
+) -> tuple[Array, Array]:
+    """Times (m,) and filtered derivatives of these orders of signals (n,) each - (p, m)."""
+    times, tables = [], []
+    for part in trace.segments:
+        if part.stop - part.start > 2 * smooth.margin:
+            of = [[(values[part], order)] for values, order in zip(signals, orders, strict=True)]
+            tables.append(smooth.columns(of))
+            times.append(trace.time[part][smooth.margin : part.stop - part.start - smooth.margin : smooth.stride])
+    return np.concatenate(times), np.concatenate(tables, axis=1)
+
+
+def _regressed(
+    time: Array, table: Array, noise: Sequence[float], own: float, smooth: GaussianFilter
+) -> list[Parameter]:
+    """Coefficients of columns, the last of a table (p + 1, m) by the others, with intervals, without unit.
+
+    Args:
+        time: of the rows (m,).
+        noise: variance of the noise in each column (p,).
+        own: of the raw signal that they explain.
+        smooth: the filter of all.
+
+    Raises:
+        UndeterminedError: the others explain the first or the second column.
+    """
+    names = tuple(range(len(table) - 1))
+    fitted = equations(names, table, np.diag(noise), block_edges(time, smooth.width))
+    if time.size < LEAST * len(names) or min(fitted.independent_shares(names)[:2]) < INDEPENDENT_SHARE:
+        raise UndeterminedError("constants of the motor", "current and motion change in the same way", STEPS)
+    theta, inverse = solved(fitted.total, fitted.moment.sum(axis=0), fitted.count * fitted.noise)
+    covariance, reach = estimated(fitted.scores(theta), inverse, own**2 / smooth.stride)
+    floor = float(np.sqrt((own * smooth.noise_gain(0)) ** 2 + theta**2 @ np.array(noise)))
+    beyond = misfit(table[:-1].T, table[-1] - theta @ table[:-1], floor)
+    errors = np.sqrt(np.diag(covariance))
+    return [
+        Parameter(value, "", error, (value - reach * error, value + reach * error)).widened(wide)
+        for value, error, wide in zip(theta.tolist(), errors.tolist(), beyond.tolist(), strict=True)
+    ]
