@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 
@@ -109,6 +111,32 @@ def test_values_and_stamps_must_pair(tmp_path):
     path = write_utf16(tmp_path / "run.trace", machine_expert_xml({"A.Velocity": (range(5), [1.0, 2.0])}))
     with pytest.raises(InputError, match=r"variable 'A.Velocity': found 2 values and 5 time stamps"):
         read(path)
+
+
+@pytest.mark.parametrize("separator", [",", ";"])
+def test_decimal_commas_are_read(tmp_path, separator):
+    """Between commas too, where each number has one, so that there are twice as many parts as time stamps."""
+    stamps = np.arange(200)
+    xml = machine_expert_xml({"A.Velocity": (stamps, velocity(stamps / 1e3)), "A.Current": (stamps, stamps - 9.5)})
+    point = read(write_utf16(tmp_path / "point.trace", xml))
+    changed = re.sub("(?<=<Values>)[^<]*", lambda found: found[0].replace(",", separator).replace(".", ","), xml)
+    comma = read(write_utf16(tmp_path / "comma.trace", changed))
+    for name in ("velocity", "current"):
+        assert np.array_equal(comma[name], point[name])
+
+
+def test_decimal_commas_that_cannot_be_told_from_separators_are_refused(tmp_path):
+    """`1,5,2,3,25`: some numbers are whole. With ; between them, as advised, they are read."""
+    values, stamps = ["1,5", "2", "3,25"] * 50, ",".join(map(str, range(150)))
+    for separator in (",", ";"):
+        xml = machine_expert_xml({"A.Velocity": ([], [])})
+        xml = xml.replace("<Values></Values>", f"<Values>{separator.join(values)}</Values>")
+        xml = xml.replace("<Timestamps></Timestamps>", f"<Timestamps>{stamps}</Timestamps>")
+        path = write_utf16(tmp_path / "run.trace", xml)
+        if separator == ",":
+            with pytest.raises(InputError, match=r"found 250 values and 150 time stamps.*with ; between numbers"):
+                read(path)
+    np.testing.assert_allclose(np.rad2deg(read(path)["velocity"])[:3], [1.5, 2.0, 3.25])
 
 
 def test_sample_of_the_csv_export():

@@ -107,6 +107,31 @@ def test_thousands_with_commas_and_decimal_points(tmp_path):
     holds(read(written(tmp_path / "run.csv", [";".join(NAMES)], rows)))
 
 
+@pytest.mark.parametrize("column", [1, 2])
+@pytest.mark.parametrize("part", [slice(None), slice(300), slice(300, None)], ids=["all", "first half", "second half"])
+def test_decimal_points_among_decimal_commas(tmp_path, column, part):
+    """In a column of a file with decimal commas, or in half of it: three digits behind a mark are no thousands."""
+    rows = [row.split(";") for row in lines(";", ",")]
+    for row in rows[part]:
+        row[column] = row[column].replace(",", ".")
+    holds(read(written(tmp_path / "run.csv", [";".join(NAMES)], map(";".join, rows))))
+
+
+def test_marks_that_may_be_either_are_refused(tmp_path):
+    """12,345 next to 12.345, without a number that tells whether 12,345 is twelve thousand."""
+    rows = [f"{k};{12 + k / 1000:.3f};{k}" for k in range(SAMPLES)]
+    rows[400:] = [row.replace(".", ",") for row in rows[400:]]
+    with pytest.raises(InputError, match=r"found decimal commas and decimal points in the column 'velocity'"):
+        read(written(tmp_path / "run.csv", [";".join(NAMES)], rows))
+
+
+@pytest.mark.parametrize("whole", [False, True])
+def test_decimal_commas_between_commas_are_refused(tmp_path, whole):
+    rows = [f"{k},5,{'3' if whole else '3,5'},{k},25" for k in range(SAMPLES)]
+    with pytest.raises(InputError, match=r"line 2: found [56] cells under 3 names: numbers with decimal commas"):
+        read(written(tmp_path / "run.csv", [",".join(NAMES)], rows))
+
+
 def clock(seconds, style):
     whole, milli = divmod(round(seconds * 1e3), 1000)
     hours, rest = divmod(whole, 3600)

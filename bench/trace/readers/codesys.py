@@ -101,16 +101,28 @@ def _recording(
 def _variable(element: ElementTree.Element, units: Mapping[str, str | None], time_unit: str, path: str) -> Channel:
     name = element.get("VarName", "?")
     place = f"{path}: variable '{name}'"
-    values, times = (_list(element, tag, place) for tag in ("Values", "Timestamps"))
+    times = _list(element, "Timestamps", place)
+    values = _list(element, "Values", place, times.size)
     if values.size != times.size:
-        raise InputError(place, f"found {values.size} values and {times.size} time stamps", "allowed: as many of both")
+        found, allowed = f"found {values.size} values and {times.size} time stamps", "allowed: as many of both"
+        if times.size < values.size < 2 * times.size:  # some numbers have a decimal comma, and which cannot be told
+            allowed += ", with decimal points, or with ; between numbers that have decimal commas"
+        raise InputError(place, found, allowed)
     return Channel(name, units.get(name), values, path, time=Channel(f"{name} time stamps", time_unit, times, path))
 
 
-def _list(element: ElementTree.Element, tag: str, place: str) -> Array:
-    """Numbers of a list, TRUE and FALSE as 1 and 0 - (n,); InputError naming the place of one that is none."""
+def _list(element: ElementTree.Element, tag: str, place: str, count: int = 0) -> Array:
+    """Numbers of a list, TRUE and FALSE as 1 and 0 - (n,); InputError naming the place of one that is none.
+
+    Decimal commas are read where semicolons separate the numbers, and where commas make twice as many parts as the
+    `count` of numbers: then each has one.
+    """
     text = (element.findtext(tag) or "").strip()
     texts = text.split(",") if text else []
+    if ";" in text:
+        texts = text.replace(",", ".").strip("; ").split(";")
+    elif count and len(texts) == 2 * count:
+        texts = [f"{whole}.{part}" for whole, part in zip(texts[::2], texts[1::2], strict=True)]
     try:
         return np.array(texts, dtype=np.float64)
     except ValueError:

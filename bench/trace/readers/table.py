@@ -99,9 +99,24 @@ def _read(source: Source) -> Recording:
         layout = _layout_of(source)
     if layout is None:
         raise _no_table(source)
+    _require_apart(layout, source.path)
     samples = utf8(source.content).split(b"\n", layout.start)[-1]
     channels, found = read_lines(samples, layout.start + 1, layout, source.path)
     return Recording(channels, TABLE.format, source.path, notes=(*notes, *found))
+
+
+def _require_apart(layout: TableLayout, path: str) -> None:
+    """InputError where decimal commas stand between commas, so that lines have more cells than there are names."""
+    width = len(layout.labels)
+    names = max((len(cells_of(line, ",")) for line in layout.head), default=0)
+    if (
+        layout.separator == ","
+        and names < width <= 2 * names
+        and all(label.startswith("column ") for label in layout.labels)
+    ):
+        found = f"found {width} cells under {names} names: numbers with decimal commas, and commas between them"
+        allowed = "allowed: semicolons or tabs between numbers with decimal commas, or decimal points"
+        raise InputError(f"{path}: line {layout.start + 1}", found, allowed)
 
 
 def _no_table(source: Source) -> InputError:
@@ -360,6 +375,9 @@ def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel
     lower = pc.utf8_lower(filled)
     filled = pc.if_else(pc.equal(lower, "true"), "1", pc.if_else(pc.equal(lower, "false"), "0", filled))
     plain = _without_groups(filled, decimal)
+    if plain is None:
+        found = f"found decimal commas and decimal points in the column '{channel.name}'"
+        return replace(channel, defect=InputError(channel.origin, found, "allowed: one of them"))
     try:
         return replace(channel, values=floats(pc.cast(plain, pa.float64())))
     except pa.ArrowInvalid:
@@ -368,14 +386,29 @@ def _of_text(channel: Channel, column: pa.ChunkedArray, decimal: str) -> Channel
         return replace(channel, defect=InputError(channel.place(sample), found, "allowed: a number"))
 
 
-def _without_groups(texts: pa.ChunkedArray, decimal: str) -> pa.ChunkedArray:
-    """Numbers without marks between thousands, and with a decimal point."""
+def _without_groups(texts: pa.ChunkedArray, decimal: str) -> pa.ChunkedArray | None:
+    """Numbers without marks between thousands, and with a decimal point; None where a mark may be either.
+
+    A file whose other numbers have a decimal comma may have points between thousands, or a column with decimal points.
+    """
     pc = compute()
-    group = r"\." if decimal == "," else ","
-    grouped = pc.match_substring_regex(
-        texts, rf"^[+-]?\d{{1,3}}(?:[{group}'’ \x{{00a0}}\x{{202f}}]\d{{3}})+(?:{re.escape(decimal)}\d*)?$"
-    )
-    bare = pc.replace_substring_regex(texts, rf"[{group}'’ \x{{00a0}}\x{{202f}}]", "")
+    mark = "." if decimal == "," else ","
+
+    def written(pattern: str) -> pa.ChunkedArray:
+        return pc.match_substring_regex(texts, rf"^[+-]?{pattern}(?:[eE][+-]?\d+)?$")
+
+    def any_of(found: pa.ChunkedArray) -> bool:
+        return bool(pc.any(found).as_py())
+
+    other = re.escape(mark)
+    # behind a zero, four digits, or in front of other than three digits no mark separates thousands
+    if any_of(written(rf"(?:(?:0|\d{{4,}})?{other}\d+|\d+{other}(?:\d{{0,2}}|\d{{4,}}))")):
+        return pc.replace_substring(texts, ",", ".")
+    groups = rf"[{other}'’ \x{{00a0}}\x{{202f}}]"
+    grouped = written(rf"\d{{1,3}}(?:{groups}\d{{3}})+(?:{re.escape(decimal)}\d*)?")
+    if any_of(written(rf"\d{{1,3}}{other}\d{{3}}")) and any_of(written(rf"\d+{re.escape(decimal)}\d+")):
+        return None
+    bare = pc.replace_substring_regex(texts, groups, "")
     plain = pc.if_else(grouped, bare, texts)
     return pc.replace_substring(plain, ",", ".") if decimal == "," else plain
 
