@@ -7,7 +7,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.presented import Presented, Renderer
+from bench.names import nearest
+from bench.presented import Renderer, Shown
 
 if TYPE_CHECKING:
     from bench.baseline.check import Checked, check
@@ -80,14 +81,14 @@ def _renderer() -> Renderer:
     return notebook
 
 
-Presented.renderer = staticmethod(_renderer)
+Shown.renderer = staticmethod(_renderer)
 
 
 def __getattr__(name: str) -> object:
     if name not in _MODULES:
-        raise AttributeError(f"module 'bench' has no attribute '{name}'")
+        raise AttributeError(f"bench has no '{name}'{nearest(name, __all__)}; allowed: {', '.join(__all__)}")
     return getattr(import_module(_MODULES[name]), name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return [*__all__]

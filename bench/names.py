@@ -5,8 +5,11 @@ from __future__ import annotations
 import difflib
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import TypeVar
+
+T = TypeVar("T")
 
 #: Control characters (a terminal obeys them), those that turn the direction of text, and halves of surrogates (no
 #: encoding has them; Python reads file names that are not UTF-8 so). Line ends and tabs are not among them.
@@ -15,6 +18,9 @@ _OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u206
 _PERSONS = re.compile(r"\b(coulomb|stribeck)\b")
 #: What a cut may have left of a word; what is longer is none.
 _FIRST_WORD, _LAST_WORD = re.compile(r"^\S{0,19}\s+"), re.compile(r"\s+\S{0,19}$")
+#: Words of a quantity's name that may be left out, and symbols of the equation of motion.
+_FILLING = frozenset(("moment", "of", "moving", "coefficient", "torque", "force"))
+_SYMBOLS = {"J": "inertia", "m": "mass", "K_w": "viscous_friction", "K_0": "coulomb_friction"}
 _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 
 
@@ -56,6 +62,23 @@ def short(text: str, most: int = 200) -> str:
         return text
     half = (most - 5) // 2
     return f"{_LAST_WORD.sub('', text[:half])} ... {_FIRST_WORD.sub('', text[-half:])}"
+
+
+def meant(name: str, known: Mapping[str, T]) -> T:
+    """The entry of a name, or of one without the words that tell no two entries apart; KeyError with the nearest.
+
+    `inertia` or `J` is the moment of inertia, `coulomb_friction` or `K_0` the Coulomb friction torque.
+    """
+    if name not in known:
+        alike = [each for each in known if _telling(each) == _telling(_SYMBOLS.get(name, name))]
+        if len(alike) != 1:
+            raise KeyError(f"{name}: found none{nearest(name, [*known])}; allowed: {', '.join(known) or 'none'}")
+        (name,) = alike
+    return known[name]
+
+
+def _telling(name: str) -> frozenset[str]:
+    return frozenset(name.split("_")) - _FILLING
 
 
 def nearest(name: str, names: list[str]) -> str:

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
+import numpy as np
 import scipy  # its special functions load when first used: 0.2 s
+from numpy.lib.mixins import NDArrayOperatorsMixin
+from numpy.typing import DTypeLike, NDArray
 
 from bench.arrays import NORMAL95
+from bench.presented import ByName
 
 #: Level of the interval that is reported.
 LEVEL = 0.95
@@ -18,8 +23,8 @@ LOPSIDED = 2.0
 
 
 @dataclass(frozen=True)
-class Parameter:
-    """An identified quantity.
+class Parameter(ByName, NDArrayOperatorsMixin):
+    """An identified quantity; in arithmetic, comparisons and functions of NumPy it is its value.
 
     Attributes:
         value: in `unit`.
@@ -35,6 +40,16 @@ class Parameter:
 
     def __float__(self) -> float:
         return float(self.value)
+
+    def __round__(self, digits: int = 0) -> float:
+        return round(float(self.value), digits)
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.array(self.value, dtype=dtype)
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: object) -> Any:  # noqa: ANN401
+        values = (one.value if isinstance(one, Parameter) else one for one in inputs)
+        return getattr(ufunc, method)(*values, **options)
 
     def __str__(self) -> str:
         if self.lopsided:

@@ -5,15 +5,25 @@ The public package `bench` provides the renderer, as it is above both results an
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeAlias
+
+from bench.errors import InputError
+from bench.names import nearest
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+
+#: Width and height - inch.
+Size: TypeAlias = tuple[float, float]
 
 
 class Renderer(Protocol):
-    """What shows any result: a function for each method of `Presented`."""
+    """What shows any result: a function for each method of `Shown` and `Presented`."""
 
     def text(self, result: object, /) -> str:
         """Text of one screen."""
@@ -23,16 +33,26 @@ class Renderer(Protocol):
         """HTML of a cell."""
         ...
 
-    def plot(self, result: object, axes: Axes | None, /) -> Axes:
-        """The axes drawn into."""
+    def plot(
+        self, result: object, names: Sequence[str], ax: Axes | None, figsize: tuple[float, float] | None, /
+    ) -> Any:  # noqa: ANN401
+        """The axes drawn into: one, or an array of them."""
         ...
 
-    def content(self, result: object, /) -> dict[str, Any]:
+    def json(self, result: object, /) -> str:
         """The contract's JSON."""
         ...
 
+    def content(self, result: object, /) -> dict[str, Any]:
+        """The same as plain values."""
+        ...
+
     def frame(self, result: object, /) -> Any:  # noqa: ANN401 - of pandas or polars
-        """A row for each quantity."""
+        """A row for each sample of signals, or for each quantity."""
+        ...
+
+    def residuals(self, result: object, /) -> NDArray[np.float64]:
+        """Measured less modelled effort."""
         ...
 
     def save(self, result: object, path: Path, /) -> None:
@@ -40,8 +60,25 @@ class Renderer(Protocol):
         ...
 
 
-class Presented:
-    """A result with methods that show it.
+class ByName:
+    """What `[name]` gives is an attribute, too."""
+
+    if not TYPE_CHECKING:  # a checker of types shall find attributes that are mistyped
+
+        def __getattr__(self, name: str) -> object:
+            own = vars(self)
+            if not name.startswith("_") and own:
+                try:
+                    return self[name]
+                except (LookupError, TypeError, InputError):
+                    known = sorted(each for each in {*dir(type(self)), *own} if not each.startswith("_"))
+                    found = f"{type(self).__name__} has no '{name}'{nearest(name, known)}; allowed: {', '.join(known)}"
+                    raise AttributeError(found) from None
+            raise AttributeError(name)
+
+
+class Shown(ByName):
+    """Signals or a result, which can be drawn and made a table.
 
     Attributes:
         renderer: loads what shows it, when that is first needed.
@@ -49,26 +86,21 @@ class Presented:
 
     renderer: ClassVar[staticmethod[[], Renderer]]
 
-    def __repr__(self) -> str:
-        return self.renderer().text(self)
+    def plot(self, *names: str, ax: Axes | None = None, figsize: Size | None = None) -> Any:  # noqa: ANN401
+        """Draw it, and return the axes of matplotlib: one, or an array of several.
 
-    def _repr_html_(self) -> str:
-        return self.renderer().small_page(self)
-
-    def plot(self, axes: Axes | None = None) -> Axes:
-        """Draw what it shows into these axes, or into a new figure's, and return them.
+        Args:
+            names: of what is drawn, e.g. of signals; all of it by default.
+            ax: axes to draw the only or the first of them into, instead of a new figure.
+            figsize: width and height of the new figure - inch.
 
         Raises:
-            InputError: an estimate that was read from a file: it has no recording beside it.
+            InputError: no such name, or an estimate that was read from a file: it has no recording beside it.
         """
-        return self.renderer().plot(self, axes)
-
-    def to_dict(self) -> dict[str, Any]:
-        """All of it as numbers and texts, as `--json` writes it."""
-        return self.renderer().content(self)
+        return self.renderer().plot(self, names, ax, figsize)
 
     def to_frame(self) -> Any:  # noqa: ANN401 - of whichever of the two is there
-        """Quantities with intervals, a row each, as a data frame of pandas or, without it, of polars.
+        """Signals over time, or quantities with intervals, as a data frame of pandas or, without it, of polars.
 
         Raises:
             InputError: neither is installed.
@@ -76,5 +108,26 @@ class Presented:
         return self.renderer().frame(self)
 
     def save(self, path: str | Path) -> None:
-        """Write all of it into a JSON file, as `--json` does; a diagnosis into a folder, with model and page."""
+        """Write all of it into a file: signals in the format of the path's ending (CSV, Parquet), a result as `--json`.
+
+        A diagnosis is written into a folder, with model and page.
+        """
         self.renderer().save(self, Path(path))
+
+
+class Presented(Shown):
+    """A result with methods that show it."""
+
+    def __repr__(self) -> str:
+        return self.renderer().text(self)
+
+    def _repr_html_(self) -> str:
+        return self.renderer().small_page(self)
+
+    def to_json(self) -> str:
+        """All of it as JSON, as `--json` writes it."""
+        return self.renderer().json(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as numbers and texts."""
+        return self.renderer().content(self)

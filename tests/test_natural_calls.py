@@ -3,14 +3,18 @@
 Each gives the right number, or one line that names the argument, what was found and what is allowed.
 """
 
+import inspect
+import json
 import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib import pyplot
 
 import bench
 from bench.assets import asset
@@ -82,6 +86,11 @@ def names(tmp_path_factory):
         assert (done.status, "wrote out/diagnosis.npz" in done.out) == (0, True), done.err
         assert command("identify", "cogged.csv", "--rig", "rig.toml", "--out", "estimated").status == 0
     known["found"] = bench.Diagnosis.load(folder / "out")
+    known["est"], known["trace"] = bench.identify(df, TABLES), plain
+    known["rep"] = bench.replay(known["found"], cogged, TABLES)
+    known["chk"] = bench.check(df, NUMBERS, folder / "axis.toml")
+    known["sim"] = bench.simulate(folder / "lab.toml", "fast_reversals")
+    known["ax"] = mpl.figure.Figure().subplots()
     return folder, known
 
 
@@ -138,6 +147,74 @@ def test_a_natural_call_gives_the_right_number(names, monkeypatch, call):
     monkeypatch.chdir(folder)
     found = eval(call, dict(known))
     assert found == (RIGHT[call] if isinstance(RIGHT[call], str) else pytest.approx(RIGHT[call], rel=0.03))
+
+
+#: What a person does with a result who knows pandas, scikit-learn and matplotlib, and what of it is true.
+OF_RESULTS = """
+est["inertia"] == est["J"] == est.inertia == est.moment_of_inertia == est["moment_of_inertia"]
+float(est.K_w) == est["viscous_friction"].value
+2 * est.inertia == est.inertia * 2 == est.inertia + est.inertia
+est.inertia / 2e-4 == float(est.inertia) / 2e-4
+1e4 * est.inertia > 1 > est.inertia > 0
+-est["coulomb_friction"] < 0 < est["coulomb_friction"] ** 2
+np.isclose(est.inertia, INERTIA, rtol=0.03)
+np.sqrt(est.inertia) == np.sqrt(est.inertia.value)
+abs(est.inertia) == est.inertia.value == round(est.inertia, 12) or abs(round(est.inertia, 6) - 1.5e-3) < 1e-6
+np.array([*est.values()]).dtype == float
+dict(est.items()) == dict(est)
+est.get("no_such") is None and est.get("inertia") is est.inertia
+"inertia" in est and "mass" not in est
+pd.Series(est).astype(float)["moment_of_inertia"] == est.inertia.value
+json.loads(est.to_json()) == est.to_dict()
+est.plot(ax=ax) is ax and est.plot(figsize=(6, 4)).figure.get_size_inches().tolist() == [6.0, 4.0]
+abs(est.residuals.std() / est.residual.rms - 1) < 0.1
+trace.velocity is trace["velocity"] and [*trace] == [*trace.keys()] == ["velocity", "current", "position"]
+len(trace.plot()) == 3 and trace.plot("velocity", ax=ax) is ax
+trace.to_frame().velocity.mean() == trace["velocity"].mean()
+len(trace[100:2000]) == 1900 and trace[100:2000].time[0] == trace.time[100]
+(round(trace.sample_rate), round(trace.duration, 3)) == (1000, 2.999)
+trace.save("t.csv") is None and len(bench.read("t.csv")) == len(trace)
+found.names == ["cogging_torque"] and len(found) == 1 and bool(found)
+float(found.cogging_torque.amplitude) == float(found["cogging_torque"]["amplitude"])
+found.probabilities["cogging_torque"] > 0.9
+found.residuals.std() < 0.3 * found.torque.identify[0]
+found.plot(ax=ax) is ax and found.plot(figsize=(8, 3)) is not ax
+len(rep.plot()) == 2 and rep.plot("torque", ax=ax) is ax
+len(rep.to_frame()) == len(rep.time) == rep.torque_residuals.size == rep.velocity_residuals.size
+chk.plot().get_xlabel() and set(chk.to_frame().result) == {"same"}
+sim["velocity"] is sim.velocity is sim.trace["velocity"] and len(sim.plot()) == len([*sim.trace])
+bench.identify(sim, "lab.toml").inertia > 0 and len(sim.to_frame()) == len(sim.trace)
+set(dir(bench)) == set(bench.__all__)
+"lambda" not in help_of(bench.diagnose) and "chance=" not in help_of(bench.diagnose)
+""".strip().splitlines()
+
+
+@pytest.mark.parametrize("line", OF_RESULTS)
+def test_results_behave_as_numbers_tables_and_pictures(names, monkeypatch, line):
+    folder, known = names
+    monkeypatch.chdir(folder)
+    assert eval(line, {**known, "INERTIA": INERTIA, "json": json, "help_of": lambda of: str(inspect.signature(of))})
+    pyplot.close("all")
+
+
+#: What a result does not have, and what the one line proposes.
+ABSENT = {
+    "est.params": r"Estimate has no 'params', did you mean 'parameters'",
+    "est.to_dataframe()": r"did you mean 'to_frame'",
+    "est.inertia.half_widht": r"Parameter has no 'half_widht', did you mean 'half_width'",
+    "trace.sampling_rate": r"Trace has no 'sampling_rate', did you mean 'sample_rate'",
+    "found.probability": r"Diagnosis has no 'probability', did you mean 'probabilities'",
+    "found['moment_of_inertia']": r"found no such effect; allowed: \.parameters\['moment_of_inertia'\]",
+    "bench.load": r"bench has no 'load', did you mean 'load_rig'",
+    "trace.plot('speed')": r"plot\(\) of Trace: found 'speed'; allowed: velocity, current, position",
+}
+
+
+@pytest.mark.parametrize("line", ABSENT)
+def test_what_a_result_does_not_have_is_one_helpful_line(names, line):
+    with pytest.raises((AttributeError, KeyError, bench.InputError), match=ABSENT[line]) as refused:
+        eval(line, dict(names[1]))
+    assert "\n" not in str(refused.value)
 
 
 #: Calls, and what the one line says.

@@ -50,7 +50,7 @@ def test_every_name_is_what_type_checkers_think_it_is():
 
 
 def test_a_name_it_does_not_have_is_an_error():
-    with pytest.raises(AttributeError, match="module 'bench' has no attribute 'identfy'"):
+    with pytest.raises(AttributeError, match="bench has no 'identfy', did you mean 'identify'"):
         bench.identfy  # noqa: B018
 
 

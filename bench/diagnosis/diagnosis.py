@@ -25,7 +25,7 @@ from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.same_axis import SameAxis, between_recordings
 from bench.diagnosis.tabulated import UNKNOWN, UnknownEffect, remaining
 from bench.diagnosis.verdict import Gap, verdict
-from bench.diagnosis.where import Where, where
+from bench.diagnosis.where import Where, filtered_away, where
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.present import named
@@ -37,7 +37,7 @@ from bench.fit.stored import Balance
 from bench.gate.check import Check
 from bench.gate.gate import joined, passed
 from bench.gate.signals import clipped
-from bench.names import nearest
+from bench.names import meant
 from bench.packed import unpack
 from bench.parameter import Parameter
 from bench.plant.model_file import StoredModel, model_xml
@@ -119,7 +119,9 @@ class Considered:
 
 @dataclass(frozen=True, repr=False)
 class Diagnosis(Presented):
-    """What is missing from the model of an axis, and the model with it; goes through its effects, or gives one by name.
+    """What is missing from the model of an axis, and the model with it.
+
+    It iterates over its effects, and gives one by its name, which is an attribute, too.
 
     Attributes:
         verdict, effects, parameters: as the contract has them.
@@ -172,13 +174,28 @@ class Diagnosis(Presented):
         return iter(self.effects)
 
     def __contains__(self, name: object) -> bool:
-        return name in {effect.name for effect in self}
+        return name in self.names
+
+    def __len__(self) -> int:
+        return len(self.effects)
+
+    def __bool__(self) -> bool:
+        return True  # without an effect it is a result, too
 
     def __getitem__(self, name: str) -> NamedEffect:
-        found = {effect.name: effect for effect in self}
-        if name not in found:
-            raise KeyError(f"{name}: found none{nearest(name, [*found])}; allowed: {', '.join(found) or 'none'}")
-        return found[name]
+        if name in self.parameters:
+            raise KeyError(f"{name}: found no such effect; allowed: .parameters[{name!r}], as it is of the axis")
+        return meant(name, {effect.name: effect for effect in self})
+
+    @property
+    def names(self) -> list[str]:
+        """Of its effects."""
+        return [effect.name for effect in self.effects]
+
+    @property
+    def residuals(self) -> Array:
+        """Measured less modelled torque of the recording, with all that was found - N*m (N) - (m,)."""
+        return self.time_series[0].torque_residuals[-1]
 
     @classmethod
     def load(cls, folder: str | Path) -> Diagnosis:
@@ -203,8 +220,8 @@ def diagnose(
     rig: GivenRig | None = None,
     holdout: Given | None = None,
     excluded: Collection[str] = (),
-    progress: Callable[[float], None] = lambda share: None,
-    policy: Policy = POLICY,
+    progress: Callable[[float], None] | None = None,
+    policy: Policy | None = None,
     units: Units | None = None,
 ) -> Diagnosis:
     """Find what is missing, name it, add it, and show the gap shrink.
@@ -216,13 +233,14 @@ def diagnose(
         holdout: another recording of it, not used to fit.
         excluded: names of effects that are not tried, or of one.
         progress: called with the share done.
-        policy: numbers that decide on names.
+        policy: numbers that decide on names, instead of POLICY.
         units: of columns by their names, which replace those of the file or data frame.
 
     Raises:
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
         InputError: rig and recording do not fit together, or a check of a recording fails.
     """
+    policy, told = policy or POLICY, progress or (lambda share: None)
     rig, traces = recordings_of(trace, rig, units)
     left_out = frozenset(named(one, "excluded").name for one in ([excluded] if isinstance(excluded, str) else excluded))
     gated = [passed(each, rig) for each in traces]
@@ -233,9 +251,9 @@ def diagnose(
     if recordings.rows is not bare.rows:
         bare = fit_bare(recordings.rows)
         suspects = replace(suspects, fitted=fit(recordings.rows, suspects.fitted.hypothesis, suspects.fitted))
-    progress(0.6)
+    told(0.6)
     added = add(recordings, suspects)
-    progress(0.9)
+    told(0.9)
     shown, checks = show(bare, added), joined([each.checks for each in gated])
     return replace(shown, checks=checks, warnings=[*shown.warnings, *recordings.warnings, *moves])
 
@@ -266,6 +284,7 @@ def show(bare: Fit, added: Added) -> Diagnosis:
     series = time_series(added)
     steps = gaps_of_steps(added, series)
     torque, velocity = gaps(added, steps)
+    residuals = [whole.left, *series[0].torque_residuals[len(added.stages) :]]
     likely = added.suspects.probabilities.without(frozenset(name for name, _ in added.rejected))
     comes_to, objections = verdict(added, likely, torque, velocity)
     return Diagnosis(
@@ -273,7 +292,7 @@ def show(bare: Fit, added: Added) -> Diagnosis:
         objections=objections,
         effects=added.effects,
         probabilities=likely,
-        where=where(bare, kind, unit, current, [whole.left, *series[0].torque_residuals[len(added.stages) :]]),
+        where=where(bare, kind, unit, current, residuals, filtered_away(whole)),
         unexplained_share=whole.excess / max(bare.squares, 1e-300),
         unexplained_where=where(whole, kind, unit, current)[:3] if objections else [],
         parameters=parameters,

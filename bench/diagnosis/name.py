@@ -29,11 +29,13 @@ from bench.fit.fit import Fit, fit, hint, shaped, unbiased
 from bench.fit.hypothesis import BASE, Term
 from bench.fit.quantities import uncertain
 from bench.fit.solution import solution_of
+from bench.names import meant
 from bench.parameter import Parameter
+from bench.presented import ByName
 
 
 @dataclass(frozen=True)
-class NamedEffect:
+class NamedEffect(ByName):
     """An effect that the recording shows.
 
     Attributes:
@@ -49,7 +51,7 @@ class NamedEffect:
     evidence: Mapping[str, float]
 
     def __getitem__(self, name: str) -> Parameter:
-        return self.parameters[name]
+        return meant(name, self.parameters)
 
     @property
     def name(self) -> str:

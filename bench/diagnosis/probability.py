@@ -38,6 +38,7 @@ from bench.effects.signals import Scope
 from bench.fit.fit import Fit, fit
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
+from bench.names import meant
 
 #: Share of the noise power below which a residual beyond noise no longer counts.
 BESIDE_NOISE = 0.03
@@ -77,6 +78,9 @@ class Probabilities:
     detected: frozenset[str] = frozenset()
     with_unknown: Mapping[str, float] = field(default_factory=dict)
     fits: Mapping[frozenset[str], Fit] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> float:
+        return meant(name, self.names)
 
     @cached_property
     def names(self) -> dict[str, float]:

@@ -20,6 +20,7 @@ from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
 from bench.plant.model_file import LARGEST_VALUE, StoredModel, load_model, read_table
 from bench.plant.tracking import track
+from bench.presented import Shown
 from bench.rig.given import Given, GivenRig, Units, rig_of, trace_of
 from bench.rig.rig import Rig
 from bench.structured import csv_text
@@ -30,7 +31,7 @@ LEFT = 0.2
 
 
 @dataclass(frozen=True, repr=False)
-class Replay:
+class Replay(Shown):
     """Signals at every sample of a recording, all (n,); nan where the model says nothing.
 
     Attributes:
@@ -59,11 +60,21 @@ class Replay:
     @property
     def summary(self) -> str:
         """Both gaps in one line; without the one that the model says nothing about."""
-        torque, left = known_rms(self.torque), known_rms(self.torque - self.torque_simulated)
-        velocity, apart = known_rms(self.velocity), known_rms(self.velocity - self.velocity_simulated)
+        torque, left = known_rms(self.torque), known_rms(self.torque_residuals)
+        velocity, apart = known_rms(self.velocity), known_rms(self.velocity_residuals)
         of_torque = f"torque gap {left:.4g} of {torque:.4g} {self.effort_unit}"
         of_velocity = f"velocity gap {apart:.4g} of {velocity:.4g} {self.speed_unit}"
         return f"{of_torque}, {of_velocity}" if np.isfinite(self.velocity_simulated).any() else of_torque
+
+    @property
+    def velocity_residuals(self) -> Array:
+        """Measured less simulated velocity (n,) - rad/s (m/s)."""
+        return self.velocity - self.velocity_simulated
+
+    @property
+    def torque_residuals(self) -> Array:
+        """The same of the torque (n,) - N*m (N)."""
+        return self.torque - self.torque_simulated
 
     @property
     def measured(self) -> dict[str, Array]:

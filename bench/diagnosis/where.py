@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,10 +11,14 @@ from numpy.typing import NDArray
 from bench.arrays import Array, hann, spectra
 from bench.axis_kind import INERTIA, AxisKind
 from bench.fit.fit import Fit
+from bench.fit.hypothesis import unfiltered
 from bench.fit.rows import Rows
 
 #: Number of bins of a coordinate, and rows that a bin contains: fewer bins of a short recording.
 BINS, LEAST = 48, 12
+#: Bins of equal width that are drawn - of a wave of 24 periods a turn their means keep 98 % -, rows that one has at
+#: least, and points of a curve for each of them.
+DRAWN, FEWEST, FINER = 192, 4, 4
 #: Distance of rows in widths of the filter beyond which their noise is uncorrelated: the correlation is exp(-9).
 CORRELATED = 6.0
 
@@ -28,8 +32,10 @@ class Where:
         region: bounds of the bins with most of it - unit.
         unit: of the region.
         share: of the gap's variance, 0 to 1.
-        centres, means: bins and the gap's mean in each - unit, N*m (N) - for the plot.
+        centres, means: bins of equal width and the gap's mean in each - unit, N*m (N) - for the plot; of the part that
+            effects explain without what the filter takes from it.
         after: the same means with all effects, then with the tables of an unknown effect; () of a frequency.
+        curve: what the effects together explain, in finer bins - unit, N*m (N) - (c,); None of a frequency.
     """
 
     coordinate: str
@@ -39,6 +45,7 @@ class Where:
     centres: Array
     means: Array
     after: tuple[Array, ...] = ()
+    curve: tuple[Array, Array] | None = None
 
 
 #: A coordinate along the rows of a recording: its name, as `Where` has it, the values by which rows are sorted into
@@ -47,7 +54,12 @@ Coordinate = tuple[str, Array, str, Array]
 
 
 def where(
-    fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | None = None, after: Sequence[Array] = ()
+    fitted: Fit,
+    kind: AxisKind,
+    effort_unit: str,
+    current: Array | None = None,
+    after: Sequence[Array] = (),
+    sharp: Array | None = None,
 ) -> list[Where]:
     """Shares of every coordinate of the gap that a fit leaves, largest first.
 
@@ -57,8 +69,10 @@ def where(
         effort_unit: of the effort.
         current: as reported at the rows - A - (m,); None where another effort is.
         after: residuals of later models, for `Where.after` - N*m (N) - (m,) each.
+        sharp: what the filter takes from the torque of their effects - N*m (N) - (m,).
     """
-    found = [_account(one, fitted, after) for one in coordinates(fitted, kind, effort_unit, current)]
+    explained = None if not after else fitted.left - after[0] + (0.0 if sharp is None else sharp)
+    found = [_account(one, fitted, after, explained) for one in coordinates(fitted, kind, effort_unit, current)]
     found.append(_frequency(fitted))
     return sorted(found, key=lambda account: -account.share)
 
@@ -85,11 +99,20 @@ def coordinates(fitted: Fit, kind: AxisKind, effort_unit: str, current: Array | 
 
 def bins_of(values: Array) -> NDArray[np.int64]:
     """Bin of each row (m,): of equal count, or of one value each where there are few."""
-    distinct, index = np.unique(values, return_inverse=True)
     most = int(np.clip(values.size // LEAST, 1, BINS))
+    return _between(values, most, lambda: np.unique(np.quantile(values, np.linspace(0.0, 1.0, most + 1))))
+
+
+def equal_bins_of(values: Array, most: int) -> NDArray[np.int64]:
+    """Bin of each row (m,): so many of equal width, or of one value each where there are few."""
+    return _between(values, most, lambda: np.linspace(values.min(), values.max(), most + 1))
+
+
+def _between(values: Array, most: int, edges: Callable[[], Array]) -> NDArray[np.int64]:
+    distinct, index = np.unique(values, return_inverse=True)
     if distinct.size > most:
-        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, most + 1)))
-        index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+        bounds = edges()
+        index = np.clip(np.searchsorted(bounds, values, side="right") - 1, 0, bounds.size - 2)
     return np.asarray(index, dtype=np.int64)
 
 
@@ -127,13 +150,21 @@ def by_chance(index: NDArray[np.int64], kept: NDArray[np.bool_], rows: Rows) -> 
     return max(own - whole * float(np.mean(kept[index])), 0.0) / max(time.size - whole, 1.0)
 
 
-def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array]) -> Where:
+def filtered_away(fitted: Fit) -> Array:
+    """What the filter takes from the torque of a fit's terms, where they have one without it - N*m (N) - (m,)."""
+    taken = np.zeros(fitted.left.size)
+    for index, torque in unfiltered(fitted.rows, fitted.hypothesis, fitted.found).items():
+        own = fitted.owners == index
+        taken += torque - fitted.columns[:, own] @ fitted.theta[own]
+    return taken
+
+
+def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array], explained: Array | None) -> Where:
     """Share of variance between bins, less what chance puts between them."""
     name, values, unit, labels = coordinate
     gap = fitted.residual - fitted.residual.mean()
     index = bins_of(values)
-    count, means = np.bincount(index), means_in(index, gap)
-    centres = means_in(index, labels)
+    count, means, centres = np.bincount(index), means_in(index, gap), means_in(index, labels)
     kept = count >= LEAST
     between, total = float(np.sum(count[kept] * means[kept] ** 2)), float(np.sum(gap**2))
     chance = total * by_chance(index, kept, fitted.rows)
@@ -142,8 +173,21 @@ def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array]) -> Whe
     weight = np.cumsum((count * means**2)[order])
     main = order[: int(np.searchsorted(weight, 0.5 * weight[-1])) + 1]
     region = (float(centres[main].min()), float(centres[main].max()))
-    before, *later = (means_in(index, values)[kept] for values in (fitted.left, *after))
-    return Where(name, region, unit, share, centres[kept], before, tuple(later))
+    drawn = max(1, min(DRAWN, values.size // LEAST))
+    index = equal_bins_of(values, drawn)
+    kept = np.bincount(index) >= FEWEST
+    gaps = [fitted.left if explained is None else explained + after[0], *after]
+    centres, before, *later = (means_in(index, of)[kept] for of in (labels, *gaps))
+    curve = None if explained is None else _curve(equal_bins_of(values, FINER * drawn), labels, explained)
+    return Where(name, region, unit, share, centres, before, tuple(later), curve)
+
+
+def _curve(index: NDArray[np.int64], labels: Array, explained: Array) -> tuple[Array, Array]:
+    """What effects explain over a coordinate (c,), in bins of at least a row, as it has no noise."""
+    filled = np.bincount(index) > 0
+    at, torque = (means_in(index, of)[filled] for of in (labels, explained))
+    order = np.argsort(at)
+    return at[order], torque[order]
 
 
 def _frequency(fitted: Fit) -> Where:

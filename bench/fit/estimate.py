@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, KeysView, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from bench.comparison.spread import Between
 from bench.errors import InputError, UndeterminedError
 from bench.files import read_text
 from bench.gate.check import Check
-from bench.names import nearest
+from bench.names import meant
 from bench.parameter import Parameter
 from bench.presented import Presented
 from bench.rig.rig import Rig
@@ -75,8 +75,8 @@ class MotorConstants:
 
 
 @dataclass(frozen=True, repr=False)
-class Estimate(Presented):
-    """Result of an identification; by a parameter's name it gives the parameter, and it goes through their names.
+class Estimate(Presented, Mapping[str, Parameter]):
+    """Result of an identification: a mapping of names to parameters, which are attributes, too.
 
     Attributes:
         estimator: name of the method.
@@ -110,10 +110,7 @@ class Estimate(Presented):
     of: tuple[Rig, tuple[Trace, ...]] | None = field(default=None, compare=False)
 
     def __getitem__(self, name: str) -> Parameter:
-        if name not in self.parameters:
-            known = list(self.parameters)
-            raise KeyError(f"{name}: found none{nearest(name, known)}; allowed: {', '.join(known)}")
-        return self.parameters[name]
+        return meant(name, self.parameters)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.parameters)
@@ -121,12 +118,14 @@ class Estimate(Presented):
     def __len__(self) -> int:
         return len(self.parameters)
 
-    def __contains__(self, name: object) -> bool:
-        return name in self.parameters
+    @property
+    def residuals(self) -> Array:
+        """Measured less modelled effort of the first recording, where it moves in one direction - unit - (m,).
 
-    def keys(self) -> KeysView[str]:
-        """Names of the parameters."""
-        return self.parameters.keys()
+        Raises:
+            InputError: an estimate that was read from a file: it has no recording beside it.
+        """
+        return self.renderer().residuals(self)
 
     @classmethod
     def load(cls, path: str | Path) -> Estimate:

@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -314,10 +315,7 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, found: 
     term, effect = hypothesis.terms[index], hypothesis.terms[index].effect
     if not isinstance(effect, Columns):
         return np.empty((seen.effort.size, 0))
-    if effect.scales_friction or isinstance(effect, Bristles):
-        seen = _with_friction(seen, hypothesis, index, found)
-    if effect.follows_load:
-        seen = _with_load(seen, hypothesis, found)
+    seen = _seen_by_term(seen, hypothesis, index, found)
     if missing is not None:
         return _copied(seen, effect, term.shape, lag, missing)
     if not isinstance(effect, Coupling):
@@ -336,6 +334,34 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, found: 
         return seen.table(made, lag)
 
     return seen.memory.get((made_of, lag, seen.made_by), table)
+
+
+def _seen_by_term(seen: Rows, hypothesis: Hypothesis, index: int, found: Found) -> Rows:
+    """The recording with what other terms make that one is made of: dry friction, or a load."""
+    effect = hypothesis.terms[index].effect
+    if effect.scales_friction or isinstance(effect, Bristles):
+        seen = _with_friction(seen, hypothesis, index, found)
+    return _with_load(seen, hypothesis, found) if effect.follows_load else seen
+
+
+def unfiltered(rows: Rows, hypothesis: Hypothesis, found: Found) -> dict[int, Array]:
+    """Torque at the rows themselves (m,), by place, of terms that need no filter: neither derivative nor torque."""
+    seen, torques = seen_by(rows, hypothesis), dict[int, Array]()
+    for index, term in enumerate(hypothesis.terms):
+        effect = term.effect
+        if not isinstance(effect, Columns) or isinstance(effect, Coupling) or effect.copies_torque or term.on_load:
+            continue
+        own = _seen_by_term(seen, hypothesis, index, found)
+        columns = effect.columns(own.stretches[0].signals, term.shape)
+        if all(order == 0 for column in columns for _, order in column):
+            torques[index] = own.values(partial(_plain_torque, effect, term.shape, found[index]))
+    return torques
+
+
+def _plain_torque(effect: Columns, shape: Sequence[float], strengths: Sequence[float], signals: Signals) -> Array:
+    """At the samples (n,), of columns without derivatives - N*m (N)."""
+    columns = effect.columns(signals, shape)
+    return np.sum([own * values for own, ((values, _),) in zip(strengths, columns, strict=True)], axis=0)
 
 
 def _copied(seen: Rows, effect: Columns, shape: tuple[float, ...], lag: float, missing: Array) -> Array:

@@ -13,9 +13,10 @@ from bench.export.mjcf import Armature, robot_with
 from bench.jobs.process import Failure
 from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
 from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
-from bench.names import nearest
+from bench.names import meant, nearest
 from bench.plant.model_file import StoredModel
 from bench.plant.robot import AddedBody, joint_units
+from bench.presented import Shown
 from bench.rig.given import GivenRig, rig_of
 
 #: Share of the progress in which a payload is sought.
@@ -23,7 +24,7 @@ SEEKING = 0.3
 
 
 @dataclass(frozen=True)
-class IdentifiedRobot:
+class IdentifiedRobot(Shown):
     """What logs tell of a robot.
 
     Attributes:
@@ -41,6 +42,9 @@ class IdentifiedRobot:
     links: tuple[DoubtedLink, ...] = ()
     warnings: tuple[str, ...] = ()
     added: tuple[AddedBody, ...] = ()
+
+    def __getitem__(self, joint: str) -> IdentifiedJoint:
+        return meant(joint, self.joints)
 
     @property
     def answered(self) -> tuple[str, ...]:

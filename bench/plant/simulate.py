@@ -23,6 +23,7 @@ from bench.plant.profile_names import DEFAULT
 from bench.plant.profiles import MOST_TICKS, MotionLimits, plan
 from bench.plant.run import Progress, run
 from bench.plant.sensing import Sensors, reported_states
+from bench.presented import Shown
 from bench.rig.given import GivenRig, rig_of
 from bench.rig.rig import Rig
 from bench.structured import json_text
@@ -38,9 +39,9 @@ ASTRAY = 0.5
 
 
 @dataclass(frozen=True, repr=False)
-class Simulated:
+class Simulated(Shown):
     """What the sensors recorded, what of, the true motion at the drive's ticks, what the drive followed, and what the
-    user should know of the simulation.
+    user should know of the simulation; `[name]` gives a recorded signal.
     """
 
     trace: Trace
@@ -52,6 +53,9 @@ class Simulated:
     def __repr__(self) -> str:
         hidden = ", ".join(present.name for present in self.truth.effects) or "no effect"
         return f"Simulated({self.trace!r}, with {hidden})"
+
+    def __getitem__(self, name: str) -> Array:
+        return self.trace[name]
 
 
 def simulate(

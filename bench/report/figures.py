@@ -182,11 +182,14 @@ def _stacked(figure: Figure | SubFigure, chart: doc.Chart) -> None:
     figure.align_ylabels(every)
 
 
-def onto(axes: Axes, panel: doc.Panel) -> Axes:
-    """Draw a panel into axes of somebody's own figure."""
+def onto(axes: Axes, part: doc.Panel | doc.Intervals) -> Axes:
+    """Draw a panel, or intervals, into axes of somebody's own figure."""
     with rc_context(STYLE):
-        _panel(axes, panel)
-        _own_scale(axes, panel, most=2)
+        if isinstance(part, doc.Intervals):
+            _spans(axes, part)
+        else:
+            _panel(axes, part)
+            _own_scale(axes, part, most=2)
     return axes
 
 
@@ -216,8 +219,12 @@ def _panel(axes: Axes, panel: doc.Panel) -> None:
 
 
 def _intervals(figure: Figure | SubFigure, block: doc.Intervals) -> None:
+    _spans(figure.subplots(), block)
+
+
+def _spans(axes: Axes, block: doc.Intervals) -> None:
     """Rows with their values beside the axis, where nothing crosses them."""
-    axes, places = figure.subplots(), np.arange(len(block.spans))
+    places = np.arange(len(block.spans))
     low, high = block.right
     if low < high:
         axes.axvspan(low, high, color=NOISE, lw=0.0, zorder=0.5)

@@ -116,8 +116,8 @@ def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
         order = np.argsort(profile.centres)
         x, before, after, *tabulated = (v[order] for v in (profile.centres, profile.means, *profile.after))
         drawn = [noise_band(x.tolist(), found.torque.noise_floor), doc.series("gap", "dots", "ink", x, before)]
-        if found.effects:
-            drawn.append(doc.series(f"{explained}, fitted", "line", "model", x, before - after))
+        if found.effects and profile.curve is not None:
+            drawn.append(doc.series(f"{explained}, fitted", "line", "model", *profile.curve))
             drawn.append(doc.series("remaining residual", "rings", "residual", x, after))
         drawn += [doc.series(unknown_effect(found), "line", "violet", x, after - one) for one in tabulated]
         panels.append(
@@ -130,7 +130,8 @@ def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
         )
     return doc.Chart(
         title="The gap, and the effects found in it.",
-        alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate. "
+        alternative=f"Mean of measured less modelled {effort_word(found.torque.unit)} in bins of each coordinate; "
+        "torque that the filter takes from the effects is added. "
         f"Most of it depends on {most.coordinate}, {share(most.share)} of its variance.",
         y_label="gap",
         y_unit=unit_text(found.torque.unit),

@@ -1,27 +1,34 @@
-"""Results in a notebook: the `bench.presented.Renderer` of an estimate, a diagnosis or a check."""
+"""Signals and results in a notebook: the `bench.presented.Renderer` of all of them."""
 
 from __future__ import annotations
 
 import base64
-import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib import import_module
 from importlib.util import find_spec
+from json import loads as parsed
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
+from bench.arrays import Array
 from bench.axis_kind import KINDS
 from bench.baseline.check import Checked
 from bench.diagnosis.diagnosis import Diagnosis
+from bench.diagnosis.replay import Replay
 from bench.errors import InputError
 from bench.files import write_text
 from bench.fit.estimate import Estimate
 from bench.gate.plausible import UNITS
-from bench.names import words
+from bench.joints.robot import IdentifiedRobot
+from bench.names import nearest, words
+from bench.plant.simulate import Simulated
+from bench.presented import Size
 from bench.report.check import check_document, check_json
 from bench.report.diagnosis import diagnosis_json, verdict_sentence, write_diagnosis
-from bench.report.document import Panel, Paragraph, Picture, Table, series
+from bench.report.document import Chart, Colour, Intervals, Panel, Paragraph, Picture, Style, Table, series
 from bench.report.gap import at_a_glance
 from bench.report.identification import identification, identification_json, moved
 from bench.report.numbers import effort_word, sentence, unit_text
@@ -29,6 +36,8 @@ from bench.report.parts import parameters_table
 from bench.report.servo import servo, servo_json
 from bench.report.terminal import rendered
 from bench.servos.servo import Servo
+from bench.trace.trace import Trace
+from bench.trace.write import write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -69,9 +78,14 @@ def overview(result: object) -> Overview:
     raise TypeError(f"nothing is known of {type(result).__name__}")
 
 
+def json(result: object) -> str:
+    """The contract's JSON."""
+    return overview(result).json
+
+
 def content(result: object) -> dict[str, Any]:
-    """The contract's JSON as plain values."""
-    return json.loads(overview(result).json)
+    """The same as plain values."""
+    return parsed(json(result))
 
 
 def text(result: object) -> str:
@@ -107,57 +121,148 @@ def _html(table: Table) -> str:
     return f"<table>{caption}{heading}{''.join(row('td', cells) for cells in table.rows)}</table>"
 
 
-def plot(result: object, axes: Axes | None = None) -> Axes:
-    """An estimate: measured and modelled effort over time. A diagnosis: the gap and what was found in it."""
-    if isinstance(result, Diagnosis):
-        chart = at_a_glance(result)[-1]
-        panel = chart.panels[0].model_copy(update={"y_label": f"{chart.y_label} / {chart.y_unit}"})
-    elif isinstance(result, Estimate):
-        panel = _along(result)
-    else:
-        raise InputError("plot()", f"found {type(result).__name__}", "allowed: an estimate or a diagnosis")
+def plot(result: object, names: Sequence[str] = (), ax: Axes | None = None, figsize: Size | None = None) -> Any:  # noqa: ANN401 - axes, or an array of them
+    """The parts of a result with these names, each in axes of its own; into given ones the first of them."""
+    parts = parts_of(result)
+    for name in names:
+        if name not in parts:
+            found = f"found {name!r}{nearest(name, [*parts]) if isinstance(name, str) else ''}"
+            raise InputError(f"plot() of {type(result).__name__}", found, f"allowed: {', '.join(parts)}, ax=, figsize=")
     from bench.report.figures import onto
 
-    if axes is None:
-        from matplotlib import pyplot
+    chosen = [parts[name] for name in names or parts]
+    if ax is not None:
+        return onto(ax, chosen[0])
+    from matplotlib import pyplot
 
-        axes = pyplot.figure(figsize=(7.0, 3.0), layout="constrained").subplots()
-    return onto(axes, panel)
+    size = figsize or (7.0, 1.0 + 2.0 * len(chosen))
+    every = pyplot.figure(figsize=size, layout="constrained").subplots(len(chosen), 1, squeeze=False)[:, 0]
+    for axes, part in zip(every, chosen, strict=True):
+        onto(axes, part)
+    return every[0] if len(chosen) == 1 else every
 
 
-def _along(estimate: Estimate) -> Panel:
-    """Effort of the first recording, as measured and as the estimate has it."""
+def parts_of(result: object) -> dict[str, Panel | Intervals]:
+    """What can be drawn of a result, by name."""
+    match result:
+        case Trace():
+            return {name: _over_time(result.time, name, result.units[name], {"": result[name]}) for name in result}
+        case Simulated():
+            return parts_of(result.trace)
+        case Replay():
+            units = result.speed_unit, result.effort_unit
+            both = {"velocity": (result.velocity, result.velocity_simulated)}
+            both |= {"torque": (result.torque, result.torque_simulated)}
+            return {
+                name: _over_time(result.time, name, unit, {"measured": measured, "simulated": simulated})
+                for (name, (measured, simulated)), unit in zip(both.items(), units, strict=True)
+                if np.isfinite(simulated).any()
+            }
+        case Estimate():
+            time, effort, left = _along(result)
+            name, unit = effort_word(result.residual.unit), result.residual.unit
+            return {name: _over_time(time, name, unit, {"measured": effort, "modelled": effort - left})}
+        case Diagnosis():
+            return {"gap": _first_of(at_a_glance(result)[-1])}
+        case Servo():
+            (chart,) = servo(result, "").glance
+            return {"position": _first_of(chart)}
+        case Checked():
+            blocks = [part for section in check_document(result, "").sections for part in section.blocks]
+            spans = [part for part in blocks if isinstance(part, Intervals)]
+            if spans:
+                return {"differences": spans[0]}
+    raise InputError("plot()", f"found {type(result).__name__}", "allowed: what has signals or quantities to draw")
+
+
+def _first_of(chart: Chart) -> Panel:
+    return chart.panels[0].model_copy(update={"y_label": f"{chart.y_label} / {chart.y_unit}"})
+
+
+def _over_time(time: Array, name: str, unit: str, signals: Mapping[str, Array]) -> Panel:
+    """Signals of one unit over time, the last of several as the model's."""
+    styles: list[tuple[Style, Colour]] = [("wide", "ink"), ("line", "model")]
+    drawn = (
+        series(label, style, colour, time, values)
+        for (label, values), (style, colour) in zip(signals.items(), styles[-len(signals) :], strict=True)
+    )
+    return Panel(x_label="time", x_unit="s", y_label=f"{words(name)} / {unit_text(unit)}", series=tuple(drawn))
+
+
+def _along(estimate: Estimate) -> tuple[Array, Array, Array]:
+    """Time, effort and residual of the first recording where it moves (m,) each - s, unit, unit."""
     if estimate.of is None or not estimate.of[1]:
-        raise InputError("plot()", "found no recording beside the estimate", "allowed: one of recordings in memory")
+        found = "found no recording beside the estimate"
+        raise InputError("plot(), residuals", found, "allowed: one of recordings in memory")
     rig, (first, *_) = estimate.of
     (one,) = moved([Path(first.origin)], rig, estimate, lambda _: first)
-    time, unit, effort = one.motion.time, estimate.residual.unit, one.motion.effort
-    drawn = (
-        series("measured", "wide", "ink", time, effort),
-        series("modelled", "line", "model", time, effort - one.left),
-    )
-    return Panel(x_label="time", x_unit="s", y_label=f"{effort_word(unit)} / {unit_text(unit)}", series=drawn)
+    return one.motion.time, one.motion.effort, one.left
+
+
+def residuals(result: object) -> Array:
+    """Measured less modelled effort of an estimate, where its recording moves (m,)."""
+    if not isinstance(result, Estimate):
+        raise TypeError(f"nothing is known of the residuals of {type(result).__name__}")
+    left = _along(result)[2]
+    return left[np.isfinite(left)]
 
 
 def frame(result: object) -> Any:  # noqa: ANN401 - of pandas or polars
-    """A row for each quantity."""
+    """A row for each sample of signals, or for each quantity."""
     library = next((name for name in ("pandas", "polars") if find_spec(name) is not None), None)
     if library is None:
         raise InputError("to_frame()", "found neither pandas nor polars", "install one of them")
-    of: list[tuple[str, Any]] = [("axis", result)] if isinstance(result, Estimate | Diagnosis | Servo) else []
-    of += [(effect.name, effect) for effect in result.effects] if isinstance(result, Diagnosis) else []
-    columns = ("of", "quantity", "value", "unit", "std_error", "low", "high")
+    return import_module(library).DataFrame(columns_of(result))
+
+
+def columns_of(result: object) -> dict[str, Any]:
+    """Of the table of a result, by name."""
+    match result:
+        case Trace():
+            return {"time": result.time, **result.signals}
+        case Simulated():
+            return columns_of(result.trace)
+        case Replay():
+            own = ("time", "position", "position_simulated", "velocity", "velocity_simulated")
+            return {name: getattr(result, name) for name in (*own, "torque", "torque_simulated")}
+        case Checked():
+            names = "name", "result", "baseline", "now", "unit", "margin"
+            compared = [tuple(getattr(one, name) for name in names) for one in result.comparisons]
+            ends = [one.difference95 or (None, None) for one in result.comparisons]
+            rows = [(*one, *bounds) for one, bounds in zip(compared, ends, strict=True)]
+            return _by_column((*names, "low", "high"), rows)
+        case IdentifiedRobot():
+            of = {name: joint.parameters for name, joint in result.joints.items()}
+        case Diagnosis():
+            of = {"axis": result.parameters, **{effect.name: effect.parameters for effect in result.effects}}
+        case Estimate() | Servo():
+            of = {"axis": result.parameters}
+        case _:
+            raise TypeError(f"nothing is known of {type(result).__name__}")
     rows = [
         (name, quantity, one.value, one.unit, one.std_error, *one.ci95)
-        for name, found in of
-        for quantity, one in found.parameters.items()
+        for name, found in of.items()
+        for quantity, one in found.items()
     ]
-    return import_module(library).DataFrame({name: [row[k] for row in rows] for k, name in enumerate(columns)})
+    return _by_column(("of", "quantity", "value", "unit", "std_error", "low", "high"), rows)
+
+
+def _by_column(names: Sequence[str], rows: Sequence[tuple[Any, ...]]) -> dict[str, list[Any]]:
+    return {name: [row[k] for row in rows] for k, name in enumerate(names)}
 
 
 def save(result: object, path: Path) -> None:
     """A folder of a diagnosis, a file of anything else."""
-    if isinstance(result, Diagnosis):
-        write_diagnosis(path, result, path.name)
-    else:
-        write_text(path, overview(result).json + "\n")
+    match result:
+        case Diagnosis():
+            write_diagnosis(path, result, path.name)
+        case Trace():
+            write(result, path)
+        case Simulated():
+            write(result.trace, path)
+        case Replay():
+            write_text(path, result.csv())
+        case IdentifiedRobot():
+            raise InputError("save()", "found IdentifiedRobot", "allowed: write its text, robot.with_joints(folder)[0]")
+        case _:
+            write_text(path, overview(result).json + "\n")

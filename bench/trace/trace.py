@@ -9,12 +9,12 @@ not the others.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, KeysView, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, partial
 from itertools import pairwise
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array, all_finite
 from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
+from bench.presented import Shown
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, assumed_note, choose, reading_options
 from bench.trace.in_si import SampledSignal, in_si
@@ -58,7 +59,7 @@ SHORTEST, LONGEST = 1e-9, 1e6
 
 
 @dataclass(frozen=True, repr=False)
-class Trace:
+class Trace(Shown):
     """One recording of one axis, synthetic or measured.
 
     Attributes:
@@ -144,8 +145,14 @@ class Trace:
         recording = recording_of(signals, origin).stated(units)
         return assemble(recording, options_of(recording, sample_period, columns or {}))
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
-        """Values of a signal; InputError naming it when the trace does not hold it."""
+    @overload
+    def __getitem__(self, name: str) -> NDArray[np.float64]: ...
+    @overload
+    def __getitem__(self, name: slice) -> Trace: ...
+    def __getitem__(self, name: str | slice) -> NDArray[np.float64] | Trace:
+        """Values of a signal, or a part of all; InputError naming the signal that the trace does not hold."""
+        if isinstance(name, slice):
+            return replace(self, time=self.time[name], signals={key: own[name] for key, own in self.signals.items()})
         if name not in self.signals:
             raise InputError(self.origin, f"holds no {name}", f"found: {', '.join(self.signals) or 'no signal'}")
         return self.signals[name]
@@ -155,6 +162,23 @@ class Trace:
 
     def __len__(self) -> int:
         return self.time.size
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.signals)
+
+    def keys(self) -> KeysView[str]:
+        """Names of the signals."""
+        return self.signals.keys()
+
+    @property
+    def sample_rate(self) -> float:
+        """Samples per second - Hz."""
+        return 1.0 / self.sample_period
+
+    @property
+    def duration(self) -> float:
+        """From the first sample to the last - s."""
+        return float(self.time[-1] - self.time[0])
 
     @cached_property
     def sample_period(self) -> float:
@@ -194,8 +218,7 @@ class Trace:
     def between(self, start: float, stop: float) -> Trace:
         """The part with start <= time < stop - s."""
         first, last = np.searchsorted(self.time, [start, stop])
-        signals = {name: values[first:last] for name, values in self.signals.items()}
-        return replace(self, time=self.time[first:last], signals=signals)
+        return self[first:last]
 
 
 def assemble(recording: Recording, given: Mapping[str, str] | ReadingOptions | None = None) -> Trace:
