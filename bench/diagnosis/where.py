@@ -16,9 +16,9 @@ from bench.fit.rows import Rows
 
 #: Number of bins of a coordinate, and rows that a bin contains: fewer bins of a short recording.
 BINS, LEAST = 48, 12
-#: Bins of equal width that are drawn - of a wave of 24 periods a turn their means keep 98 % -, rows that one has at
-#: least, and points of a curve for each of them.
-DRAWN, FEWEST, FINER = 192, 4, 4
+#: Bins of equal width that are drawn where these tell MOST of what the effects explain - of a wave of 24 periods a
+#: turn their means keep 98 % -, rows that one has at least, and points of a curve for each bin.
+DRAWN, FEWEST, FINER, MOST = 192, 4, 4, 0.5
 #: Distance of rows in widths of the filter beyond which their noise is uncorrelated: the correlation is exp(-9).
 CORRELATED = 6.0
 
@@ -159,7 +159,7 @@ def filtered_away(fitted: Fit) -> Array:
     return taken
 
 
-def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array], explained: Array | None) -> Where:
+def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array], explained: Array | None = None) -> Where:
     """Share of variance between bins, less what chance puts between them."""
     name, values, unit, labels = coordinate
     gap = fitted.residual - fitted.residual.mean()
@@ -173,13 +173,20 @@ def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array], explai
     weight = np.cumsum((count * means**2)[order])
     main = order[: int(np.searchsorted(weight, 0.5 * weight[-1])) + 1]
     region = (float(centres[main].min()), float(centres[main].max()))
-    drawn = max(1, min(DRAWN, values.size // LEAST))
-    index = equal_bins_of(values, drawn)
+    many, few = (equal_bins_of(values, max(1, min(most, values.size // LEAST))) for most in (DRAWN, BINS))
+    fine = explained is not None and _between_bins(many, explained) > MOST
+    index = many if fine else few
     kept = np.bincount(index) >= FEWEST
     gaps = [fitted.left if explained is None else explained + after[0], *after]
     centres, before, *later = (means_in(index, of)[kept] for of in (labels, *gaps))
-    curve = None if explained is None else _curve(equal_bins_of(values, FINER * drawn), labels, explained)
+    smooth = equal_bins_of(values, FINER * DRAWN) if fine else few
+    curve = None if explained is None else _curve(smooth, labels, explained)
     return Where(name, region, unit, share, centres, before, tuple(later), curve)
+
+
+def _between_bins(index: NDArray[np.int64], values: Array) -> float:
+    """Share of the variance of values (m,) between bins."""
+    return float(np.var(means_in(index, values)[index]) / max(np.var(values), 1e-300))
 
 
 def _curve(index: NDArray[np.int64], labels: Array, explained: Array) -> tuple[Array, Array]:

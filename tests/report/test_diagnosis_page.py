@@ -20,6 +20,7 @@ from bench.report.publish import read_document
 from bench.report.verdict import reason
 from bench.rig.rig import Rig
 from tests.diagnosis.test_commands import run_of, with_unbalance
+from tests.fit.motions import recording
 
 RIG = {"name": "axis", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A", "rotor_inertia": "2 kg*cm**2"}}
 
@@ -97,6 +98,21 @@ def test_profiles_and_time_series_agree_with_the_steps(diagnosed):
         assert [each.size for each in one.after] == ([] if one.coordinate == "frequency" else [one.means.size])
     shares = [one.share for one in diagnosed.where]
     assert shares == sorted(shares, reverse=True)
+
+
+@pytest.mark.parametrize("harmonic", [6, 24])
+def test_the_picture_shows_a_wave_at_its_amplitude(harmonic):
+    """The filter takes half of the torque of 24 waves a turn and more at these speeds, bins of equal count the rest."""
+    amplitude = 0.05
+    trace = recording(np.random.default_rng(2), duration=6.0, position=True)
+    current = trace["current"] + amplitude * np.sin(harmonic * trace["position"]) / 0.8
+    trace = replace(trace, signals={**trace.signals, "current": current})
+    found = diagnose(trace, {"motor": {"torque_constant": "0.8 N*m/A"}})
+    gap = next(one for one in found.where if one.coordinate == "position")
+    _, torque = gap.curve
+    assert np.quantile(torque, 0.98) == pytest.approx(amplitude, rel=0.05)
+    assert np.quantile(gap.means, 0.98) == pytest.approx(amplitude, rel=0.1)
+    assert np.abs(gap.after[0]).max() < 0.1 * amplitude
 
 
 def test_the_verdict_fits_what_was_found(diagnosed):
