@@ -10,7 +10,6 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
@@ -90,7 +89,7 @@ def names(tmp_path_factory):
     known["rep"] = bench.replay(known["found"], cogged, TABLES)
     known["chk"] = bench.check(df, NUMBERS, folder / "axis.toml")
     known["sim"] = bench.simulate(folder / "lab.toml", "fast_reversals")
-    known["ax"] = mpl.figure.Figure().subplots()
+    known["ax"] = pyplot.figure().subplots()
     return folder, known
 
 
