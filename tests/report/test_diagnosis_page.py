@@ -109,6 +109,7 @@ def test_the_picture_shows_a_wave_at_its_amplitude(harmonic):
     trace = replace(trace, signals={**trace.signals, "current": current})
     found = diagnose(trace, {"motor": {"torque_constant": "0.8 N*m/A"}})
     gap = next(one for one in found.where if one.coordinate == "position")
+    assert gap.curve is not None
     _, torque = gap.curve
     assert np.quantile(torque, 0.98) == pytest.approx(amplitude, rel=0.05)
     assert np.quantile(gap.means, 0.98) == pytest.approx(amplitude, rel=0.1)
