@@ -30,6 +30,7 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect
 from bench.effects.present import named
 from bench.errors import InputError
+from bench.fit.dead_time import DeadTime, dead_time_of
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit, fit
 from bench.fit.rows import Rows
@@ -142,6 +143,7 @@ class Diagnosis(Presented):
         recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
         warnings: what a user should know.
         checks: what the gate found before the fit.
+        dead_time: by how much torque and motion are apart, if that is more than a sample; None if it is not.
     """
 
     verdict: str
@@ -169,6 +171,7 @@ class Diagnosis(Presented):
     between: Mapping[str, Between] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
     checks: tuple[Check, ...] = ()
+    dead_time: DeadTime | None = None
 
     def __iter__(self) -> Iterator[NamedEffect]:
         return iter(self.effects)
@@ -286,6 +289,7 @@ def show(bare: Fit, added: Added) -> Diagnosis:
     torque, velocity = gaps(added, steps)
     residuals = [whole.left, *series[0].torque_residuals[len(added.stages) :]]
     likely = added.suspects.probabilities.without(frozenset(name for name, _ in added.rejected))
+    late = dead_time_of(whole)
     comes_to, objections = verdict(added, likely, torque, velocity)
     return Diagnosis(
         verdict=comes_to,
@@ -311,9 +315,10 @@ def show(bare: Fit, added: Added) -> Diagnosis:
         balance=Balance.of(whole).repeating(added.repeats),
         time_series=series,
         considered=considered(added, likely),
+        dead_time=late,
         warnings=[
             *suspicions(recordings.trace, recordings.rig, added.parameters),
-            *delayed(whole),
+            *delayed(late, whole),
             *left_open(recordings.rows, kind),
             *impacts(whole, unit),
             *out_of_phase(added),
@@ -448,15 +453,12 @@ def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> l
     ]
 
 
-def delayed(fitted: Fit) -> Iterator[str]:
-    """That torque and speed are further apart than they were taken."""
-    shift = fitted.shift
-    if fitted.hypothesis.shift:
-        way = "after" if shift < 0.0 else "before"
-        yield (
-            f"the torque acts {abs(shift) * 1e3:.3g} ms {way} it is reported, which is more than a sample "
-            f"({fitted.scope.sample_period * 1e3:.3g} ms): a delay of the drive or of its log; the model contains it"
-        )
+def delayed(late: DeadTime | None, fitted: Fit) -> Iterator[str]:
+    """That torque and motion are more than a sample apart, unless the model has it as the lag that it is."""
+    if late is not None and fitted.hypothesis.shift:
+        yield f"{late}; the model contains it"
+    elif late is not None and late.kind != "first_order_lag":
+        yield f"the model contains a lag, but {late}"
 
 
 def left_open(rows: Rows, kind: AxisKind) -> list[str]:

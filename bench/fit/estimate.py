@@ -15,6 +15,7 @@ from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VI
 from bench.comparison.spread import Between
 from bench.errors import InputError, UndeterminedError
 from bench.files import read_text
+from bench.fit.dead_time import CommandDelay, DeadTime
 from bench.gate.check import Check
 from bench.names import meant
 from bench.parameter import Parameter
@@ -90,6 +91,8 @@ class Estimate(Presented, Mapping[str, Parameter]):
         checks: results of the gate.
         recordings: the estimate by each alone, where several were fitted together.
         between: their spread, by name of a quantity that at least two of them determine alone.
+        dead_time: by how much torque and motion are apart, if that is more than a sample; None if it is not.
+        command: how the torque follows its recorded command; None where it is in step, or not recorded.
         motor: constants of the motor, where a voltage is recorded.
         of: rig and recordings, where they are in memory, for a figure.
     """
@@ -106,6 +109,8 @@ class Estimate(Presented, Mapping[str, Parameter]):
     checks: tuple[Check, ...] = ()
     recordings: tuple[Alone, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
+    dead_time: DeadTime | None = None
+    command: CommandDelay | None = None
     motor: MotorConstants | None = None
     of: tuple[Rig, tuple[Trace, ...]] | None = field(default=None, compare=False)
 
@@ -155,6 +160,8 @@ class Estimate(Presented, Mapping[str, Parameter]):
                 tuple(Check(**one) for one in table["checks"]),
                 tuple(alone),
                 spread,
+                None if (late := table.get("dead_time")) is None else DeadTime(**_with_stored(late)),
+                None if (command := table.get("command")) is None else CommandDelay(**_with_stored(command)),
                 _stored_motor(table.get("motor")),
             )
         except (KeyError, TypeError, AttributeError) as error:
@@ -168,6 +175,11 @@ def _with_nan(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def _stored(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Parameter]:
     return {name: Parameter(**{**_with_nan(one), "ci95": (*one["ci95"],)}) for name, one in table.items()}
+
+
+def _with_stored(table: Mapping[str, Any]) -> dict[str, Any]:
+    """A table whose values that are tables are parameters."""
+    return {**table, **_stored({key: one for key, one in table.items() if isinstance(one, Mapping)})}
 
 
 def _stored_motor(table: Mapping[str, Any] | None) -> MotorConstants | None:

@@ -279,9 +279,12 @@ def _axis(signals: Signals) -> list[Column]:
 
 
 def _moved(signals: Signals, shift: float) -> list[Column]:
-    """By how much the effort a shift later is another one: Taylor's series, as far as the filter lets anything pass."""
+    """By how much the effort a shift later is another one: whole samples, and Taylor's series for the rest of one."""
     driven = signals.effort + signals.of_motion
-    return [[(shift**order / math.factorial(order) * driven, order) for order in range(1, SERIES + 1)]]
+    samples = round(shift / signals.sample_period)
+    rest, at = shift - samples * signals.sample_period, np.clip(np.arange(driven.size) + samples, 0, driven.size - 1)
+    later = [(rest**order / math.factorial(order) * driven[at], order) for order in range(SERIES + 1)]
+    return [[*later, (-driven, 0)]]
 
 
 def _cut_off(signals: Signals) -> list[Column]:

@@ -34,6 +34,7 @@ from bench.comparison.spread import ALARM, Between, Excess, between, excess, spr
 from bench.effects.present import parse_value
 from bench.errors import InputError, UndeterminedError
 from bench.fit.cutoffs import TELLS, TERMS, Chosen, Cutoffs
+from bench.fit.dead_time import DeadTime, command_delay, dead_time
 from bench.fit.dependence import Dependence, dependence
 from bench.fit.determined import remainder, require_inertia, sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
@@ -100,8 +101,9 @@ def identify(
         found = _estimated_alone(gathered[0], gathered[0].solution, rig)
     else:
         found = _estimated_together(gathered, rig)
-    motor = motor_constants(join_traces([one.first for one in gathered]), rig, found, _only)
-    return replace(found, motor=motor, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
+    first = join_traces([one.first for one in gathered])
+    found = replace(found, motor=motor_constants(first, rig, found, _only), command=command_delay(first, rig.axis_kind))
+    return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
 
 
 def _only(trace: Trace, rig: Rig) -> Estimate:
@@ -127,6 +129,7 @@ class Gathered:
         warnings: about the cut-off.
         checks: of all parts.
         first: of its parts that moves clearly.
+        late: by how much torque and motion are apart, if that is more than a sample.
     """
 
     solution: Solution
@@ -141,6 +144,7 @@ class Gathered:
     warnings: tuple[str, ...]
     checks: tuple[Check, ...]
     first: Trace
+    late: DeadTime | None
 
     def solved(self, offset: bool) -> Solution:
         """Its solution with or without a constant."""
@@ -188,7 +192,16 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
         warnings=chosen.warnings,
         checks=checks,
         first=first,
+        late=_late(found),
     )
+
+
+def _late(found: Solution) -> DeadTime | None:
+    """By how much torque and motion of a solution are apart, if that is more than a sample."""
+    shift = found.hypothesis.shift
+    if shift or found.delayed:
+        return dead_time(found.rows, replace(found.hypothesis, shift=0.0), shift + found.shift[0])
+    return None
 
 
 def _first_moving(
@@ -259,6 +272,10 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chos
     hum = mains(rows, highest.residual)
     if hum:
         highest = solution_of(rows, replace(highest.hypothesis, hum=hum), rig.offset)
+    if highest.delayed:
+        late = dead_time(rows, highest.hypothesis, highest.shift[0])
+        if late.kind == "dead_time":
+            highest = solution_of(rows, replace(highest.hypothesis, shift=-late.delay.value), rig.offset)
     if cutoff is None:
         return Cutoffs(highest, rig).for_inertia()
     used, rate = rows.conditioning.filter.cutoff, 1.0 / rows.scope.sample_period
@@ -272,7 +289,10 @@ def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
     require_inertia(gathered.solution.whole, kind)
     for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
         margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
-        parameter = _parameter_of(found, term, kind, unit).widened(found.of(term, found.misfit), *margins)
+        parameter = _parameter_of(found, term, kind, unit)
+        if term == MISALIGNMENT:
+            parameter = parameter.at(parameter.value + found.hypothesis.shift, positive=False)
+        parameter = parameter.widened(found.of(term, found.misfit), *margins)
         depends = gathered.depends
         for moved in (gathered.hinted, {} if depends is None else depends.moved):
             parameter = parameter.reaching(parameter.value + moved.get(term, 0.0))
@@ -280,7 +300,8 @@ def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
     estimate = _estimate_of([gathered], [found], parameters, found.power, rig)
     remaining = remainder(estimate, kind, gathered.hint, gathered.depends)
     told = [f"{'; '.join(remaining)}; {TELLS}"] if remaining else []
-    estimate = replace(estimate, warnings=(*gathered.warnings, *_shifted(found), *told))
+    late = [] if gathered.late is None else [str(gathered.late)]
+    estimate = replace(estimate, warnings=(*gathered.warnings, *late, *told))
     return sound(estimate, gathered.solution.whole, rig, (*gathered.warnings, *remaining))
 
 
@@ -319,17 +340,8 @@ def _estimate_of(
         source=" and ".join(sorted({one.solution.rows.conditioning.source for one in gathered})),
         explained=max(1.0 - left / max(squares - total**2 / count, 1e-300), 0.0),
         checks=joined([one.checks for one in gathered]),
+        dead_time=next((one.late for one in gathered if one.late is not None), None),
     )
-
-
-def _shifted(found: Solution) -> Iterator[str]:
-    shift, period = found.shift[0], found.rows.scope.sample_period
-    if found.delayed:
-        side, cause = ("behind", "a filter of the effort") if shift > 0.0 else ("ahead of", "a lag of drive or speed")
-        yield (
-            f"the effort is recorded {abs(shift) * 1e3:.3g} ms {side} the speed, more than a sample "
-            f"({period * 1e3:.3g} ms): {cause}, or columns recorded at different times; {TELLS}"
-        )
 
 
 def _estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:

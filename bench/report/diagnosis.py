@@ -96,7 +96,7 @@ def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = N
         "stopped": found.stopped,
         "provenance": provenance,
         "model": {"mjcf": "model.xml" if found.model is not None else None, "toml": "model.toml"},
-        **picked(found, "checks", "warnings"),
+        **picked(found, "dead_time", "checks", "warnings"),
     }
 
 

@@ -23,7 +23,7 @@ from bench.fit.solution import NOISE_ALONE
 from bench.gate.gate import gate, warnings_of
 from bench.names import readable, words
 from bench.report import document as doc
-from bench.report.numbers import brief, effort_word, interval, number, share, unit_text
+from bench.report.numbers import brief, effort_word, interval, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import checks_section, noise_band, origin, parameters_table, recordings_table
 from bench.report.serial import known, picked, serialised
@@ -69,7 +69,7 @@ def identification_json(
         },
         "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
         "filter": {"cutoff": known(estimate.cutoff), "unit": "Hz", "source": estimate.source},
-        **picked(estimate, "motor", "checks", "warnings"),
+        **picked(estimate, "dead_time", "command", "motor", "checks", "warnings"),
     }
     return serialised(content if refinement is None else {**content, "refinement": refinement})
 
@@ -229,6 +229,7 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
         "Residual?": f"{left}.",
         "From what?": f"{basis}.",
         **({} if estimate.motor is None else {"Motor?": _motor(estimate.motor)}),
+        **({} if estimate.command is None else {"Command?": f"{sentence(str(estimate.command))}."}),
         **polished,
         "What next?": "The residual is noise. A recording of another motion can confirm it."
         if _noise(estimate)
