@@ -21,7 +21,7 @@ from typer import Argument, Option
 
 import bench
 from bench.bounds import bounded
-from bench.errors import InputError
+from bench.errors import InputError, UndeterminedError
 from bench.files import held, keeping, require_writable, write_text
 from bench.names import plain, readable
 from bench.plant.profile_names import NAMES
@@ -169,17 +169,23 @@ def write_picture(path: Path | None, picture: Picture) -> None:
 
 
 @contextmanager
-def refusal_as_json(path: Path | None, schema: str) -> Iterator[None]:
-    """Write the checks of a recording that the gate refuses as JSON; the error is passed on."""
+def refusal_as_json(path: Path | None, schema: str, names: Sequence[str] = ()) -> Iterator[None]:
+    """Write why a recording is refused as JSON; the error is passed on.
+
+    Without names that is a refusal by the gate, with its checks; with names any, as the reason for each of these.
+    """
     from bench.gate.gate import UnanswerableError
 
     try:
         yield
-    except UnanswerableError as error:
-        from bench.report.serial import serialised
+    except (InputError, UndeterminedError) as error:
+        gated = isinstance(error, UnanswerableError)
+        if gated or names:
+            from bench.report.serial import serialised
 
-        refused = {"schema": schema, "refused": str(error), "checks": error.checks}
-        write_json(path, lambda: serialised(refused))
+            refused = dict.fromkeys(names, str(error)) if names else str(error)
+            checks = error.checks if gated else ()
+            write_json(path, lambda: serialised({"schema": schema, "refused": refused, "checks": checks}))
         raise
 
 

@@ -26,8 +26,8 @@ def servo(
 ) -> None:
     """Find gains, dead time, limit and friction of a position servo from goal and position; no current is needed."""
     from bench.report.parts import provenance
+    from bench.report.servo import SCHEMA, servo_json
     from bench.report.servo import servo as document_of
-    from bench.report.servo import servo_json
     from bench.report.terminal import progress
 
     if len(joint or []) > 1:
@@ -41,7 +41,7 @@ def servo(
 
         stated = common.positions(at, joint_units(mjcf))
     names, named = in_a_row(logs), next(iter(joint or []), None)
-    with progress(f"fitting the servo of {names}") as done:
+    with common.refusal_as_json(json, SCHEMA, ("kp", "kv")), progress(f"fitting the servo of {names}") as done:
         found = bench.servo(logs, known, mjcf, named, holdout, stated, done)
     options = {"joint": named, "at": at or [], "axis": axis_name}
     basis = provenance(rig, logs, options, holdout, mjcf)

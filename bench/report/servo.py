@@ -101,13 +101,18 @@ def _answers(found: Servo) -> dict[str, str]:
     of, unit = found.found, found.kind.length_unit
     named = {**of.parameters, **of.inseparable}
     gains = [f"{words(name)} {brief(value)}" for name, value in named.items() if name[:2] in ("kp", "kv", "(k")]
-    late, late_half = (1e3 * one for one in (of.parameters["dead_time"].value, of.parameters["dead_time"].half_width))
+    late = of.parameters.get("dead_time")
+    if late is None:
+        dead = f"Not determined: {of.refused['dead_time']}."
+    else:
+        half = number(1e3 * late.half_width, "ms", 2)
+        dead = f"{number(1e3 * late.value, 'ms', 3)} ± {half}, of command and sensor together."
     gap = found.gaps.get("holdout", found.gaps["identify"])
     where = "on the holdout" if "holdout" in found.gaps else "on the log"
     more = ", ".join(words(name) for name in of.effects) or "nothing beyond gains, dead time, limit and friction"
     return {
         "Gains?": f"{'; '.join(gains)}.",
-        "Dead time?": f"{number(late, 'ms', 3)} ± {number(late_half, 'ms', 2)}, of command and sensor together.",
+        "Dead time?": dead,
         "What else?": f"{sentence(more)}.",
         "How good?": f"Free-running {where}, the position differs by {number(gap.after, unit, 3)} RMS, "
         f"{number(gap.after / found.noise_floor, digits=2)} × the sensor noise; with {found.before} "

@@ -153,7 +153,8 @@ def _require_goal(trace: Trace) -> Trace:
     if name not in trace:
         found = f"holds no goal ({name}); its signals: {', '.join(trace.signals)}"
         allowed = (
-            f'allowed: the position that was sent to the servo; map its column in the rig: `{name} = "goal [rad]"`'
+            "allowed: a log with the position that is sent to the servo; map its column in the rig: "
+            f'`{name} = "goal [rad]"`'
         )
         raise InputError(trace.origin, found, allowed)
     goal, position = trace[name], trace["position"]
@@ -235,6 +236,19 @@ def _require_answered(of: ServoLog, fit: ServoFit) -> None:
         )
 
 
+def refuse_unresolved(found: Quantities, period: float) -> None:
+    """Take out a dead time that is within a sample of the log, and not known."""
+    late = found.parameters["dead_time"]
+    if late.half_width > DETERMINED * period and late.ci95[0] <= 0.0:
+        del found.parameters["dead_time"]
+        found.refused["dead_time"] = (
+            f"the log, every {period * 1e3:.3g} ms, is too slow for it: it is between 0 and {late.ci95[1] * 1e3:.2g} ms"
+        )
+        found.advice.append(
+            f"dead_time: goal and position at {np.ceil(4.0 / late.ci95[1] / 10.0) * 10.0:.0f} Hz or more."
+        )
+
+
 def _limited_share(of: ServoLog, fit: ServoFit) -> float:
     """Share of the samples in which a controller with the fitted gains requests its limit or more."""
     position = of.compared - fit.residual
@@ -301,6 +315,7 @@ def _result(
     floor = max(resolution(np.concatenate(positions)) / np.sqrt(12.0), white_noise(*positions))
     noise = fit.error <= NOISE * floor
     found = quantities(fit, inertia, kind, model)
+    refuse_unresolved(found, traces[0].sample_period)
     notes = [note for trace in traces for note in trace.notes]
     used = ({name: trace[name] for name in ("position", "position_reference")} for trace in traces)
     checks = joined([gate(replace(trace, signals=each)).checks for trace, each in zip(traces, used, strict=True)])

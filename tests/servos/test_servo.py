@@ -11,6 +11,9 @@ import pytest
 
 import bench
 from bench.errors import InputError, UndeterminedError
+from bench.parameter import Parameter
+from bench.servos.quantities import Quantities
+from bench.servos.servo import refuse_unresolved
 from bench.trace.trace import Trace
 from tests.command import bench as command
 from tests.docs.pages import PAGES, run_commands
@@ -175,6 +178,51 @@ def test_a_servo_always_at_its_limit_cannot_answer():
     goal = 3.0 * np.sign(np.sin(2.0 * np.pi * np.arange(1200) / 100.0 / 0.8))
     with pytest.raises(UndeterminedError, match="stays far from its goal, at its limit"):
         bench.servo(log(goal, motion(truth, goal), truth.rate))
+
+
+def written(goal, position, rate):
+    """A log of an axis, without an MJCF."""
+    table = np.column_stack([np.arange(position.size) / rate, position, *([] if goal is None else [goal])])
+    header = ",".join(["time [s]", "position [rad]", "position_reference [rad]"][: table.shape[1]])
+    np.savetxt("log.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+    Path("rig.toml").write_text('name = "servo"\nkind = "rotary"\n', encoding="utf-8")
+
+
+_, SWUNG = moving()
+SOFT = Truth(rate=100.0, control_period=50e-6, limit=0.02, coulomb=0.002, kv=0.0, viscous=0.01)
+SQUARE = 3.0 * np.sign(np.sin(2.0 * np.pi * np.arange(1200) / 100.0 / 0.8))
+
+
+@pytest.mark.parametrize(
+    ("goal", "position", "status", "reason", "record"),
+    [
+        (None, SWUNG, 2, "holds no goal", "the position that is sent to the servo"),
+        (SWUNG, SWUNG, 1, "are equal in every sample", "the goal that is sent to the servo"),
+        (0.0 * SWUNG + 0.3, SWUNG, 1, "the goal never moves", "steps and waves of the goal"),
+        (SQUARE, motion(SOFT, SQUARE), 1, "at its limit", "smaller and slower motions"),
+    ],
+    ids=["no goal", "goal equals position", "goal never moves", "always at its limit"],
+)
+def test_a_refusal_is_one_line_and_in_the_json(goal, position, status, reason, record, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    written(goal, position, 100.0)
+    done = command("servo", "log.csv", "--rig", "rig.toml", "--json", "found.json")
+    assert (done.status, done.err.count("\n")) == (status, 1)
+    found = json.loads(Path("found.json").read_text(encoding="utf-8"))
+    assert found["schema"] == "bench.servo/1" and {*found["refused"]} == {"kp", "kv"}
+    for text in (done.err, found["refused"]["kp"]):
+        assert reason in text and record in text
+
+
+def test_a_log_too_slow_for_its_delay_refuses_only_that():
+    late = Parameter(0.004, "s", 0.006, (-0.008, 0.016))
+    found = Quantities(parameters={"kp": Parameter(3.0, "N*m/rad", 0.1, (2.8, 3.2)), "dead_time": late})
+    refuse_unresolved(found, 0.02)
+    assert {*found.parameters} == {"kp"} and "every 20 ms, is too slow for it" in found.refused["dead_time"]
+    assert "goal and position at 250 Hz or more" in found.advice[0]
+    sure = Quantities(parameters={"dead_time": Parameter(0.0, "s", 1e-4, (-2e-4, 2e-4))})
+    refuse_unresolved(sure, 0.02)
+    assert {*sure.parameters} == {"dead_time"} and not sure.refused
 
 
 def test_bad_input_is_one_line_with_its_status(of_arm, monkeypatch):
