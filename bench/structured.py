@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import math
 import re
@@ -13,6 +15,7 @@ from typing import Any
 
 from bench.errors import InputError, UndeterminedError
 from bench.files import read_text
+from bench.names import cell
 
 #: What Python says of an integer beyond 4300 digits is advice to a programmer.
 TOO_MANY_DIGITS = "holds an integer of thousands of digits"
@@ -88,6 +91,15 @@ def json_text(content: Mapping[str, Any], ascii_only: bool = True) -> str:
         place, value = _not_finite(content) or ("the result", math.nan)
         record = "the motion again; numbers this large or this small are not those of a servo axis"
         raise UndeterminedError(place, f"it came out as {value}", record) from error
+
+
+def csv_of_texts(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table of texts as CSV, no cell of which a spreadsheet takes for a formula."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows([cell(str(content)) for content in row] for row in rows)
+    return buffer.getvalue()
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Sequence[float]]) -> str:

@@ -68,7 +68,6 @@ def _grade(submissions: Path, truth: Path | None, key: Path | None, out: Path, a
     if graded.suspicions:
         say(f"{len(graded.suspicions)} pairs of forms share wrong answers: see suspicion.csv", err=True)
     list_files(files[:3])
-    warn(graded.warnings)
     if graded.unread:
         raise Exit(1)
 

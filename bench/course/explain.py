@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, Literal
 
-from bench.course.answers import MISTAKES, SLIPS
+from bench.course.mistakes import MISTAKES, SLIPS
 from bench.course.submission import GivenAnswer, Question
 from bench.units import dimensionality
 
@@ -28,7 +28,7 @@ SURE = 20.0
 CARRIED = 50.0
 NOT_KNOWN = "not known"
 #: What a student reads of each mistake.
-WHY = {name: why for name, why, _ in (*MISTAKES, *SLIPS)}
+WHY = {mistake.name: mistake.why for mistake in MISTAKES if mistake.name}
 
 #: What a way of working gives, by the names of the form.
 Figures = Mapping[str, float]
@@ -188,8 +188,8 @@ def _ways(known: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], float, Fi
     for names, figures in (*works, ((), expected)):
         if names:
             yield names, prior[len(names)], figures
-        for slip, _, change in SLIPS if len(names) < 2 else ():
+        for slip, change in SLIPS.items() if len(names) < 2 else ():
             yield (*names, slip), prior[len(names) + 1], {**figures, **change(figures)}
-    for (one, _, first), (two, _, second) in combinations(SLIPS, 2):
+    for (one, first), (two, second) in combinations(SLIPS.items(), 2):
         figures = {**expected, **first(expected)}
         yield (one, two), TWO, {**figures, **second(figures)}

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from pathlib import Path
@@ -19,6 +19,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.bounds import read_bounded
+from bench.course.mistakes import MISTAKES
 from bench.errors import InputError
 from bench.files import opened, read_bytes
 from bench.trace.channel import Channel
@@ -51,17 +52,6 @@ POINT, PATH = 7.0, 16.0
 APART = 0.5
 #: A flight has at least so many points more than its parabola has coefficients.
 SPARE = 3
-#: What can be wrong with a whole flight, and the flight without it.
-MISTAKES: dict[str, Callable[[Array], Array]] = {
-    "its y and z are exchanged": lambda flight: flight[:, ::-1],
-    "it is in mm where the others are in m": lambda flight: flight * 1e-3,
-    "it is in cm where the others are in m": lambda flight: flight * 1e-2,
-    "it is in m where the others are in mm": lambda flight: flight * 1e3,
-    "it is in m where the others are in cm": lambda flight: flight * 1e2,
-    "its y is counted the other way": lambda flight: flight * [-1.0, 1.0],
-    "its z is counted the other way": lambda flight: flight * [1.0, -1.0],
-}
-
 #: Points of each flight, (n, 2) y and z - m, and whether the file states their unit.
 FoundFlights = tuple[list[Array], bool]
 
@@ -301,9 +291,9 @@ def _why(flights: Sequence[Array], k: int) -> str:
     def fits(one: Array) -> bool:
         return all(place < len(others) for place, _ in _wrong([*others, one]))
 
-    for words, undo in MISTAKES.items():
-        if fits(undo(flight)):
-            return words
+    for mistake in MISTAKES:
+        if mistake.undo_of_flight and fits(mistake.undo_of_flight(flight)):
+            return mistake.words
     for j, (y, z) in enumerate(flight.tolist()):
         if fits(np.delete(flight, j, axis=0)):
             return f"its point {j + 1}, ({y:.4g}, {z:.4g}) m, is an outlier"

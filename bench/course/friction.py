@@ -14,9 +14,6 @@ from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB
 from bench.course.axis import KG_CM2
 from bench.course.inertia import (
-    DELAY,
-    WIDTH,
-    filtered_acceleration,
     four_signals,
     half_width,
     inertia_without_friction,
@@ -24,8 +21,9 @@ from bench.course.inertia import (
     require_positive,
     torque_chart,
 )
-from bench.course.recordings import LabRecordings, LabRun
+from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, chart, curve, panel
+from bench.course.run import DELAY, WIDTH, LabRun, filtered_acceleration
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.lab import LEAST_SPEED, least_squares

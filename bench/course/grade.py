@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import hashlib
 import hmac
-import io
 import json
 import math
 from collections.abc import Mapping
@@ -14,8 +11,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Literal
 
-from bench.course.answers import AS_THE_TEXT_SAYS
 from bench.course.explain import NOT_KNOWN, SURE, GradedAnswer, explanation
+from bench.course.mistakes import AS_THE_TEXT_SAYS
 from bench.course.submission import (
     BY_HAND,
     QUESTIONS,
@@ -29,17 +26,13 @@ from bench.course.submission import (
 from bench.course.suspicion import Suspicion, suspicion_csv, suspicions
 from bench.errors import InputError
 from bench.files import read_text, write_text
-from bench.names import cell
 from bench.report.document import AnyPart, Document, Paragraph, Points, Table, neighbours, section, table
 from bench.report.html import html
-from bench.structured import parse_json
+from bench.structured import csv_of_texts, parse_json
 
 TITLE = "Industrial Drives, Part 2: grades"
-#: Schema of the truth of a class, and the earlier one, whose seal is a checksum without a key.
-SEALED, CHECKSUMMED = "bench.lab.class/3", "bench.lab.class/2"
-UNKEYED = (
-    "the seal of this class is a checksum without a key, which anybody can renew: who else can write to that file?"
-)
+#: Schema of the truth of a class.
+SEALED = "bench.lab.class/3"
 #: Which acceleration of task 9 is right: as the text says, half a sample late, or synchronised with the speed.
 Acceleration = Literal["either", "text", "synchronised"]
 AS_THE_TEXT = (
@@ -97,14 +90,12 @@ class GradedClass:
         students: whose forms were graded.
         unread: forms that could not be read.
         missing: students that no form came from.
-        warnings: about the truth.
         suspicions: forms that are alike where they should not be.
     """
 
     students: tuple[GradedStudent, ...]
     unread: tuple[InputError, ...]
     missing: tuple[str, ...]
-    warnings: tuple[str, ...]
     suspicions: tuple[Suspicion, ...] = ()
 
 
@@ -118,7 +109,7 @@ def grade_class(
         truth, key: as the class was recorded with; InputError as `read_truth_of_class`.
         acceleration: which of task 9 is right.
     """
-    known, warnings = read_truth_of_class(truth, key)
+    known = read_truth_of_class(truth, key)
     graded: dict[str, GradedStudent] = {}
     forms: dict[str, list[str]] = {}
     unread: list[InputError] = []
@@ -137,7 +128,7 @@ def grade_class(
             unread.append(InputError(submissions, found, "leave one of them"))
     students = tuple(one for _, one in sorted(graded.items()))
     alike = suspicions({one.student: one.answers for one in students}, known)
-    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))), warnings, tuple(alike))
+    return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))), tuple(alike))
 
 
 def seal(content: Mapping[str, Any], key: str) -> str:
@@ -150,26 +141,23 @@ def key_path(truth: Path) -> Path:
     return truth.with_suffix(".key")
 
 
-def read_truth_of_class(path: Path, key: Path | None = None) -> tuple[Mapping[str, Any], tuple[str, ...]]:
+def read_truth_of_class(path: Path, key: Path | None = None) -> Mapping[str, Any]:
     """Truth, expected answers and figures of mistakes by student, as `bench lab --record --students` wrote them.
 
-    And warnings. Raises InputError where there is no such file, one that was changed, or another key.
+    Raises InputError where there is no such file, one that was changed, or another key.
     """
     advice = "give the file that bench lab --record FOLDER --students N wrote beside FOLDER"
     try:
         content = parse_json(read_text(path, "a truth of a class"), path)
     except InputError as error:
         raise InputError(path, error.found, advice) from error
-    if not isinstance(content, dict) or content.get("schema") not in (SEALED, CHECKSUMMED):
+    if not isinstance(content, dict) or content.get("schema") != SEALED:
         raise InputError(path, "is no truth of a class", advice)
     given, key = str(content.pop("seal", None)), key or key_path(path)
-    if content["schema"] == SEALED or key.exists():  # a class with a key never had a checksum
-        right = seal(content, read_text(key, "the key that was written with the class, or name it with --key").strip())
-    else:
-        right = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    right = seal(content, read_text(key, "the key that was written with the class, or name it with --key").strip())
     if not hmac.compare_digest(given.encode(), right.encode()):
         raise InputError(path, f"its seal does not fit it and the key {key}: one of them was changed", advice)
-    return content["students"], () if content["schema"] == SEALED else (UNKEYED,)
+    return content["students"]
 
 
 def grade(submission: Submission, known: Mapping[str, Any], acceleration: Acceleration = "either") -> GradedStudent:
@@ -291,29 +279,22 @@ def student_document(one: GradedStudent) -> Document:
 
 def grades_csv(graded: GradedClass) -> str:
     """A row an answer."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    head = ["student", "task", "quantity", "given", "unit", "expected", "in", "verdict", "mistake", "likelier"]
-    writer.writerow(head)
+    rows = []
     for one in graded.students:
         for answer in one.answers:
             asked, given = answer.question, answer.given
             value, unit = (given.value, given.unit or asked.unit) if given is not None else ("", "")
             likelier = answer.explained.likelier if answer.explained is not None else ""
             row = one.student, asked.task, asked.name, value, unit, f"{answer.expected:.6g}", asked.unit
-            row = *row, answer.verdict, answer.mistake, likelier
-            writer.writerow([cell(str(content)) for content in row])
-    return buffer.getvalue()
+            rows.append((*row, answer.verdict, answer.mistake, likelier))
+    head = ("student", "task", "quantity", "given", "unit", "expected", "in", "verdict", "mistake", "likelier")
+    return csv_of_texts(head, rows)
 
 
 def sheet_csv(graded: GradedClass) -> str:
     """A row for each student and task that is marked by hand, with what to look for and room for the marks."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(("student", "task", "look for", "marks"))
-    for one in graded.students:
-        writer.writerows((cell(one.student), task, what, "") for task, what in BY_HAND.items())
-    return buffer.getvalue()
+    rows = ((one.student, task, what, "") for one in graded.students for task, what in BY_HAND.items())
+    return csv_of_texts(("student", "task", "look for", "marks"), rows)
 
 
 def grades_table(graded: GradedClass) -> Table:

@@ -13,8 +13,9 @@ import numpy as np
 from bench.arrays import NORMAL95, Array, rms
 from bench.course.axis import KG_CM2, joined
 from bench.course.plausible import balance
-from bench.course.recordings import LabRecordings, LabRun
+from bench.course.recordings import LabRecordings
 from bench.course.result import COMPUTED, RECORDING, Number, TaskResult, chart, curve, panel
+from bench.course.run import LabRun, filtered_acceleration
 from bench.errors import InputError, UndeterminedError
 from bench.fit.lab import backward_difference, mean_inertia
 from bench.report.document import Chart
@@ -23,10 +24,6 @@ from bench.report.document import Chart
 SAMPLE_PERIOD = 1e-3
 #: One period, as the course has it, t = 0 : 0.001 : 2*pi - s.
 DURATION = 2.0 * np.pi
-#: Backward differences that the filter takes the mean of; an even number, so that it is late by whole samples.
-WIDTH = 4
-#: The mean is late by (WIDTH - 1)/2 samples, the backward difference by half of one.
-DELAY = WIDTH // 2
 
 
 def backward_difference_of_a_sine(recordings: LabRecordings) -> TaskResult:
@@ -84,20 +81,6 @@ def four_signals(run: LabRun) -> dict[str, tuple[Array, Array]]:
         "filtered α_filt / (rad/s²)": (run.time[synchronous], mean),
         "torque M / (N·m)": (run.time, run.torque),
     }
-
-
-def filtered_acceleration(run: LabRun, width: int = WIDTH, delay: int = DELAY) -> tuple[Array, slice]:
-    """alpha_filt, the mean of `width` backward differences, and the samples of the other signals it belongs to.
-
-    It comes WIDTH/2 samples late, being (u[k] - u[k-WIDTH])/(WIDTH*T); set back by them it is in step with the rest.
-
-    Args:
-        run: that was recorded.
-        width, delay: differences in a mean, and samples by which it is set back.
-    """
-    mean = np.convolve(run.acceleration[1:], np.full(width, 1.0 / width), mode="valid")
-    first = width - delay  # the mean comes with its last difference, that of sample `width`
-    return mean, slice(first, first + mean.size)
 
 
 def half_width(value: float, std_error: float, name: str, run: LabRun) -> float:

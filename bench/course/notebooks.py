@@ -14,13 +14,30 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from bench.arrays import Array
 from bench.assets import asset
+from bench.course.recordings import LabRecordings
 from bench.errors import InputError
 from bench.files import write_text
+from bench.rig.motor import Motor
+from bench.trace.read import read
 
 TEXTS = asset("data", "lab", "notebooks")
 _CELL = re.compile(r"```python (given|check|yours)(?: (\w+)(?: ([\w.]+))?)?\n(.*?)```\n?", re.DOTALL)
 HINT = "# your turn\n"
+#: The first cell of each.
+FIRST = """\
+import numpy as np
+import matplotlib.pyplot as plt
+from pathlib import Path
+from bench.course.notebooks import check, check_signals, own, recorded
+from bench.course.recordings import LabRecordings
+
+folder = LabRecordings.in_folder(Path("."))
+motor = folder.rig.motor
+"""
 
 
 def write_notebooks(folder: Path) -> list[Path]:
@@ -47,6 +64,7 @@ def notebook(text: str, filled: Mapping[str, str] | None = None) -> str:
 
 
 def _cells(text: str, filled: Mapping[str, str]) -> Iterator[dict[str, Any]]:
+    yield {"cell_type": "code", "execution_count": None, "outputs": [], "source": FIRST.rstrip("\n")}
     parts = _CELL.split(text)  # text, and of each cell of code its kind, name, file, code, and the text behind it
     for start in range(0, len(parts), 5):
         if parts[start].strip():
@@ -104,3 +122,28 @@ def check(what: str, holds: Callable[..., object], *values: object) -> bool | No
         return False
     print(f"{'ok' if found else 'not yet'}: {what}")
     return found
+
+
+def recorded(folder: LabRecordings, name: str) -> tuple[float, Array, Array, Array]:
+    """Sample period - s; time - s -, speed - deg/s - and current - mA - (n,) of a recording, in the drive's units."""
+    trace = read(folder.files(name)[0], folder.rig.trace.columns)
+    return trace.sample_period, trace.time, np.degrees(trace["velocity"]), 1e3 * trace["current"]
+
+
+def check_signals(
+    motor: Motor, seen: tuple[float, Array, Array, Array], omega: object, alpha: object, torque: object
+) -> None:
+    """Check a student's speed - rad/s -, acceleration - rad/s**2 - and torque - N*m - of what `recorded` gives."""
+    period, _, degrees_per_second, milliamperes = seen
+    much, peak = milliamperes > 1e3, motor.peak_torque or np.inf
+    check(
+        "so many radians a second from lowest to highest as degrees",
+        lambda w: np.isclose(360.0 * np.ptp(w), 2.0 * np.pi * np.ptp(degrees_per_second)),
+        omega,
+    )
+    check("alpha adds up to the speed", lambda a, w: np.allclose(np.cumsum(a) * period, w - w[0]), alpha, omega)
+    check("torque has the current's sign", lambda m: np.all(m * milliamperes >= 0.0), torque)
+    ratio = "an ampere makes less torque at more current"
+    check(ratio, lambda m: np.ptp(m[much] / milliamperes[much]) > 1e-5, torque)
+    check("no more than the motor's peak", lambda m: np.abs(m).max() < 1.05 * peak, torque)
+    check("torque goes with acceleration", lambda a, m: np.corrcoef(a, m)[0, 1] > 0.9, alpha, torque)

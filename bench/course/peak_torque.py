@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,13 +21,13 @@ from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
 from bench.arrays import NORMAL95, Array
-from bench.course.axis import MAINS, RPM, circuit, motor_value, torque_constant
+from bench.course.axis import MAINS, RPM
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
-from bench.errors import InputError, UndeterminedError
+from bench.errors import UndeterminedError
 from bench.report.document import Table, table
 from bench.report.drive import in_range
-from bench.rig.limits import COLD, peak_curve
+from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
 
 #: Stretch of the falling current, in shares of its top, that the line is fitted to.
@@ -46,8 +45,6 @@ FINER = 8
 LEAST_TORQUE, FULL_SHARE = 0.2, 3.0 / 3.5
 #: Speeds of the course's table - rpm, and samples that belong to one: within this of it - rad/s.
 SPEEDS, HALF_BIN = (0.0, 1000.0, 2000.0, 2100.0, 3000.0, 4000.0, 5000.0), 5.0
-#: Currents that a peak curve is drawn for.
-POINTS = 200
 
 
 @dataclass(frozen=True)
@@ -153,14 +150,6 @@ def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
     return speed, (rig.motor.peak_torque or 0.0) * curve.share(speed)
 
 
-def cold_curve(rig: Rig) -> tuple[Array, Array]:
-    """The same of the winding at COLD, U = R*Iq + Ke*omega, with its corner second; raises InputError as `circuit`."""
-    own, current = circuit(rig), np.linspace(motor_value(rig, "peak_current"), 0.0, POINTS)
-    speed = (own.voltage - own.resistance_at(COLD) * current) / own.back_emf_constant
-    torque = torque_constant(rig).torque(current)
-    return np.append(0.0, speed), np.append(torque[0], torque)
-
-
 def measured_at_speeds(velocity: Array, torque: Array) -> Array:
     """M_max of a run-up (n,) at SPEEDS - N*m: median within HALF_BIN on the way up.
 
@@ -182,11 +171,11 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
     corner, corner_of_datasheet = found.corner * RPM, float(limit[1]) * RPM
     measured = dict(zip(SPEEDS, measured_at_speeds(kept.velocity, torque).tolist(), strict=True))
     sheet = dict(zip(SPEEDS, np.interp(SPEEDS, limit * RPM, allowed).tolist(), strict=True))
-    numbers = [
+    numbers = (
         Number("peak torque", float(torque.max()), "N·m", rig.motor.peak_torque if run.truth else None),
         Number("measured corner", corner, "rpm", run.true("corner_speed", RPM), half=found.half * RPM),
         Number("datasheet's corner", corner_of_datasheet, "rpm", source=sources("motor", "peak_curves")),
-    ]
+    )
     source = sources("motor", "peak_torque")
     read = [Number(f"M_max at {n:.0f} rpm, datasheet", value, "N·m", source=source) for n, value in sheet.items()]
     read += [Number(f"M_max at {n:.0f} rpm", value, "N·m") for n, value in measured.items() if math.isfinite(value)]
@@ -203,14 +192,9 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
         curve(limit * RPM, allowed, f"datasheet, {MAINS:g} V", "dashes"),
         curve(np.array([corner]), np.interp([corner], speed, torque), "corner", "large dots"),
     ]
-    with suppress(InputError):  # a rig without a winding's values has no such curve
-        reached, driven = cold_curve(rig)
-        curves.append(curve(reached * RPM, driven, f"its circuit at {COLD:g} °C", "dotted"))
-        source = sources("motor", "peak_curves", "cold_resistance_share")
-        numbers.append(Number("corner of the cold circuit", float(reached[1]) * RPM, "rpm", source=source))
     axes = panel("speed n / rpm", "torque M / (N·m)", *curves)
     shown = (chart("Task 10: peak torque", axes),)
-    return TaskResult(findings, tuple(numbers), shown, tables=(_at_speeds(sheet, measured),), tabled=tuple(read))
+    return TaskResult(findings, numbers, shown, tables=(_at_speeds(sheet, measured),), tabled=tuple(read))
 
 
 def _at_speeds(sheet: Mapping[float, float], measured: Mapping[float, float]) -> Table:

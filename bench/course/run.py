@@ -18,6 +18,10 @@ from bench.trace.trace import Trace
 
 #: A shorter recording is no run of the course.
 LEAST = 100
+#: Backward differences that the filter takes the mean of; an even number, so that it is late by whole samples.
+WIDTH = 4
+#: The mean is late by (WIDTH - 1)/2 samples, the backward difference by half of one.
+DELAY = WIDTH // 2
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,20 @@ def made_run(velocity: Array, current: Array, sample_period: float, rig: Rig, an
         angle=cumulative_trapezoid(velocity, dx=sample_period, initial=0.0) if angle is None else angle,
         sample_period=sample_period,
     )
+
+
+def filtered_acceleration(run: LabRun, width: int = WIDTH, delay: int = DELAY) -> tuple[Array, slice]:
+    """alpha_filt, the mean of `width` backward differences, and the samples of the other signals it belongs to.
+
+    It comes WIDTH/2 samples late, being (u[k] - u[k-WIDTH])/(WIDTH*T); set back by them it is in step with the rest.
+
+    Args:
+        run: that was recorded.
+        width, delay: differences in a mean, and samples by which it is set back.
+    """
+    mean = np.convolve(run.acceleration[1:], np.full(width, 1.0 / width), mode="valid")
+    first = width - delay  # the mean comes with its last difference, that of sample `width`
+    return mean, slice(first, first + mean.size)
 
 
 def run_of(trace: Trace, rig: Rig, truth: Mapping[str, float] | None = None, notes: tuple[str, ...] = ()) -> LabRun:

@@ -14,6 +14,7 @@ from bench.errors import InputError
 from bench.files import read_bytes
 from bench.names import nearest
 from bench.structured import parse_json
+from bench.trace.readers.table import cells_of
 from bench.trace.source import source_of
 from bench.units import convert
 from bench.units.conversion import scale_of
@@ -172,7 +173,7 @@ def read_submission(path: Path) -> Submission:
         if value.strip() and name in answers:
             raise InputError(where, f"found '{written}' twice", "give it once")
         if value.strip():
-            plain = value.strip().replace("−", "-")
+            plain = value.strip().replace("−", "-").replace(",", ".")
             if not _NUMBER.fullmatch(plain):
                 allowed = "allowed: a number, and its unit in a column of its own"
                 raise InputError(where, f"found the value '{value}'", allowed)
@@ -185,11 +186,11 @@ def read_submission(path: Path) -> Submission:
 
 
 def _of_csv(text: str, path: Path) -> list[Entry]:
-    """Rows of the form; where semicolons separate them, a comma is a decimal one."""
+    """Rows of the form, whose cells commas or semicolons separate."""
     separator = ";" if ";" in text.split("\n", 1)[0] else ","
     entries = []
     for number, line in enumerate(text.splitlines(), 1):
-        cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
+        cells = cells_of(line, separator)
         if not any(cells) or cells[0].lower() == "quantity" or cells[0].startswith("#"):
             continue
         where = f"{path}: line {number}"
@@ -197,7 +198,7 @@ def _of_csv(text: str, path: Path) -> list[Entry]:
             allowed = "allowed: quantity,value,unit; a decimal comma takes ; between"
             raise InputError(where, f"found {len(cells)} cells", allowed)
         name, value, unit = [*cells, "", ""][:3]
-        entries.append((where, name, value.replace(",", ".") if separator == ";" else value, unit))
+        entries.append((where, name, value, unit))
     return entries
 
 

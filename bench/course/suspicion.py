@@ -8,8 +8,6 @@ factor may bring it about. `python -m tests.studies.copied` measures both rates.
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +18,7 @@ import numpy as np
 from bench.arrays import Array
 from bench.course.explain import GradedAnswer
 from bench.course.submission import QUESTIONS
-from bench.names import cell
+from bench.structured import csv_of_texts
 
 #: Answers that are compared; J of task 6 serves where that of task 9 is missing.
 COMPARED, INSTEAD = ("catapult_E", "J", "K_fric_w", "K_fric_0", "E"), {"J": "J_without_friction"}
@@ -134,11 +132,11 @@ def _matches(answer: GradedAnswer, other: float | None) -> bool:
 
 def suspicion_csv(found: Sequence[Suspicion]) -> str:
     """A row for each task of two forms that are alike; only the head where no two are."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(("student", "like student", "times likelier than honest work", "task", "the same wrong answers"))
-    for one in found:
-        for task, names in one.answers.items():
-            row = one.student, one.other, f"10^{one.evidence:.1f}", task, " ".join(names)
-            writer.writerow([cell(content) for content in row])
-    return buffer.getvalue()
+    rows = (
+        (one.student, one.other, f"10^{one.evidence:.1f}", task, " ".join(names))
+        for one in found
+        for task, names in one.answers.items()
+    )
+    return csv_of_texts(
+        ("student", "like student", "times likelier than honest work", "task", "the same wrong answers"), rows
+    )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.course.causes import MISTAKES
+from bench.course.mistakes import MISTAKES
 from bench.course.run import made_run
 from bench.rig.given import rig_of
 

@@ -35,7 +35,7 @@ def donors(students: int, seed: int) -> list[tuple[np.ndarray, np.ndarray, np.nd
     promised = {question.name: question.tolerance for question in QUESTIONS}
     with tempfile.TemporaryDirectory() as folder:
         *_, truth = record.record_class(Path(folder) / "class", students, seed)
-        known, _ = read_truth_of_class(truth)
+        known = read_truth_of_class(truth)
     found = []
     for one in known.values():
         expected = np.array([one["expected"][name] for name in COMPARED])

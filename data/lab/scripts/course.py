@@ -50,6 +50,28 @@ def torque(current):
     return torque_constant(current) * current
 
 
+def signals(name):
+    """t, omega, alpha, M, alpha_filt and the samples of the others it belongs to: of a recording."""
+    t, omega, current, period = recording(name)
+    alpha = backward_difference(omega, period)
+    return t, omega, alpha, torque(current), *filtered(alpha)
+
+
+def four_graphs(task, name):
+    """Tasks 5 and 7: speed, acceleration, alpha_filt and torque of a recording on one time axis, and their largest."""
+    t, omega, alpha, M, alpha_filt, sync = signals(name)
+    show("largest speed", np.abs(omega).max(), "rad/s")
+    show("largest acceleration", np.abs(alpha).max(), "rad/s^2")
+    show("largest torque", np.abs(M).max(), "N*m")
+    graph(
+        f"{task}.png",
+        ("speed / (rad/s)", (t, omega, "-", "")),
+        ("acceleration / (rad/s^2)", (t, alpha, "-", "")),
+        ("alpha_filt / (rad/s^2)", (t[sync], alpha_filt, "-", "")),
+        ("torque / (N*m)", (t, M, "-", "")),
+    )
+
+
 def show(name, number, unit):
     """Print a result."""
     print(f"{name} = {number:.9g} {unit}")
