@@ -94,6 +94,7 @@ class Estimate(Presented, Mapping[str, Parameter]):
         dead_time: by how much torque and motion are apart, if that is more than a sample; None if it is not.
         command: how the torque follows its recorded command; None where it is in step, or not recorded.
         motor: constants of the motor, where a voltage is recorded.
+        coupling: of motor and load, by name, where positions of both are recorded.
         of: rig and recordings, where they are in memory, for a figure.
     """
 
@@ -112,6 +113,7 @@ class Estimate(Presented, Mapping[str, Parameter]):
     dead_time: DeadTime | None = None
     command: CommandDelay | None = None
     motor: MotorConstants | None = None
+    coupling: Mapping[str, Parameter] = field(default_factory=dict)
     of: tuple[Rig, tuple[Trace, ...]] | None = field(default=None, compare=False)
 
     def __getitem__(self, name: str) -> Parameter:
@@ -163,6 +165,7 @@ class Estimate(Presented, Mapping[str, Parameter]):
                 None if (late := table.get("dead_time")) is None else DeadTime(**_with_stored(late)),
                 None if (command := table.get("command")) is None else CommandDelay(**_with_stored(command)),
                 _stored_motor(table.get("motor")),
+                _stored(table.get("coupling", {})),
             )
         except (KeyError, TypeError, AttributeError) as error:
             raise InputError(path, f"holds no estimate ({error})", "allowed: what Estimate.save writes") from error

@@ -53,6 +53,7 @@ from bench.fit.solution import (
     solve,
     solved,
 )
+from bench.fit.two_encoders import coupling
 from bench.gate.check import Check
 from bench.gate.gate import PARTS, Gated, gate, joined, passed, require
 from bench.parameter import Parameter
@@ -103,7 +104,18 @@ def identify(
         found = _estimated_together(gathered, rig)
     first = join_traces([one.first for one in gathered])
     found = replace(found, motor=motor_constants(first, rig, found, _only), command=command_delay(first, rig.axis_kind))
+    found = _with_coupling(found, first, rig)
     return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
+
+
+def _with_coupling(found: Estimate, first: Trace, rig: Rig) -> Estimate:
+    """The estimate with the coupling of motor and load, where both positions are recorded, or why it has none."""
+    if not {"position", "load_position"} <= set(first.signals):
+        return found
+    try:
+        return replace(found, coupling=coupling(first, rig))
+    except UndeterminedError as error:
+        return replace(found, warnings=(*found.warnings, str(error)))
 
 
 def _only(trace: Trace, rig: Rig) -> Estimate:

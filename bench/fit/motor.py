@@ -51,7 +51,8 @@ LONGEST = 5e-3
 By = Callable[[str, Trace], Estimate]
 #: Rows for each coefficient, and what to record for them.
 LEAST = 20
-STEPS = "steps of the voltage in both directions, from standstill to full speed"
+STEPS = "steps in both directions, from standstill to full speed"
+ALIKE = "current and motion change in the same way"
 
 
 def motor_constants(
@@ -188,11 +189,11 @@ def _by_weight(trace: Trace, rig: Rig) -> Parameter:
     sign = known_sign(raw_speed(source, at.source, trace.sample_period), at.sign_threshold)
     signals = pull, sign, np.ones(len(trace)), source, source, trace["current"], trace["current"]
     orders = 0, 0, 0, at.order, at.order + 1, 1, 0
-    time, table = _filtered(trace, at.filter, signals, orders)
+    time, table = filtered(trace, at.filter, signals, orders)
     moving = np.abs(table[1]) > 1.0 - ONE_SIGN
     loud = 0.0, 0.0, 0.0, at.source_noise, at.source_noise, at.effort_noise
     noise = [(size * at.filter.noise_gain(order)) ** 2 for size, order in zip(loud, orders, strict=False)]
-    return _regressed(time[moving], table[:, moving], noise, at.effort_noise, at.filter)[0]
+    return regressed(time[moving], table[:, moving], noise, at.effort_noise, at.filter)[0]
 
 
 def _circuit(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:
@@ -208,8 +209,8 @@ def _circuit(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:
     def fitted(volts: Array, lag: Array, known: float) -> list[Parameter]:
         """R, Ke and what a third signal's rate takes, of a noise - V, A - that is known."""
         signals = trace["current"], trace[at.source], lag, volts
-        time, table = _filtered(trace, at.filter, signals, (0, at.order, 1, 0))
-        return _regressed(time, table, [*noise[:2], known], own, at.filter)
+        time, table = filtered(trace, at.filter, signals, (0, at.order, 1, 0))
+        return regressed(time, table, [*noise[:2], known], own, at.filter)
 
     in_step = fitted(voltage, trace["current"], noise[2])
     total = in_step[2].value / max(in_step[0].value, 1e-300)
@@ -238,7 +239,7 @@ def _require_motor(known: Mapping[str, Parameter]) -> None:
             raise UndeterminedError(words(name), f"{words(name)} would be {found}", STEPS)
 
 
-def _filtered(
+def filtered(
     trace: Trace, smooth: GaussianFilter, signals: Sequence[Array], orders: Sequence[int]
 ) -> tuple[Array, Array]:
     """Times (m,) and filtered derivatives of these orders of signals (n,) each - (p, m)."""
@@ -251,27 +252,29 @@ def _filtered(
     return np.concatenate(times), np.concatenate(tables, axis=1)
 
 
-def _regressed(
-    time: Array, table: Array, noise: Sequence[float], own: float, smooth: GaussianFilter
+def regressed(
+    time: Array, table: Array, noise: Sequence[float] | Array, own: float, smooth: GaussianFilter, alike: str = ALIKE
 ) -> list[Parameter]:
     """Coefficients of columns, the last of a table (p + 1, m) by the others, with intervals, without unit.
 
     Args:
         time: of the rows (m,).
-        noise: variance of the noise in each column (p,).
+        noise: variance of the noise in each column (p,), or its covariance (p, p).
         own: of the raw signal that they explain.
         smooth: the filter of all.
+        alike: what it means that the others explain the first or the second column.
 
     Raises:
-        UndeterminedError: the others explain the first or the second column.
+        UndeterminedError: they do, or there are too few rows.
     """
     names = tuple(range(len(table) - 1))
-    fitted = equations(names, table, np.diag(noise), block_edges(time, smooth.width))
+    noise = np.diag(noise) if np.ndim(noise) == 1 else np.asarray(noise)
+    fitted = equations(names, table, noise, block_edges(time, smooth.width))
     if time.size < LEAST * len(names) or min(fitted.independent_shares(names)[:2]) < INDEPENDENT_SHARE:
-        raise UndeterminedError("constants of the motor", "current and motion change in the same way", STEPS)
+        raise UndeterminedError("a coefficient", alike, STEPS)
     theta, inverse = solved(fitted.total, fitted.moment.sum(axis=0), fitted.count * fitted.noise)
     covariance, reach = estimated(fitted.scores(theta), inverse, own**2 / smooth.stride)
-    floor = float(np.sqrt((own * smooth.noise_gain(0)) ** 2 + theta**2 @ np.array(noise)))
+    floor = float(np.sqrt((own * smooth.noise_gain(0)) ** 2 + theta @ noise @ theta))
     beyond = misfit(table[:-1].T, table[-1] - theta @ table[:-1], floor)
     errors = np.sqrt(np.diag(covariance))
     return [

@@ -69,7 +69,7 @@ def identification_json(
         },
         "samples": {"read": estimate.samples_read, "used": estimate.samples_used},
         "filter": {"cutoff": known(estimate.cutoff), "unit": "Hz", "source": estimate.source},
-        **picked(estimate, "dead_time", "command", "motor", "checks", "warnings"),
+        **picked(estimate, "dead_time", "command", "motor", "coupling", "checks", "warnings"),
     }
     return serialised(content if refinement is None else {**content, "refinement": refinement})
 
@@ -140,7 +140,7 @@ def identification(
         motions: of its recordings, for a page and pictures; () without.
     """
     alone = recordings_table(estimate.recordings, estimate.between, estimate.parameters)
-    tables = (parameters_table("The axis", estimate.parameters), *_of_motor(estimate.motor), *alone)
+    tables = (parameters_table("The axis", estimate.parameters), *_in_addition(estimate), *alone)
     sections = [doc.section("parameters", "Parameters", *tables), checks_section(estimate.checks, estimate.warnings)]
     if motions:
         graphs = (_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
@@ -237,9 +237,11 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
     }
 
 
-def _of_motor(motor: MotorConstants | None) -> list[doc.Table]:
-    """Constants of the motor; none without a recorded voltage."""
-    return [parameters_table("The motor", motor.parameters)] if motor is not None and motor.parameters else []
+def _in_addition(estimate: Estimate) -> list[doc.Table]:
+    """Constants of motor and coupling, where the recording shows them."""
+    motor = {} if estimate.motor is None else estimate.motor.parameters
+    tables = {"The motor": motor, "The coupling, on the load's side": estimate.coupling}
+    return [parameters_table(caption, found) for caption, found in tables.items() if found]
 
 
 def _motor(motor: MotorConstants) -> str:

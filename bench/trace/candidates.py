@@ -31,6 +31,8 @@ from bench.trace.signals import (
 from bench.units.conversion import scale_of
 from bench.units.grammar import UnitError
 
+#: Signals that only their own names stand for.
+BY_NAME = "supply_voltage", "load_position"
 #: Correlation from which a column is another's derivative; samples and columns that are compared.
 DERIVATIVE, ENOUGH, MOST = 0.9, 200_000, 64
 #: Weights of reasons: a well-known name, one that a joint's name gives, a word, a unit, a derivative (a current is one
@@ -154,9 +156,9 @@ def _reasons(channel: Channel, name: ColumnName, bare: bool) -> Reasons:
     if "torque" in told and unit is not None and not _fits("torque", unit) and _fits("force", unit):
         told = {"force"}
     found: Reasons = {}
-    for signal in (*WORDS, "force", "supply_voltage"):
+    for signal in (*WORDS, "force", *BY_NAME):
         fits = _fits(signal, unit)
-        if signal == "supply_voltage" and signal_of(_bare(channel)) != signal:
+        if signal in BY_NAME and signal_of(_bare(channel)) != signal:
             continue
         if (told and signal not in told) or (fits is False and not known):
             continue

@@ -16,6 +16,7 @@ from bench.units.grammar import UnitError, parse_unit
 #: SI unit of each known signal, one for each of KINDS.
 SI_UNITS: dict[str, tuple[str, str]] = {
     "position": ("rad", "m"),
+    "load_position": ("rad", "m"),
     "velocity": ("rad/s", "m/s"),
     "acceleration": ("rad/s**2", "m/s**2"),
     "current": ("A", "A"),

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 LARGEST = {
     "time": 1e12,
     "position": 1e12,
+    "load_position": 1e12,
     "velocity": 1e8,
     "acceleration": 1e12,
     "current": 1e8,
