@@ -5,15 +5,14 @@ One cause after the other, in the course's circuit.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 
-from bench.course.axis import MAINS, RPM, circuit, joined
+from bench.course.axis import MAINS, RPM, joined
 from bench.course.peak_torque import datasheet_curve, fall
 from bench.course.recordings import LabRecordings
 from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
 from bench.course.winding import WindingModel, WindingRun, full_speed, identified_axis, run_winding
 from bench.errors import BenchError
-from bench.plant.axis_model import AxisParameters
 from bench.report.document import Chart
 from bench.rig.limits import COLD, HOT
 from bench.rig.rig import Rig
@@ -22,38 +21,24 @@ from bench.rig.rig import Rig
 EVERY = 40
 
 
-@dataclass(frozen=True)
-class Split:
-    """The run-up by one cause after the other.
-
-    Attributes:
-        hot, cold: winding at 120 degC and at 20 degC, quasi-static.
-        inductive: at 20 degC with the assumed inductance.
-    """
-
-    hot: WindingRun
-    cold: WindingRun
-    inductive: WindingRun
-
-    @classmethod
-    def of(cls, rig: Rig, axis: AxisParameters) -> Split:
-        """Of a rig's motor that runs up an axis."""
-        own, demand = circuit(rig), full_speed(rig, axis)
-        ways = (HOT, False), (COLD, False), (COLD, True)
-        return cls(*(run_winding(WindingModel.of(rig, *way, own), axis, demand) for way in ways))
+#: Temperature of the winding as a run starts - degC - and whether it has its inductance, by the names of the corners.
+WAYS = {
+    "corner, hot, quasi-static": (HOT, False),
+    "corner, cold, quasi-static": (COLD, False),
+    "corner, cold, with inductance": (COLD, True),
+}
 
 
 def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
     """State how many rpm of the corner's shift are due to each of the two causes."""
-    rig = recordings.rig
-    found = Split.of(rig, identified_axis(recordings))
-    assumed = recordings.sources("motor", "electrical_time_constant")
-    corners = {
-        "corner, hot, quasi-static": (found.hot.corner, SIMULATED),
-        "corner, cold, quasi-static": (found.cold.corner, SIMULATED),
-        "corner, cold, with inductance": (found.inductive.corner, joined(SIMULATED, f"L/R: {assumed}")),
-    }
-    numbers = tuple(Number(name, speed * RPM, "rpm", source=source) for name, (speed, source) in corners.items())
+    rig, axis = recordings.rig, identified_axis(recordings)
+    demand = full_speed(rig, axis)
+    runs = {name: run_winding(WindingModel.of(rig, *way), axis, demand) for name, way in WAYS.items()}
+    inductance = f"L/R: {recordings.sources('motor', 'electrical_time_constant')}"
+    numbers = tuple(
+        Number(name, run.corner * RPM, "rpm", source=joined(SIMULATED, *([inductance] if WAYS[name][1] else [])))
+        for name, run in runs.items()
+    )
     hot, cold, inductive = (number.value for number in numbers)
     findings = (
         f"The winding is cold: with its lower resistance the voltage drives peak current up to {cold:.0f} rpm at "
@@ -61,7 +46,7 @@ def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
         f"by {inductive - cold:+.1f} rpm, as the current is still constant there; it only delays the fall beyond it."
         f"{_measured(recordings, inductive)}",
     )
-    return TaskResult(findings, numbers, (_torque_chart(rig, found),))
+    return TaskResult(findings, numbers, (_torque_chart(rig, runs),))
 
 
 def _measured(recordings: LabRecordings, simulated: float) -> str:
@@ -74,14 +59,11 @@ def _measured(recordings: LabRecordings, simulated: float) -> str:
     return f" Measured in task 10: {corner:.0f} rpm, {corner - simulated:+.0f} rpm from the simulation{made}."
 
 
-def _torque_chart(rig: Rig, found: Split) -> Chart:
+def _torque_chart(rig: Rig, runs: Mapping[str, WindingRun]) -> Chart:
     speed, torque = datasheet_curve(rig)
-    every = slice(None, None, EVERY)
-    simulated = {
-        f"{HOT:g} °C, quasi-static": found.hot,
-        f"{COLD:g} °C, quasi-static": found.cold,
-        f"{COLD:g} °C, with inductance": found.inductive,
-    }
-    curves = (curve(run.velocity[every] * RPM, run.torque[every], name) for name, run in simulated.items())
-    datasheet = curve(speed * RPM, torque, f"datasheet, {MAINS:g} V", "dashes")
-    return chart("Task 11: simulated peak torque", panel("speed n / rpm", "torque M / (N·m)", datasheet, *curves))
+    curves = [curve(speed * RPM, torque, f"datasheet, {MAINS:g} V", "dashes")]
+    for name, run in runs.items():
+        temperature, inductive = WAYS[name]
+        named = f"{temperature:g} °C, {'with inductance' if inductive else 'quasi-static'}"
+        curves.append(curve(run.velocity[::EVERY] * RPM, run.torque[::EVERY], named))
+    return chart("Task 11: simulated peak torque", panel("speed n / rpm", "torque M / (N·m)", *curves))

@@ -59,9 +59,9 @@ class WindingModel:
     inductive: bool
 
     @classmethod
-    def of(cls, rig: Rig, temperature: float, inductive: bool, own: Circuit | None = None) -> WindingModel:
-        """Of a rig's motor at MAINS, whose circuit may be given; raises InputError where the rig lacks something."""
-        return cls(own or circuit(rig), torque_constant(rig), motor_value(rig, "peak_current"), temperature, inductive)
+    def of(cls, rig: Rig, temperature: float, inductive: bool) -> WindingModel:
+        """Of a rig's motor at MAINS; raises InputError where the rig lacks something."""
+        return cls(circuit(rig), torque_constant(rig), motor_value(rig, "peak_current"), temperature, inductive)
 
     @property
     def resistance(self) -> float:
