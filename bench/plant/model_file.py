@@ -127,7 +127,7 @@ def lacking(stored: StoredModel) -> list[str]:
         stepped = f"{LOADED} instead of mujoco.mj_step(model, data)"
         if stored.mounting.gear_ratio != 1.0:  # where bench.Effects acts on the joint, and it is the motor's shaft
             stepped = "put the model onto a joint with bench export, and step it there with bench.Effects"
-        sentences.append(f"model.xml lacks {names}. To simulate it: {stepped}.")
+        sentences.append(f"model.xml lacks {names}. To simulate them too: {stepped}.")
     if names := by_kind[SEEN]:
         sentences.append(f"model.xml lacks {names}, which is in what sensors report, not in the motion.")
     return sentences

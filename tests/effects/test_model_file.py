@@ -131,7 +131,7 @@ def test_xml_moves_as_the_model(names):
 
 def test_xml_names_what_it_lacks():
     xml = model_xml(StoredModel("axis", model("stribeck_friction", "cogging_torque", "velocity_filter_lag")))
-    assert f"<!-- model.xml lacks stribeck_friction. To simulate it: {LOADED} instead of" in xml
+    assert f"<!-- model.xml lacks stribeck_friction. To simulate them too: {LOADED} instead of" in xml
     assert "<!-- model.xml lacks velocity_filter_lag, which is in what sensors report" in xml
     assert "lacks" not in model_xml(StoredModel("axis", model("cogging_torque")))
     geared = StoredModel("axis", model("torque_ripple"), mounting=Mounting(7.0))

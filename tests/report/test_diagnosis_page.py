@@ -188,7 +188,7 @@ def test_a_page_says_what_mujoco_lacks_of_the_model(diagnosed):
     model = diagnosed.model.model
     more = replace(diagnosed.model, model=model.with_effects((*model.effects, ripple)))
     answer = diagnosis(replace(diagnosed, model=more), "t").answers[question]
-    assert answer.startswith(f"No: model.xml lacks torque_ripple. To simulate it: {LOADED} ")
+    assert answer.startswith(f"No: model.xml lacks torque_ripple. To simulate them too: {LOADED} ")
 
 
 def test_tables_have_a_cell_for_each_heading(page):
