@@ -34,8 +34,8 @@ from bench.rig.rig import Rig
 STEP = 25e-6
 #: Time constant of the current loop - s.
 CURRENT_LOOP = 0.4e-3
-#: The run-up lasts as many times J*omega_0/M_max.
-LENGTH = 5.0
+#: The run-up lasts as many times J*omega_0/M_max: then torque is friction, within 1 % of its peak.
+LENGTH = 3.0
 #: Of the drive, torque asked for per missing speed - N*m*s/rad.
 VELOCITY_GAIN = 0.9
 
