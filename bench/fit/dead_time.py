@@ -26,12 +26,13 @@ from bench.arrays import NORMAL95, Array, rms, splined
 from bench.axis_kind import MISALIGNMENT, AxisKind
 from bench.effects.effect import Lag, lagged
 from bench.effects.signals import Signals
+from bench.errors import UndeterminedError
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.rows import Rows
 from bench.fit.solution import BLOCKS, block_edges, equations, estimated, solved
 from bench.parameter import Parameter
-from bench.trace.filter import Column
+from bench.trace.filter import Column, GaussianFilter
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
@@ -45,6 +46,8 @@ FEWEST, MOST, FINER = 256, 2**15, 8
 FOLLOWS = 0.5
 #: Longest dead time of a command that is sought - s -, and samples of it.
 LONGEST, MOST_LATE = 0.1, 60
+#: Share of noise in the second derivative of the effort from which on a wider filter is taken, and by which it is.
+NOISY, LOWER = 0.25, (1.5, 2.0, 3.0, 4.0, 6.0)
 #: Turns of the search of a dead time, and samples within which it stands.
 TURNS, STANDS = 8, 0.01
 
@@ -108,7 +111,8 @@ def dead_time(rows: Rows, hypothesis: Hypothesis, shift: float, search: bool = T
         shift: by which the torque is reported late - s.
         search: whether the shift is where a search begins, and not what it is.
     """
-    late, period = _fit_later(rows, hypothesis, shift), rows.scope.sample_period
+    rows, period = _quiet(rows), rows.scope.sample_period
+    late = _fit_later(rows, hypothesis, shift)
     for _ in range(TURNS if search else 0):
         left = late.value(MISALIGNMENT)
         if abs(left) < STANDS * period:
@@ -118,13 +122,28 @@ def dead_time(rows: Rows, hypothesis: Hypothesis, shift: float, search: bool = T
     at = int(np.flatnonzero(late.owners == MISALIGNMENT)[0])
     straight, (theta, half) = _straight_and_bent(late)
     delay = _parameter(-shift, float(straight[1][at]) + STANDS * period)
-    lag = _parameter(abs(shift + float(theta[at])), float(half[at]) + STANDS * period)
+    moved = float(theta[at]) - float(straight[0][at])  # by the second derivative; the third moves a lag by less
+    lag = _parameter(abs(shift + float(theta[at])), float(half[at]) + STANDS * period + abs(moved))
     expected = 0.5 * shift * abs(shift)  # of a lag, on the side of the columns
     share, reach = theta[-1] / expected, half[-1] / abs(expected)
     kind, bound = None, search and at in late.held
     if not bound and reach < abs(share - 0.5) < 1.0 + reach:  # on the side of one of them, and not far beyond
         kind = "dead_time" if share < 0.5 else "first_order_lag"
     return DeadTime(delay, lag, kind, period, bound)
+
+
+def _quiet(rows: Rows) -> Rows:
+    """Rows through the narrowest filter at which the effort's second derivative is hardly noise."""
+    found, cutoff = rows, rows.conditioning.filter.cutoff
+    for lower in LOWER:
+        noise = found.conditioning.effort_noise * found.conditioning.filter.noise_gain(2)
+        if noise < NOISY * rms(found.kept(_bent)):
+            break
+        try:
+            found = rows.through(GaussianFilter.from_cutoff(cutoff / lower, rows.scope.sample_period))
+        except UndeterminedError:
+            break
+    return found
 
 
 def _fit_later(rows: Rows, hypothesis: Hypothesis, shift: float) -> Fit:

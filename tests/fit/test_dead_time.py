@@ -64,7 +64,7 @@ def test_a_first_order_lag_is_no_dead_time():
 
 
 def test_slow_motion_does_not_tell_them_apart():
-    late = bench.identify(recorded(8e-3, noise=0.2), units=UNITS).dead_time
+    late = bench.identify(recorded(8e-3, faster=0.3, noise=0.2), units=UNITS).dead_time
     assert late.kind is None and ", or a first-order lag of" in str(late)
     for size in (late.delay, late.lag):
         assert size.ci95[0] <= 8e-3 <= size.ci95[1]
