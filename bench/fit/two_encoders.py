@@ -32,8 +32,8 @@ from bench.trace.trace import Trace
 
 WHAT, RECORD = "stiffness of the coupling", "quick reversals at high torque, or a finer encoder of the load"
 ALIKE = "the twist follows the acceleration; state motor.rotor_inertia in the rig"
-#: Gaps and middles tried, over the range of the twist, and tries of the search that follows.
-GAPS, MIDDLES, TRIES = 10, 5, 80
+#: Gaps and middles tried, over the range of the twist, and tries of the search that follows, and where it ends.
+GAPS, MIDDLES, TRIES, NEAR = 10, 5, 120, 2e-5
 #: By how much squares of independent rows must fall, in residual variances, for a gap; steps of both encoders in it.
 CLEAR, STEPS = 30.0, 2.0
 SIDES = "position", "load_position"
@@ -104,7 +104,8 @@ class Twist:
         ]
         begun = min(tried, key=self.squares)
         around = begun + np.array([[0.0, 0.0], [0.1 * reach, 0.0], [0.0, 0.05 * reach]])
-        options = {"maxfev": TRIES, "initial_simplex": around}
+        ends = {"xatol": NEAR * reach, "fatol": NEAR * self.squares(begun)}
+        options = {"maxfev": TRIES, "initial_simplex": around, **ends}
         found = minimize(self.squares, begun, method="Nelder-Mead", options=options)
         gap, middle, smooth = abs(float(found.x[0])), float(found.x[1]), self.at.filter
         rows = self.columns.shape[1] * smooth.stride * smooth.sample_period / (2.0 * math.sqrt(math.pi) * smooth.width)
