@@ -105,10 +105,11 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     """
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     direct, unsized = frozenset(effect.name for effect in kept), dict[str, Reason]()
+    visited: Sequence[Fit] = ()
     while True:
         untried = excluded | unsized.keys()
         effects = [effect for name, effect in catalogue().items() if name not in untried]
-        searched = search(bare, effects, policy)
+        searched = search(bare, effects, policy, known=visited)
         visited = searched.visited
         likely = probabilities(weighed(visited, recordings.holdout_rows, policy), direct, policy)
         chosen = likely.fits[likely.chosen]
@@ -117,7 +118,8 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
         if not more and not shift:
             break
         unsized |= more
-        bare = fit(bare.rows, replace(bare.hypothesis, shift=bare.hypothesis.shift + shift))
+        if shift:
+            bare, visited = fit(bare.rows, replace(bare.hypothesis, shift=bare.hypothesis.shift + shift)), ()
     events = frozenset(term.effect.name for term in last.terms[len(chosen.terms) :])
     return Suspects(
         fitted=last,

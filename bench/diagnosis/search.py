@@ -69,11 +69,12 @@ class Search:
         refused: why an effect that was fitted was not visited, by effect: a criterion of `bench.diagnosis.reason`.
     """
 
-    def __init__(self, bare: Fit, effects: Sequence[Effect], policy: Policy) -> None:
+    def __init__(self, bare: Fit, effects: Sequence[Effect], policy: Policy, known: Iterable[Fit] = ()) -> None:
         self.effects, self.policy, self.last = effects, policy, bare
         self.stopped: str | None = None
         self.refused: dict[Effect, str] = {}
-        self.fits: dict[Key, Fit] = {key_of(bare): bare}
+        kept = (one for one in known if all(term.effect.decoy or term.effect in effects for term in one.terms))
+        self.fits: dict[Key, Fit] = {key_of(fitted): fitted for fitted in (bare, *kept)}
         self.tried: dict[Key, tuple[Candidate, ...]] = {}
         self.grown: set[Key] = set()
         self.expanded: dict[Key, None] = {}
@@ -275,10 +276,9 @@ class Search:
     def add_many(self, fitted: Fit | None, most: int) -> None:
         """Visit a chain of effects each of which takes its part of the residual above noise."""
         while fitted is not None and self.policy.remains(fitted) and len(fitted.terms) < most:
-            tried = (each for each in self.candidates(fitted) if not each.term.effect.decoy)
-            least = self.part(fitted)
-            found = next((each for each in tried if each.gain > least), None)
-            fitted = None if found is None else self.added(fitted, found)
+            least, known = self.part(fitted), [each for each in self.candidates(fitted) if not each.term.effect.decoy]
+            tried = (self.added(fitted, each) for each in known if each.gain > least)
+            fitted = next((after for after in tried if after is not None), None)
 
     def add_decoy_waves(self, best: Fit) -> None:
         """Visit a wave of any form in the place of those of one number, and a decoy in the place of all waves."""
@@ -296,9 +296,17 @@ class Search:
                 self.add(fit(best.rows, kept.plus(Term(decoy, (number,))), best))
 
 
-def search(bare: Fit, effects: Sequence[Effect], policy: Policy, most: int = MOST) -> Search:
-    """Sets of effects around the most likely one; `most`: terms of a set."""
-    found = Search(bare, effects, policy)
+def search(bare: Fit, effects: Sequence[Effect], policy: Policy, most: int = MOST, known: Sequence[Fit] = ()) -> Search:
+    """Sets of effects around the most likely one.
+
+    Args:
+        bare: without an effect.
+        effects: to be tried.
+        policy: that weighs them.
+        most: terms of a set.
+        known: fits of an earlier search from the same one without an effect; those of other effects are left out.
+    """
+    found = Search(bare, effects, policy, known)
     found.run(most)
     return found
 
@@ -320,7 +328,7 @@ def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
 
 
 def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit:
-    """With an earlier effect in a form that no recording distinguishes, where only that is physical with the last."""
+    """With earlier effects as they are physical with the last: in a form that looks the same, or of other shapes."""
     if policy.physical(fitted):
         return fitted
     for index, term in enumerate(fitted.terms[:-1]):
@@ -329,6 +337,9 @@ def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit
             tried = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, term.shape)), fitted)
             if policy.physical(tried):
                 return tried
+    last = fitted.terms[-1]
+    if last.effect.physical(fitted.strengths(len(fitted.terms) - 1), last.shape, fitted.base):
+        return settled(fitted, policy)  # shapes that were found without the last are not those beside it
     return fitted
 
 
