@@ -142,26 +142,32 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
 def export(
     model: ModelArgument,
     out: Annotated[Path, Option(help="File to write.")],
-    mjcf: Annotated[Path | None, Option(help="MJCF of the robot that has the joint.")] = None,
+    mjcf: Annotated[Path | None, Option(help="MJCF or URDF of the robot that has the joint.")] = None,
     joint: Annotated[list[str] | None, Option(help="Joint that the model goes onto; of several, repeatable.")] = None,
     to: Annotated[
-        str, Option(help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
-    ] = "mjcf",
+        str | None, Option(help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
+    ] = None,
     actuator: Annotated[str | None, Option(help="With --to bam: BAM's name of the actuator.")] = None,
     snippet: Annotated[bool, Option("--snippet", help="A default class and a body on this joint alone.")] = False,
     ranges: Annotated[
         Path | None, Option(help="JSON of identify or diagnose: ranges for domain randomisation.")
     ] = None,
     armature: Annotated[str | None, Option(help="Inertia that becomes the joint's armature: motor, or all.")] = None,
+    with_assets: Annotated[
+        bool, Option("--with-assets", help="Copy meshes and textures into assets beside the file.")
+    ] = False,
 ) -> None:
     """Put a diagnosed model into a robot's MJCF, or write it as another simulator takes it, or ranges of its values."""
     from bench.plant.model_file import load_models
 
-    if [snippet, mjcf is not None, ranges is not None, to != "mjcf"].count(True) != 1:
+    alone = snippet or (to == "mjcf" and mjcf is None)  # without a robot, MJCF is the joint alone
+    if [alone, mjcf is not None, ranges is not None, to not in (None, "mjcf")].count(True) != 1:
         found = "found none or several of --mjcf, --snippet, --ranges, --to"
         raise InputError("bench export", found, "allowed: one of them, e.g. `--snippet`")
+    if with_assets and mjcf is None:
+        raise InputError("--with-assets", "found without --mjcf", "allowed: with a robot's MJCF, `--mjcf ROBOT.xml`")
     models, lines = load_models(model, joint or ()), []
-    if mjcf is None and to == "mjcf" and len(models) > 1:
+    if (alone or ranges is not None) and len(models) > 1:
         raise InputError(
             model, "found several joints", f"pick one: `--joint {next(iter(models))}`; the file has {', '.join(models)}"
         )
@@ -169,35 +175,47 @@ def export(
         from bench.export.mjcf import ranges_json
 
         text = ranges_json(next(iter(models.values())), ranges)
-    elif to != "mjcf":
+    elif to not in (None, "mjcf"):
         from bench.export.simulators import simulator_file
 
         text, lines = simulator_file(to, models, actuator)
     else:
-        text, lines = _mjcf(models, out, mjcf, joint, armature)
+        text, lines = _robot(models, out, mjcf, joint, armature, with_assets)
     write_text(out, text)
     for line in lines:
         common.say(line)
     common.list_files([out])
 
 
-def _mjcf(
-    models: Mapping[str, StoredModel], out: Path, mjcf: Path | None, joint: list[str] | None, armature: str | None
+def _robot(
+    models: Mapping[str, StoredModel],
+    out: Path,
+    robot: Path | None,
+    joint: list[str] | None,
+    armature: str | None,
+    with_assets: bool,
 ) -> tuple[str, list[str]]:
-    """Text of an MJCF with models of joints, and what went onto them."""
+    """Text of an MJCF or URDF with models of joints, and what went onto them."""
     from bench.export.mjcf import ArmatureShare, armature_of, joint_alone, robot_with
+    from bench.export.urdf import is_urdf, urdf_with
 
-    if mjcf is None:
+    if robot is None:
         name, lone = next(iter(models.items()))
         text, carried = joint_alone(lone, name)
         return text, list(carried.lines)
     if not joint and list(models) == [ALONE]:  # of a lone model, whose joint nobody has named
         models = {"": models[ALONE]}
+    if out.suffix == ".urdf":
+        if not is_urdf(robot):
+            raise InputError(out, f"found a URDF to be made of {robot.name}, an MJCF", "allowed: `--out robot_id.xml`")
+        text, lines = urdf_with(robot, models)
+        return text, list(lines)
     shares = {share.value: share for share in ArmatureShare}
     if armature is not None and armature not in shares:
         raise InputError("--armature", f"found '{armature}'", f"allowed: {', '.join(shares)}")
     share = shares.get(armature or "")
-    text, lines = robot_with(mjcf, {name: (one, armature_of(one, share)) for name, one in models.items()}, out)
+    placed = {name: (one, armature_of(one, share)) for name, one in models.items()}
+    text, lines = robot_with(robot, placed, out, with_assets=with_assets)
     return text, list(lines)
 
 

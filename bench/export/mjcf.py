@@ -21,6 +21,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ from bench.effects.effect import Effect
 from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.effects.present import named
 from bench.errors import InputError
-from bench.files import read_text
+from bench.files import read_text, whole
 from bench.names import nearest, plain
 from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_inertia
 from bench.plant.mjcf_file import read_mjcf
@@ -41,6 +42,8 @@ from bench.plant.robot import AddedBody, add_body, link_about_centre
 from bench.plant.silenced import silenced
 from bench.structured import json_text, parse_json
 
+#: Folder of a robot's meshes and textures, next to its file.
+ASSETS = "assets"
 #: The body of a file that holds the joint alone.
 BODY = "load"
 #: The body of what another one carries.
@@ -99,6 +102,7 @@ def robot_with(
     out: Path,
     added: Sequence[AddedBody] = (),
     kept: Sequence[str] = (),
+    with_assets: bool = False,
 ) -> tuple[str, tuple[str, ...]]:
     """Text of a robot's MJCF with models at its joints, and what went onto each in sentences.
 
@@ -108,9 +112,10 @@ def robot_with(
         out: where the text will stand, from where its meshes and textures are found.
         added: what the robot has beside its MJCF.
         kept: joints that were asked for and have no model.
+        with_assets: whether meshes, height fields and textures are copied into ASSETS next to `out`.
 
     Raises:
-        InputError: the MJCF cannot be read, or cannot have a model at its joint.
+        InputError: the MJCF cannot be read, an asset cannot be written, or cannot have a model at its joint.
     """
     spec, notes = read_mjcf(path)
     lines = [*notes, *(_beside(spec, one, path) for one in added)]
@@ -121,9 +126,31 @@ def robot_with(
     compiled(spec)
     for folder in ("meshdir", "texturedir"):
         where = path.resolve().parent / (getattr(spec, folder) or "")
-        setattr(spec, folder, os.path.relpath(where, out.resolve().parent))
+        if with_assets:
+            _copy_assets(spec, folder, where, out.resolve().parent / ASSETS)
+        setattr(spec, folder, ASSETS if with_assets else os.path.relpath(where, out.resolve().parent))
     spec.modelfiledir = str(out.resolve().parent)  # writing compiles once more
     return commented(spec, tuple(lines)), tuple(lines)
+
+
+def _copy_assets(spec: mujoco.MjSpec, kind: str, source: Path, target: Path) -> None:
+    """Copy the files that a robot takes from a folder of a kind into another, where it then finds them."""
+    named = [*spec.meshes, *spec.hfields, *spec.skins] if kind == "meshdir" else [*spec.textures]
+    for asset in named:
+        if asset.file:
+            asset.file = _copied(source / asset.file, target)
+        if kind == "texturedir":
+            asset.cubefiles = [_copied(source / one, target) if one else one for one in asset.cubefiles]
+
+
+def _copied(source: Path, target: Path) -> str:
+    """Copy a file into a folder; returns its name there, which tells files of one name in several folders apart."""
+    content = source.read_bytes()
+    names = chain([source.name], (f"{source.stem}_{k}{source.suffix}" for k in count(2)))
+    place = next(one for name in names if not (one := target / name).exists() or one.read_bytes() == content)
+    with whole(place) as temporary:
+        temporary.write_bytes(content)
+    return place.name
 
 
 def _beside(spec: mujoco.MjSpec, one: AddedBody, path: Path) -> str:

@@ -25,7 +25,7 @@ from bench.structured import json_text
 #: Constant and resistance of a motor whose torque is its voltage: it brakes by 1e-9 N*m*s/rad.
 UNIT_MOTOR = 1e-9
 #: What a simulator has no word for, but MuJoCo: natively, or as a step of its own.
-NATIVE = "MuJoCo has it: --to mjcf"
+NATIVE = "MuJoCo has it: --mjcf ROBOT"
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ def test_mjlab_gets_torque_cogging_and_bristles(monkeypatch):
     assert motor.lugre[2:4] == pytest.approx((0.08, 0.08))
     assert motor.motor_params.kt == motor.motor_params.resistance
     assert "elbow: carried: cogging_torque, presliding_friction" in lines
-    assert "elbow: not carried: cogging_torque (MuJoCo has it: --to mjcf)" in lines
+    assert "elbow: not carried: cogging_torque (MuJoCo has it: --mjcf ROBOT)" in lines
     assert "elbow: not carried: load_dependent_friction (bench.Effects steps it)" in lines
 
 
@@ -186,7 +186,7 @@ def test_newton_gets_a_spring(monkeypatch):
     loaded(text, monkeypatch)["onto"](builder)
     assert builder.joint_stiffness == pytest.approx([7.0, 0.5 * RATIO**2])
     assert builder.joint_armature == pytest.approx([7.0, 1e-4 * RATIO**2])
-    assert "elbow: not carried: cogging_torque (MuJoCo has it: --to mjcf)" in lines
+    assert "elbow: not carried: cogging_torque (MuJoCo has it: --mjcf ROBOT)" in lines
 
 
 def test_newton_has_no_spring_that_rests_elsewhere():
