@@ -186,6 +186,7 @@ def robot(
         Option(help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
     ] = None,
     without: Annotated[list[str] | None, Option(help="Effect not to try. Repeatable.")] = None,
+    stand: Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")] = False,
     json: common.JsonOption = None,
 ) -> None:
     """Identify every joint of a robot from its logs, find what each is missing, and write its MJCF with all of it."""
@@ -200,8 +201,8 @@ def robot(
     stated = common.positions(at or (), joint_units(mjcf))
     known = None if rig is None else bench.load_rig(rig)
     with progress(f"identifying the joints of {mjcf.name}") as done:
-        found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done)
-    options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded)}
+        found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done, stand)
+    options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded), "stand": stand}
     basis = provenance(rig, logs, options, holdout, mjcf)
     folder = out if found.answered else None
     document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder)

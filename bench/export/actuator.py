@@ -1,8 +1,13 @@
-"""A servo as MuJoCo's `<position>` actuator, in a file that another MJCF includes."""
+"""Servos as MuJoCo's `<position>` actuator, in a file that another MJCF includes, and as those of mjlab and Isaac Lab.
+
+All take the values that MuJoCo's has. mjlab and Isaac Lab delay by whole physics steps; their files hold the delay in
+seconds and the step that it is counted in.
+"""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from xml.sax.saxutils import escape, quoteattr
 
@@ -33,3 +38,63 @@ def position_actuator(joint: str, values: Mapping[str, float]) -> str:
         "  </actuator>\n"
         "</mujoco>\n"
     )
+
+
+def mjlab_actuators(servos: Mapping[str, Mapping[str, float]]) -> str:
+    """Module with an actuator of mjlab 1.6 for each joint, by values as `position_actuator` takes them."""
+    return _module(
+        "from mjlab.actuator import BuiltinPositionActuatorCfg",
+        "#: For `EntityArticulationInfoCfg(actuators=ACTUATORS)`, beside an MJCF without actuators at these joints.",
+        "ACTUATORS = (",
+        *(
+            f"    BuiltinPositionActuatorCfg(target_names_expr=({re.escape(name)!r},), {_pd(one)}, "
+            f"frictionloss={one['frictionloss']:.6g}, viscous_damping={one['damping']:.6g}, "
+            f"delay_min_lag=lag({one['delay']:.6g}), delay_max_lag=lag({one['delay']:.6g})),"
+            for name, one in servos.items()
+        ),
+        ")",
+    )
+
+
+def isaaclab_actuators(servos: Mapping[str, Mapping[str, float]]) -> str:
+    """The same with `DelayedPDActuatorCfg` of Isaac Lab 2.3 and later on Isaac Sim 5, where friction is an effort."""
+    return _module(
+        "from isaaclab.actuators import DelayedPDActuatorCfg",
+        "#: For `ArticulationCfg(actuators=ACTUATORS)`.",
+        "ACTUATORS = {",
+        *(
+            f"    {name!r}: DelayedPDActuatorCfg(joint_names_expr=[{re.escape(name)!r}], {_pd(one)}, "
+            f"friction={one['frictionloss']:.6g}, dynamic_friction={one['frictionloss']:.6g}, "
+            f"viscous_friction={one['damping']:.6g}, "
+            f"min_delay=lag({one['delay']:.6g}), max_delay=lag({one['delay']:.6g})),"
+            for name, one in servos.items()
+        ),
+        "}",
+    )
+
+
+def _module(classes: str, *lines: str) -> str:
+    """A module with the step that a delay is counted in."""
+    return "\n".join(
+        (
+            classes,
+            "",
+            "#: Physics step of your simulation - s.",
+            "STEP = 0.005",
+            "",
+            "",
+            "def lag(delay: float) -> int:",
+            '    """Physics steps of a delay - s."""',
+            "    return round(delay / STEP)",
+            "",
+            "",
+            *lines,
+            "",
+        )
+    )
+
+
+def _pd(values: Mapping[str, float]) -> str:
+    """What both have under the same names."""
+    limit = f", effort_limit={values['forcerange']:.6g}" if "forcerange" in values else ""
+    return f"stiffness={values['kp']:.6g}, damping={values['kv']:.6g}{limit}, armature={values['armature']:.6g}"

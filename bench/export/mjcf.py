@@ -103,6 +103,7 @@ def robot_with(
     added: Sequence[AddedBody] = (),
     kept: Sequence[str] = (),
     with_assets: bool = False,
+    stand: bool = False,
 ) -> tuple[str, tuple[str, ...]]:
     """Text of a robot's MJCF with models at its joints, and what went onto each in sentences.
 
@@ -113,11 +114,12 @@ def robot_with(
         added: what the robot has beside its MJCF.
         kept: joints that were asked for and have no model.
         with_assets: whether meshes, height fields and textures are copied into ASSETS next to `out`.
+        stand: whether a floating base is fixed.
 
     Raises:
         InputError: the MJCF cannot be read, an asset cannot be written, or cannot have a model at its joint.
     """
-    spec, notes = read_mjcf(path)
+    spec, notes = read_mjcf(path, stand)
     lines = [*notes, *(_beside(spec, one, path) for one in added)]
     for name, (stored, armature) in models.items():
         own = Armature(float(joint_of(spec, name, stored.model).armature), "the MJCF's own")

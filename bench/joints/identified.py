@@ -49,6 +49,7 @@ class JointLogs:
         stated: positions of joints that stand and that the logs do not hold - rad (m).
         excluded: effects that are not tried.
         added: what the robot has beside its MJCF.
+        stand: whether a floating base is fixed.
     """
 
     joint: str
@@ -59,6 +60,11 @@ class JointLogs:
     stated: Mapping[str, float] = field(default_factory=dict)
     excluded: frozenset[str] = frozenset()
     added: tuple[AddedBody, ...] = ()
+    stand: bool = False
+
+    def robot(self) -> Robot:
+        """The robot around the joint; InputError as `Robot.of`."""
+        return Robot.of(self.mjcf, self.joint, self.added, self.stand)
 
 
 @dataclass(frozen=True)
@@ -151,7 +157,7 @@ class IdentifiedJoint:
 def identified(asked: JointLogs) -> IdentifiedJoint:
     """The joint by its logs; what is wrong with them, or what they do not tell, is in it."""
     try:
-        robot = Robot.of(asked.mjcf, asked.joint, asked.added)
+        robot = asked.robot()
         rig = joint_rig(asked.rig, robot)
         used, left_out = _moving(asked, asked.logs, rig, robot)
         traces, poses = [trace for trace, _ in used.values()], next(iter(used.values()))[1]

@@ -29,7 +29,7 @@ from bench.fit.hypothesis import BASE, lay_out, plain
 from bench.fit.rows import Rows
 from bench.joints.identified import JointLogs, of_each
 from bench.parameter import Parameter
-from bench.plant.robot import AddedBody, Robot, joint_rig, logs_of
+from bench.plant.robot import AddedBody, joint_rig, logs_of
 from bench.trace.filter import Column
 
 #: Speeds over which friction may fall, as shares of the usual one; columns that every joint has of its own.
@@ -106,7 +106,7 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
     found = []
     for log in asked.logs:
         try:
-            robot = Robot.of(asked.mjcf, asked.joint, asked.added)
+            robot = asked.robot()
             rig = joint_rig(asked.rig, robot)
             trace, *changed = logs_of(log, rig, robot, asked.stated, changes)
             rows = Rows.of(trace, rig)
@@ -193,7 +193,7 @@ def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float
         UndeterminedError: the logs do not tell a mass above zero.
         InputError: the MJCF has no such body.
     """
-    Robot.of(work[0].mjcf, work[0].joint, (AddedBody(body),))
+    replace(work[0], added=(AddedBody(body),)).robot()
     products = of_joints(work, [AddedBody(body, 1.0, (x, y, z)) for x, y, z in PLACES.tolist()], progress)
     if not products:
         raise UndeterminedError(f"the payload of '{body}'", "no joint is determined by the logs", "a log of all joints")
@@ -270,7 +270,7 @@ def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
         return []
     found, links = shared(products, chosen), []
     for k, more, deviation in zip(chosen, found.strengths, found.deviations, strict=True):
-        own = Robot.of(work[k].mjcf, work[k].joint, work[k].added).link_inertia
+        own = work[k].robot().link_inertia
         factor = found.parameter(1.0 + more / own, deviation / own, "dimensionless")
         links.append(DoubtedLink(work[k].joint, factor, float(more)))
     return links

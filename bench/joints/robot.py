@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from bench.axis_kind import ARMATURE
@@ -34,6 +34,7 @@ class IdentifiedRobot(Shown):
         links: whose inertia is not the MJCF's; joints are reported with what theirs is.
         warnings: what concerns no joint alone.
         added: what the joints were identified with beside the MJCF.
+        stand: whether a floating base was fixed.
     """
 
     mjcf: Path
@@ -42,6 +43,7 @@ class IdentifiedRobot(Shown):
     links: tuple[DoubtedLink, ...] = ()
     warnings: tuple[str, ...] = ()
     added: tuple[AddedBody, ...] = ()
+    stand: bool = False
 
     def __getitem__(self, joint: str) -> IdentifiedJoint:
         return meant(joint, self.joints)
@@ -68,7 +70,8 @@ class IdentifiedRobot(Shown):
             origin = "; ".join(filter(None, ["all that moved but the links", self.joints[name].contested]))
             armature = None if found is None else Armature(max(found.value, 0.0), origin)
             models[name] = model, armature
-        return robot_with(self.mjcf, models, out, self.added, [name for name in self.joints if name not in models])
+        kept = [name for name in self.joints if name not in models]
+        return robot_with(self.mjcf, models, out, self.added, kept, stand=self.stand)
 
 
 def robot(
@@ -81,6 +84,7 @@ def robot(
     excluded: str | Collection[str] = (),
     payload: AddedBody | str | None = None,
     progress: Callable[[float], None] = lambda share: None,
+    stand: bool = False,
 ) -> IdentifiedRobot:
     """Identify and diagnose every joint of a robot, each beside the rest of it; one that fails leaves the others.
 
@@ -94,6 +98,7 @@ def robot(
         excluded: effects that are not tried.
         payload: that a body carried in the logs, or the name of a body whose payload is sought.
         progress: called with the share done.
+        stand: whether a floating base is fixed where the MJCF has it.
 
     Raises:
         InputError: no log, an MJCF that cannot be read, or a joint that it does not have.
@@ -105,7 +110,17 @@ def robot(
     names = _required(Path(mjcf), joints)
     asked = [name for name in names if not joints or name in joints]
     unseen = None if holdout is None else Path(holdout)
-    work = [JointLogs(name, Path(mjcf), tuple(paths), unseen, known, stated or {}, left_out) for name in asked]
+    of_all = JointLogs("", Path(mjcf), tuple(paths), unseen, known, stated or {}, left_out, stand=stand)
+    return _answered(of_all, [replace(of_all, joint=name) for name in asked], payload, progress)
+
+
+def _answered(
+    of_all: JointLogs, work: list[JointLogs], payload: AddedBody | str | None, progress: Callable[[float], None]
+) -> IdentifiedRobot:
+    """All joints, with a payload that is known or sought, and again where links have another inertia.
+
+    `of_all` is what is asked of each, but for its name.
+    """
     sought, warnings = None, list[str]()
     if isinstance(payload, str):
         try:
@@ -120,7 +135,8 @@ def robot(
     if links:
         work = carrying(work, [AddedBody(joint=one.joint, inertia=one.inertia) for one in links])
         found = _identified(work, progress)
-    return IdentifiedRobot(Path(mjcf), found, sought, tuple(links), tuple(warnings), work[0].added if work else ())
+    added = work[0].added if work else ()
+    return IdentifiedRobot(of_all.mjcf, found, sought, tuple(links), tuple(warnings), added, of_all.stand)
 
 
 def _paths(logs: str | Path | Sequence[str | Path]) -> list[Path]:

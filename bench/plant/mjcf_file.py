@@ -29,35 +29,36 @@ _NAN = re.compile(r"""\b(\w+)\s*=\s*["']([\s\d.eE+-]*\bnan\b[^"'<]*)["']""", re.
 FINITE = ("qpos0", "body_mass", "body_inertia", "dof_armature", "dof_damping", "dof_frictionloss", "jnt_stiffness")
 
 
-def read_mjcf(path: Path) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
+def read_mjcf(path: Path, stand: bool = False) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
     """What an MJCF or URDF says that MuJoCo makes a model of, as `read_spec`; the files that it names are read with it.
 
-    InputError where one of them is not a regular file, or MuJoCo does not make a model of it within LIMITS.
+    With `stand` a floating base is fixed where the file has it. InputError where one of the files is not a regular
+    file, or MuJoCo does not make a model of it within LIMITS.
     """
     _read_all(path)
-    fault = _outcome(str(path), path.stat().st_mtime_ns)
+    fault = _outcome(str(path), path.stat().st_mtime_ns, stand)
     if isinstance(fault, Failure):
         raise InputError(path, f"MuJoCo makes no model of it: {fault.reason}", "allowed: MJCF that it compiles")
     if fault:
         raise InputError(path, f"MuJoCo refuses it: {fault}", "allowed: MJCF")
     with silenced():
-        return read_spec(str(path))
+        return read_spec(str(path), stand)
 
 
 @lru_cache(maxsize=1)
-def _outcome(path: str, _changed: int) -> str | Failure:
+def _outcome(path: str, _changed: int, stand: bool) -> str | Failure:
     """What the process says, once of a robot of many joints."""
     if watched():
-        return _fault(path)
+        return _fault((path, stand))
     with WorkerProcess(_fault, LIMITS) as process:
-        return process.do(path)
+        return process.do((path, stand))
 
 
-def _fault(path: str) -> str:
+def _fault(asked: tuple[str, bool]) -> str:
     """Why an MJCF is none; empty if it is one."""
     with silenced():
         try:
-            model = read_spec(path)[0].compile()
+            model = read_spec(*asked)[0].compile()
             mujoco.mj_forward(model, mujoco.MjData(model))
         except (ValueError, OSError, RuntimeError, mujoco.FatalError, UnicodeError) as error:
             return " ".join(str(error).split())
@@ -65,16 +66,23 @@ def _fault(path: str) -> str:
     return f"{wrong[0]} is not finite" if wrong else ""
 
 
-def read_spec(path: str) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
+def read_spec(path: str, stand: bool = False) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
     """What an MJCF or URDF says, without meshes that are not there, and these in words.
 
-    Raises ValueError as MuJoCo does, and where an inertia is made of such a mesh.
+    With `stand` also without free joints, and then without keyframes, which give these a pose. Raises ValueError as
+    MuJoCo does, and where the inertia of a body that moves is made of such a mesh.
     """
-    spec = mujoco.MjSpec.from_file(path)
+    spec, notes = mujoco.MjSpec.from_file(path), []
+    free = [joint for joint in spec.joints if joint.type == mujoco.mjtJoint.mjJNT_FREE] if stand else []
+    if free:
+        bodies = ", ".join(f"'{joint.parent.name}'" for joint in free)
+        notes.append(f"{bodies} is fixed as on a stand" + (", keyframes are left out" if spec.keys else ""))
+    for element in (*free, *(spec.keys if free else ())):
+        spec.delete(element)
     folder = Path(path).parent / spec.meshdir
     missing = {mesh.name: mesh for mesh in spec.meshes if mesh.file and not (folder / mesh.file).is_file()}
     for geom in [one for one in spec.geoms if one.meshname in missing]:
-        if not geom.parent.explicitinertial:
+        if not geom.parent.explicitinertial and _moves(geom.parent):
             raise ValueError(
                 f"mesh '{geom.meshname}' is not there, and the inertia of '{geom.parent.name}' is made of it"
             )
@@ -82,7 +90,16 @@ def read_spec(path: str) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
     for mesh in missing.values():
         spec.delete(mesh)
     note = f"meshes that are not there are left out of {Path(path).name}: {', '.join(sorted(missing))}"
-    return spec, (note,) if missing else ()
+    return spec, (*notes, *([note] if missing else []))
+
+
+def _moves(body: mujoco.MjsBody) -> bool:
+    """Whether a body has a joint, or is carried by one that has."""
+    while body is not None and body.name != "world":
+        if body.joints:
+            return True
+        body = body.parent
+    return False
 
 
 def _read_all(path: Path) -> None:

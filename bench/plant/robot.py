@@ -87,8 +87,8 @@ def joint_units(path: Path) -> dict[str, str]:
     return {name: unit for name, unit in found.items() if name and unit is not None}
 
 
-def _loaded(path: Path, added: Sequence[AddedBody] = ()) -> tuple[mujoco.MjModel, tuple[str, ...]]:
-    spec, notes = read_mjcf(path)
+def _loaded(path: Path, added: Sequence[AddedBody] = (), stand: bool = False) -> tuple[mujoco.MjModel, tuple[str, ...]]:
+    spec, notes = read_mjcf(path, stand)
     for k, one in enumerate(added):
         add_body(spec, f"added {k}", one, path)
     with silenced():
@@ -135,13 +135,13 @@ class Robot:
     notes: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, path: Path, joint: str | None, added: Sequence[AddedBody] = ()) -> Robot:
-        """From an MJCF or URDF file, with what its robot has beside that.
+    def of(cls, path: Path, joint: str | None, added: Sequence[AddedBody] = (), stand: bool = False) -> Robot:
+        """From an MJCF or URDF file, with what its robot has beside that; with `stand` a floating base is fixed.
 
         InputError if there is no such file or joint; if a joint of its tree has more than one coordinate; if a loop, a
         tendon or an equality of the MJCF puts a torque on it that no log tells.
         """
-        model, notes = _loaded(path, added)
+        model, notes = _loaded(path, added, stand)
         names = [model.joint(k).name for k in range(model.njnt)]
         if joint is None or joint not in names:
             found = "missing" if joint is None else f"found no joint '{joint}'{nearest(joint, names)}"
@@ -153,7 +153,10 @@ class Robot:
             if int(model.jnt_type[k]) not in UNITS:
                 body = model.body(int(model.jnt_bodyid[k])).name
                 found = "found a free or ball joint, whose motion no log of joints tells"
-                allowed = "for a robot on a stand, delete this joint and the <keyframe> element from the file"
+                allowed = (
+                    "for a robot on a stand, `bench robot --stand`, or delete this joint and the <keyframe> element "
+                )
+                allowed += "from the file; on its feet the forces of the ground are in no log of joints"
                 raise InputError(f"{path}: body '{body}'", found, allowed)
         for reason in _bound(model, model.joint(joint).id):
             found = f"found {reason}, whose torque no log tells"

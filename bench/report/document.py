@@ -411,7 +411,12 @@ class File(Part):
 
 
 #: Media types of files to take along, by the endings of their names.
-MEDIA = {"json": "application/json", "toml": "application/toml", "xml": "application/xml"}
+MEDIA = {
+    "json": "application/json",
+    "py": "text/x-python",
+    "toml": "application/toml",
+    "xml": "application/xml",
+}
 
 
 class Downloads(Part):

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.export.actuator import position_actuator
+from bench.export.actuator import isaaclab_actuators, mjlab_actuators, position_actuator
 from bench.names import words
 from bench.parameter import Parameter
 from bench.report import document as doc
@@ -64,7 +64,13 @@ def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None)
         tables.append(doc.table("Not determined", ("quantity", "why~"), rows))
     files = [doc.file(JSON, "all of it as numbers", servo_json(found, provenance) + "\n")]
     if of.actuator:
-        files.insert(0, doc.file(ACTUATOR, "the MuJoCo actuator", position_actuator(found.joint, of.actuator)))
+        servos = {found.joint: of.actuator}
+        files = [
+            doc.file(ACTUATOR, "the MuJoCo actuator", position_actuator(found.joint, of.actuator)),
+            doc.file("mjlab.py", "the same for mjlab", mjlab_actuators(servos)),
+            doc.file("isaaclab.py", "the same for Isaac Lab", isaaclab_actuators(servos)),
+            *files,
+        ]
     return doc.Document(
         title=title,
         subject=f"Position servo of {title}",
