@@ -337,8 +337,8 @@ def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit
             tried = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, term.shape)), fitted)
             if policy.physical(tried):
                 return tried
-    last = fitted.terms[-1]
-    if last.effect.physical(fitted.strengths(len(fitted.terms) - 1), last.shape, fitted.base):
+    last, strengths = fitted.terms[-1], fitted.strengths(len(fitted.terms) - 1)
+    if fitted.base.inertia > 0.0 and last.effect.physical(strengths, last.shape, fitted.base):
         return settled(fitted, policy)  # shapes that were found without the last are not those beside it
     return fitted
 
