@@ -32,7 +32,7 @@ from bench.fit.hypothesis import Term, on_other_side, outer_loads
 LIMIT = "limit of effects reached"
 #: Terms of a set at most: more waves or events fit anything.
 MOST = 12
-#: Effects whose shapes are searched in addition to a set, or in the place of one of its effects.
+#: Effects whose shapes are searched in addition to a set, in the place of one of its effects, or as next of a chain.
 WIDTH = 3
 #: Sets expanded in succession without a higher score before the search ends, if more than noise remains: in some pairs
 #: neither effect explains much without the other.
@@ -277,7 +277,7 @@ class Search:
         """Visit a chain of effects each of which takes its part of the residual above noise."""
         while fitted is not None and self.policy.remains(fitted) and len(fitted.terms) < most:
             least, known = self.part(fitted), [each for each in self.candidates(fitted) if not each.term.effect.decoy]
-            tried = (self.added(fitted, each) for each in known if each.gain > least)
+            tried = (self.added(fitted, each) for each in known[:WIDTH] if each.gain > least)
             fitted = next((after for after in tried if after is not None), None)
 
     def add_decoy_waves(self, best: Fit) -> None:
