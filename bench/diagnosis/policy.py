@@ -105,6 +105,11 @@ class Policy:
             and outlasts_impacts(fitted)
         )
 
+    def last_is_physical(self, fitted: Fit) -> bool:
+        """Whether the last effect keeps within what physics allows, whatever the others do."""
+        term, strengths = fitted.terms[-1], fitted.strengths(len(fitted.terms) - 1)
+        return fitted.base.inertia > 0.0 and term.effect.physical(strengths, term.shape, fitted.base)
+
     def replaceable(self, fitted: Fit, other: Fit) -> bool:
         """Whether the numbers that another fit has fewer, one at least, explain no more than chance."""
         numbers = max(freedom(fitted) - freedom(other), 1)

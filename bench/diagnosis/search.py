@@ -193,14 +193,20 @@ class Search:
                 least, width = min(least, max(rest, BESIDE_NOISE * noise)), width - 1
         return least
 
-    def added(self, fitted: Fit, candidate: Candidate) -> Fit | None:
-        """The fit with a candidate of searched shape; None if impossible, or no more than damped noise."""
+    def added(self, fitted: Fit, candidate: Candidate, together: bool = False) -> Fit | None:
+        """The fit with a candidate of searched shape; None if impossible, or no more than damped noise.
+
+        `together`: where the candidate is possible and another effect no longer is, all shapes are searched, as those
+        that were found without it are not those next to it.
+        """
         effect = candidate.term.effect
         known = self.fits.get(key_of(fitted, effect))
         if known is not None and not effect.repeatable:
             return known
         after = shaped(fitted, fitted.hypothesis.plus(candidate.term), len(fitted.terms))
         after = physical_form(after, self.effects, self.policy)
+        if together and not self.policy.physical(after) and self.policy.last_is_physical(after):
+            after = settled(after, self.policy)
         if not self.policy.physical(after):
             self.refused[effect] = "impossible"
         elif self.policy.only_damps(fitted, after):
@@ -277,7 +283,7 @@ class Search:
         """Visit a chain of effects each of which takes its part of the residual above noise."""
         while fitted is not None and self.policy.remains(fitted) and len(fitted.terms) < most:
             least, known = self.part(fitted), [each for each in self.candidates(fitted) if not each.term.effect.decoy]
-            tried = (self.added(fitted, each) for each in known[:WIDTH] if each.gain > least)
+            tried = (self.added(fitted, each, together=True) for each in known[:WIDTH] if each.gain > least)
             fitted = next((after for after in tried if after is not None), None)
 
     def add_decoy_waves(self, best: Fit) -> None:
@@ -328,7 +334,7 @@ def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
 
 
 def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit:
-    """With earlier effects as they are physical with the last: in a form that looks the same, or of other shapes."""
+    """With an earlier effect in a form that no recording distinguishes, where only that is physical with the last."""
     if policy.physical(fitted):
         return fitted
     for index, term in enumerate(fitted.terms[:-1]):
@@ -337,9 +343,6 @@ def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit
             tried = fit(fitted.rows, fitted.hypothesis.with_term(index, Term(effect, term.shape)), fitted)
             if policy.physical(tried):
                 return tried
-    last, strengths = fitted.terms[-1], fitted.strengths(len(fitted.terms) - 1)
-    if fitted.base.inertia > 0.0 and last.effect.physical(strengths, last.shape, fitted.base):
-        return settled(fitted, policy)  # shapes that were found without the last are not those beside it
     return fitted
 
 

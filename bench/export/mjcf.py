@@ -33,7 +33,7 @@ from bench.effects.effect import Effect
 from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.effects.present import named
 from bench.errors import InputError
-from bench.files import read_text, whole
+from bench.files import read_bytes, read_text, whole
 from bench.names import nearest, plain
 from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_inertia
 from bench.plant.mjcf_file import read_mjcf
@@ -147,9 +147,9 @@ def _copy_assets(spec: mujoco.MjSpec, kind: str, source: Path, target: Path) -> 
 
 def _copied(source: Path, target: Path) -> str:
     """Copy a file into a folder; returns its name there, which tells files of one name in several folders apart."""
-    content = source.read_bytes()
+    content = read_bytes(source, "a robot's mesh or texture")
     names = chain([source.name], (f"{source.stem}_{k}{source.suffix}" for k in count(2)))
-    place = next(one for name in names if not (one := target / name).exists() or one.read_bytes() == content)
+    place = next(one for name in names if not (one := target / name).exists() or read_bytes(one, "an asset") == content)
     with whole(place) as temporary:
         temporary.write_bytes(content)
     return place.name
