@@ -38,7 +38,9 @@ FILES = {
     "log.csv": TABLE,
     "rig.toml": RIG,
     "robot.xml": ROBOT,
-    "legged.xml": ROBOT.replace("<body><joint", '<body name="trunk"><freejoint/><joint'),
+    "legged.xml": ROBOT.replace(
+        "<worldbody>", '<worldbody><body name="trunk"><freejoint/><geom size="0.1" mass="1"/>'
+    ).replace("</worldbody>", "</body></worldbody>"),
     "joint_log.csv": csv_of(*columns(), head="time [s],elbow.velocity [rad/s],elbow.torque [N*m]"),
     "no_time.csv": "\n".join(",".join(row.split(",")[1:]) for row in TABLE.splitlines()),
     "no_effort.csv": "\n".join(",".join(row.split(",")[:2]) for row in TABLE.splitlines()),
