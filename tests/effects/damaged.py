@@ -43,7 +43,7 @@ SINGLES = {
     "unbalance": (0.15, 0.3),
     "stribeck_friction": (0.2, 3.0),
 }
-#: What damages are tried on: nothing hidden and two of the singles; the others take longer than they tell.
+#: What damages are tried on: nothing hidden and one of the singles; the others take longer than they tell.
 HIDDEN = (
     None,
     *(pytest.param(name, marks=pytest.mark.slow) if k < len(SINGLES) - 1 else name for k, name in enumerate(SINGLES)),
