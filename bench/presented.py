@@ -95,7 +95,7 @@ class Shown(ByName):
             figsize: width and height of the new figure - inch.
 
         Raises:
-            InputError: no such name, or an estimate that was read from a file: it has no recording beside it.
+            InputError: no such name, or an estimate that was read from a file: it contains no recording.
         """
         return self.renderer().plot(self, names, ax, figsize)
 

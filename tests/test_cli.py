@@ -48,7 +48,7 @@ def test_demo_hides_an_effect_finds_it_and_ends_with_what_is_next(bench, tmp_pat
         assert found["parameters"][name]["value"] == pytest.approx(true["value"], rel=0.02), name
     *_, page, yours = out.splitlines()
     assert page == "the page: here/report.html"
-    assert yours.startswith("now yours: bench diagnose ")
+    assert yours.startswith("your recording: bench diagnose ")
 
 
 def test_simulate_writes_a_trace_and_its_truth(bench, tmp_path):

@@ -113,7 +113,7 @@ REFUSED = {
     "bench.identify(trace, 5)": r"rig: found 5; allowed: a Rig, a rig file",
     'bench.load_rig("emp")': r"no shipped rig, did you mean 'emps'",
     'bench.Diagnosis.load("estimate")': r"estimate/diagnosis.npz: no such file",
-    'bench.Estimate.load("estimate.json").plot()': r"plot\(\), residuals: found no recording beside the estimate",
+    'bench.Estimate.load("estimate.json").plot()': r"plot\(\), residuals: found an estimate without its recording",
     'bench.Estimate.load("kept/diagnosis.json")': r"kept/diagnosis.json: holds no estimate",
 }
 

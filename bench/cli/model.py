@@ -154,7 +154,7 @@ def export(
     ] = None,
     armature: Annotated[str | None, Option(help="Inertia that becomes the joint's armature: motor, or all.")] = None,
     with_assets: Annotated[
-        bool, Option("--with-assets", help="Copy meshes and textures into assets beside the file.")
+        bool, Option("--with-assets", help="Copy meshes and textures into assets, next to the file.")
     ] = False,
 ) -> None:
     """Put a diagnosed model into a robot's MJCF, or write it as another simulator takes it, or ranges of its values."""

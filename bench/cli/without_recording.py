@@ -35,7 +35,7 @@ def demo(
     with progress("demo") as done:
         found, files = run_demo(out, seed, done)
     common.tell(found, files)
-    common.say(f"\nthe page: {readable(out / 'report.html')}\nnow yours: bench diagnose RECORDING --out found")
+    common.say(f"\nthe page: {readable(out / 'report.html')}\nyour recording: bench diagnose RECORDING --out found")
 
 
 def simulate(

@@ -21,6 +21,8 @@ LAB = asset("data", "rigs", "lab.toml")
 MAINS = 230.0
 #: rpm in one rad/s, kg*cm**2 in one kg*m**2.
 RPM, KG_CM2 = 30.0 / math.pi, 1e4
+#: What to do where current and speed are counted in opposite directions.
+TURN = 'turn one of them by a rig.toml next to it with [trace.columns] current = "-name of its column [unit]"'
 #: Words that a source in the motor catalogue begins with, which a report calls it by.
 _CATALOGUE = ("assumed", "datasheet", "the course")
 #: What values of the motor are needed for.

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bench.arrays import NORMAL95, Array, rms
-from bench.course.axis import KG_CM2, joined
+from bench.course.axis import KG_CM2, TURN, joined
 from bench.course.plausible import balance
 from bench.course.recordings import LabRecordings
 from bench.course.result import COMPUTED, RECORDING, Number, TaskResult, chart, curve, panel
@@ -99,7 +99,7 @@ def require_positive(inertia: float) -> None:
         raise UndeterminedError(
             "moment of inertia",
             f"it comes out as {inertia * KG_CM2:.3g} kg*cm**2, as torque and acceleration have opposite signs",
-            'or turn one of them by a rig.toml beside it with [trace.columns] current = "-name of its column [unit]"',
+            f"or {TURN}",
         )
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.arrays import Array
-from bench.course.axis import RPM
+from bench.course.axis import RPM, TURN
 from bench.course.plausible import LATE, balance, glitches
 from bench.course.run import WIDTH, LabRun, made_run
 from bench.course.ways import LATE_METHODS, Way
@@ -24,7 +24,6 @@ DEG = math.pi / 180.0
 SPEEDS = {"rad/s": 1.0, "deg/s": DEG, "rpm": 1.0 / RPM, "turns/s": 2.0 * math.pi}
 #: Rounds in which a delay is searched, as a long one is not linear.
 ROUNDS = 6
-TURN = 'turn one of them by a rig.toml beside it with [trace.columns] current = "-name of its column [unit]"'
 TOGETHER = "record both in one task of the drive"
 HALF_SAMPLE, BARE = "half-sample lag", "backward difference"
 #: What the text's equations give literally: its backward difference (16) is half a sample late, in the bare and in the

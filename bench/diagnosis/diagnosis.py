@@ -243,7 +243,7 @@ def diagnose(
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
         InputError: rig and recording do not fit together, or a check of a recording fails.
     """
-    policy, told = policy or POLICY, progress or (lambda share: None)
+    policy, report = policy or POLICY, progress or (lambda share: None)
     rig, traces = recordings_of(trace, rig, units)
     left_out = frozenset(named(one, "excluded").name for one in ([excluded] if isinstance(excluded, str) else excluded))
     gated = [passed(each, rig) for each in traces]
@@ -254,9 +254,9 @@ def diagnose(
     if recordings.rows is not bare.rows:
         bare = fit_bare(recordings.rows)
         suspects = replace(suspects, fitted=fit(recordings.rows, suspects.fitted.hypothesis, suspects.fitted))
-    told(0.6)
+    report(0.6)
     added = add(recordings, suspects)
-    told(0.9)
+    report(0.9)
     shown, checks = show(bare, added), joined([each.checks for each in gated])
     return replace(shown, checks=checks, warnings=[*shown.warnings, *recordings.warnings, *moves])
 

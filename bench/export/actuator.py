@@ -44,7 +44,7 @@ def mjlab_actuators(servos: Mapping[str, Mapping[str, float]]) -> str:
     """Module with an actuator of mjlab 1.6 for each joint, by values as `position_actuator` takes them."""
     return _module(
         "from mjlab.actuator import BuiltinPositionActuatorCfg",
-        "#: For `EntityArticulationInfoCfg(actuators=ACTUATORS)`, beside an MJCF without actuators at these joints.",
+        "#: For `EntityArticulationInfoCfg(actuators=ACTUATORS)`, with an MJCF that has no actuators at these joints.",
         "ACTUATORS = (",
         *(
             f"    BuiltinPositionActuatorCfg(target_names_expr=({re.escape(name)!r},), {_pd(one)}, "

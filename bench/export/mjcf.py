@@ -146,7 +146,7 @@ def _copy_assets(spec: mujoco.MjSpec, kind: str, source: Path, target: Path) -> 
 
 
 def _copied(source: Path, target: Path) -> str:
-    """Copy a file into a folder; returns its name there, which tells files of one name in several folders apart."""
+    """Copy a file into a folder; returns its name there, a new one where another file has it."""
     content = read_bytes(source, "a robot's mesh or texture")
     names = chain([source.name], (f"{source.stem}_{k}{source.suffix}" for k in count(2)))
     place = next(one for name in names if not (one := target / name).exists() or read_bytes(one, "an asset") == content)

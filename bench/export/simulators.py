@@ -145,7 +145,7 @@ def _mjlab(joints: Sequence[SimulatedJoint], _: str | None) -> Written:
         "from mjlab.actuator import BuiltinDcMotorActuatorCfg, DcMotorInputMode, DcMotorPhysicalParams\n",
         "#: A motor whose torque in N*m is its voltage in V.",
         f"TORQUE = DcMotorPhysicalParams(kt={UNIT_MOTOR}, ke={UNIT_MOTOR}, resistance={UNIT_MOTOR})",
-        "#: For `EntityArticulationInfoCfg(actuators=ACTUATORS)`, beside an MJCF without actuators at these joints.",
+        "#: For `EntityArticulationInfoCfg(actuators=ACTUATORS)`, with an MJCF that has no actuators at these joints.",
         "ACTUATORS = (",
         *(f"    BuiltinDcMotorActuatorCfg({motor}, {_arguments(entry)})," for entry in entries),
         ")",

@@ -1,4 +1,4 @@
-"""Friction of joints in a robot's URDF; what URDF has no word for is told.
+"""Friction of joints in a robot's URDF; what URDF cannot represent is reported.
 
 `<dynamics damping friction>` and `<limit effort>` are on the joint's side of a gear, as in the MJCF. All else of the
 file stays as it is. Source: the XML specification of URDF, element `joint` (wiki.ros.org/urdf/XML/joint).
@@ -45,8 +45,8 @@ def urdf_with(path: Path, models: Mapping[str, StoredModel]) -> tuple[str, tuple
             _child(joints[name], "limit").set("effort", f"{one.limit:.9g}")
         lines.append(f"{name}: damping {one.damping:.4g}, friction {one.coulomb:.4g}")
         unit = stored.model.parameters.kind.inertia_unit
-        lines.append(f"{name}: not carried: armature {one.armature:.4g} {unit} (URDF has no word for it; MJCF has)")
-        lines += [f"{name}: not carried: {effect.name} (URDF has no word for it)" for effect in stored.model.effects]
+        lines.append(f"{name}: not carried: armature {one.armature:.4g} {unit} (URDF cannot represent it; MJCF can)")
+        lines += [f"{name}: not carried: {effect.name} (URDF cannot represent it)" for effect in stored.model.effects]
     ElementTree.indent(root)
     return f'<?xml version="1.0"?>\n{ElementTree.tostring(root, encoding="unicode")}\n', tuple(lines)
 

@@ -42,14 +42,14 @@ SIDES = {"torque": -1.0, "current": 1.0}
 LATER, BENT = "later effort", "second derivative of the effort"
 #: Samples of a stretch in which a command is followed, at least and at most, and places between two of them.
 FEWEST, MOST, FINER = 256, 2**15, 8
-#: Share of the torque's deviation that may be left of one that follows its command.
+#: Residual of a torque that follows its command, over its standard deviation, at most.
 FOLLOWS = 0.5
 #: Longest dead time of a command that is sought - s -, and samples of it.
 LONGEST, MOST_LATE = 0.1, 60
 #: Share of noise in the second derivative of the effort from which on a wider filter is taken, and by which it is.
 NOISY, LOWER = 0.25, (1.5, 2.0, 3.0, 4.0, 6.0)
-#: Turns of the search of a dead time, and samples within which it stands.
-TURNS, STANDS = 8, 0.01
+#: Turns of the search of a dead time, and samples by which it moves in the last.
+TURNS, SETTLED = 8, 0.01
 
 
 @dataclass(frozen=True)
@@ -73,18 +73,18 @@ class DeadTime:
     def __str__(self) -> str:
         late = self.delay.value > 0.0
         size, lag = (f"{1e3 * abs(one.value):.3g} ± {1e3 * one.half_width:.2g} ms" for one in (self.delay, self.lag))
-        told = (
+        text = (
             f"the torque acts {size} {'after' if late else 'before'} it is reported, which is more than a sample "
             f"({1e3 * self.period:.3g} ms): "
         )
         dead = f"a dead time of {'the command or of the sensors of the motion' if late else 'its reading'}"
         if self.bound:
-            return f"{told}the search ended at its bound; record torque and motion by one clock"
+            return f"{text}the search ended at its bound; record torque and motion by one clock"
         if self.kind == "dead_time":
-            return f"{told}{dead}, not a first-order lag"
+            return f"{text}{dead}, not a first-order lag"
         if self.kind == "first_order_lag":
-            return f"{told}a first-order lag of {lag}, not a dead time"
-        return f"{told}{dead}, or a first-order lag of {lag}; faster motion would distinguish them"
+            return f"{text}a first-order lag of {lag}, not a dead time"
+        return f"{text}{dead}, or a first-order lag of {lag}; faster motion would distinguish them"
 
 
 @dataclass(frozen=True)
@@ -96,10 +96,10 @@ class CommandDelay:
 
     def __str__(self) -> str:
         dead, lag = (f"{1e3 * one.value:.3g} ± {1e3 * one.half_width:.2g} ms" for one in (self.dead_time, self.lag))
-        told = f"the torque follows its command after a dead time of {dead}, with a first-order lag of {lag}"
+        text = f"the torque follows its command after a dead time of {dead}, with a first-order lag of {lag}"
         if self.dead_time.ci95[0] > 0.0 or self.lag.ci95[0] > 0.0:
-            return told
-        return f"{told}; the command changes too slowly to tell them apart"
+            return text
+        return f"{text}; the command changes too slowly to distinguish them"
 
 
 def dead_time(rows: Rows, hypothesis: Hypothesis, shift: float, search: bool = True) -> DeadTime:
@@ -114,16 +114,16 @@ def dead_time(rows: Rows, hypothesis: Hypothesis, shift: float, search: bool = T
     rows, period = _quiet(rows), rows.scope.sample_period
     late = _fit_later(rows, hypothesis, shift)
     for _ in range(TURNS if search else 0):
-        left = late.value(MISALIGNMENT)
-        if abs(left) < STANDS * period:
+        remaining = late.value(MISALIGNMENT)
+        if abs(remaining) < SETTLED * period:
             break
-        shift += left
+        shift += remaining
         late = _fit_later(rows, hypothesis, shift)
     at = int(np.flatnonzero(late.owners == MISALIGNMENT)[0])
     straight, (theta, half) = _straight_and_bent(late)
-    delay = _parameter(-shift, float(straight[1][at]) + STANDS * period)
+    delay = _parameter(-shift, float(straight[1][at]) + SETTLED * period)
     moved = float(theta[at]) - float(straight[0][at])  # by the second derivative; the third moves a lag by less
-    lag = _parameter(abs(shift + float(theta[at])), float(half[at]) + STANDS * period + abs(moved))
+    lag = _parameter(abs(shift + float(theta[at])), float(half[at]) + SETTLED * period + abs(moved))
     expected = 0.5 * shift * abs(shift)  # of a lag, on the side of the columns
     share, reach = theta[-1] / expected, half[-1] / abs(expected)
     kind, bound = None, search and at in late.held
@@ -228,7 +228,7 @@ def command_delay(trace: Trace, kind: AxisKind) -> CommandDelay | None:
     def slopes(place: Array) -> Array:
         return np.stack([(fitted(place + one) - fitted(place)) / step for one in step * np.eye(2)], axis=1)
 
-    step = STANDS * period
+    step = SETTLED * period
     lates = range(0, min(MOST_LATE, round(LONGEST / period)) + 1, 2)
     starts = [np.array([k * period, lag]) for k in lates for lag in (step, 2.0 * period)]
     begun = min(starts, key=lambda place: rms(fitted(place) - torque))

@@ -130,7 +130,7 @@ class Estimate(Presented, Mapping[str, Parameter]):
         """Measured less modelled effort of the first recording, where it moves in one direction - unit - (m,).
 
         Raises:
-            InputError: an estimate that was read from a file: it has no recording beside it.
+            InputError: an estimate that was read from a file: it contains no recording.
         """
         return self.renderer().residuals(self)
 

@@ -182,7 +182,7 @@ def _scale(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:
 
 
 def _by_weight(trace: Trace, rig: Rig) -> Parameter:
-    """Current for the torque of a known weight - A/(N*m) -, beside inertia, friction and the zero of the sensor."""
+    """Current for the torque of a known weight - A/(N*m) -, fitted with inertia, friction and the sensor's zero."""
     assert rig.load is not None
     at, pull = condition(trace, trace["current"]), rig.load.gravity_torque(trace["position"])
     source = trace[at.source]

@@ -86,13 +86,13 @@ class Twist:
         return filtered(self.trace, self.at.filter, (pushed, pushed), (0, 1))[1][:, self.moving]
 
     def squares(self, place: Array) -> float:
-        """Squares that are left with a gap and its middle."""
+        """Squared residual with a gap and its middle - (N*m)**2 (N**2)."""
         table = np.vstack([self.beyond(abs(float(place[0])), float(place[1])), self.columns[:-1]]).T
-        left = self.columns[-1] - table @ np.linalg.lstsq(table, self.columns[-1], rcond=None)[0]
-        return float(left @ left)
+        residual = self.columns[-1] - table @ np.linalg.lstsq(table, self.columns[-1], rcond=None)[0]
+        return float(residual @ residual)
 
     def gap(self) -> tuple[float, float]:
-        """Gap and its middle that leave least; 0 where no gap leaves as little but for chance."""
+        """Gap and its middle of the smallest residual - rad (m); a gap of 0 where it explains no more than chance."""
         from scipy.optimize import minimize  # 0.2 s, which only a second encoder has to pay
 
         low, high = np.quantile(self.twist, (0.005, 0.995))

@@ -136,7 +136,7 @@ class Robot:
 
     @classmethod
     def of(cls, path: Path, joint: str | None, added: Sequence[AddedBody] = (), stand: bool = False) -> Robot:
-        """From an MJCF or URDF file, with what its robot has beside that; with `stand` a floating base is fixed.
+        """From an MJCF or URDF file, with what its robot has in addition; `stand` fixes a floating base.
 
         InputError if there is no such file or joint; if a joint of its tree has more than one coordinate; if a loop, a
         tendon or an equality of the MJCF puts a torque on it that no log tells.

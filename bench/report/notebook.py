@@ -192,7 +192,7 @@ def _over_time(time: Array, name: str, unit: str, signals: Mapping[str, Array]) 
 def _along(estimate: Estimate) -> tuple[Array, Array, Array]:
     """Time, effort and residual of the first recording where it moves (m,) each - s, unit, unit."""
     if estimate.of is None or not estimate.of[1]:
-        found = "found no recording beside the estimate"
+        found = "found an estimate without its recording"
         raise InputError("plot(), residuals", found, "allowed: one of recordings in memory")
     rig, (first, *_) = estimate.of
     (one,) = moved([Path(first.origin)], rig, estimate, lambda _: first)

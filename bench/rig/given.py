@@ -47,13 +47,13 @@ def given(
     Raises:
         InputError: one of them is none, or a recording cannot be read.
     """
-    every = [_held(one) for one in (traces if isinstance(traces, list | tuple) else [cast(Given, traces)])]
+    every = [_trace_in(one) for one in (traces if isinstance(traces, list | tuple) else [cast(Given, traces)])]
     known = rig_of(rig) if rig is not None else _drafted_for(every, units)
     return known, [one if isinstance(one, Iterator) else trace_of(one, known, units) for one in every]
 
 
-def _held(given: Given | Iterator[Trace]) -> Given | Iterator[Trace]:
-    """The trace of what holds one, as a simulation does; else what is given."""
+def _trace_in(given: Given | Iterator[Trace]) -> Given | Iterator[Trace]:
+    """The trace of a simulation; else what is given."""
     held = getattr(given, "trace", None)
     return held if isinstance(held, Trace) else given
 
