@@ -11,16 +11,17 @@ from itertools import combinations
 import numpy as np
 
 from bench.arrays import Array
-from bench.course.axis import KG_CM2, RPM, motor_value, torque_constant
+from bench.course.axis import motor_value, torque_constant
 from bench.course.catapult import fit_path
+from bench.course.methods import KG_CM2, RPM, filtered_acceleration, mean_inertia, num_derivative
 from bench.course.mistakes import MISTAKES
 from bench.course.peak_torque import decline
 from bench.course.recordings import LabRecordings
-from bench.course.run import LabRun, filtered_acceleration
-from bench.course.torque_constants import coefficients, datasheet_points
+from bench.course.run import LabRun
+from bench.course.torque_constants import datasheet_points
 from bench.course.ways import LATE_METHODS, METHODS, RIGHT, RIGHT_WAYS, Way
 from bench.errors import UndeterminedError
-from bench.fit.lab import backward_difference, least_squares, mean_inertia
+from bench.fit.lab import least_squares
 from bench.rig.rig import Rig
 
 #: The corner is looked for from the first sample above this share of the largest torque on.
@@ -44,11 +45,10 @@ class Worked:
     def unchanged(self) -> dict[str, float]:
         """Answers of the catapult and of the datasheet."""
         theta, error = fit_path(*np.concatenate(self.recordings.flights.points).T)
-        stall, peak = datasheet_points(self.recordings.rig)[1].tolist()
-        of_curve = coefficients(self.recordings.rig).tolist()
+        _, (stall, peak), curve = datasheet_points(self.recordings.rig)
         found = {f"catapult_{name}": value for name, value in zip("abc", theta.tolist(), strict=True)}
-        found |= {"catapult_E": error, "kT_stall": stall, "kT_peak": peak}
-        return found | {f"kT_{name}": value for name, value in zip("abc", of_curve, strict=True)}
+        found |= {"catapult_E": error, "kT_stall": float(stall), "kT_peak": float(peak)}
+        return found | {"kT_a": curve.curvature, "kT_b": 0.0, "kT_c": curve.constant}
 
     @cached_property
     def corner(self) -> float:
@@ -80,7 +80,7 @@ class Worked:
 def _seen(run: LabRun, rig: Rig, way: Way) -> LabRun:
     """The run with speed, acceleration and torque as one way makes them."""
     velocity = run.velocity * way.velocity
-    alpha = (METHODS | LATE_METHODS).get(way.method, backward_difference)(velocity, run.sample_period)
+    alpha = (METHODS | LATE_METHODS).get(way.method, num_derivative)(velocity, run.sample_period)
     return replace(run, velocity=velocity, acceleration=alpha, torque=_torque(rig, run.current, way))
 
 
@@ -96,7 +96,7 @@ def _balance(run: LabRun, way: Way) -> tuple[list[float], float]:
     """J, K_w and K_0 in SI by least squares over the fast samples, and the remaining quadratic error."""
     alpha, synchronous = run.acceleration, slice(None)
     if not way.method:
-        alpha, synchronous = filtered_acceleration(run, way.width, way.set_back)
+        alpha, synchronous = filtered_acceleration(run.acceleration, way.width, way.set_back)
     velocity, torque = run.velocity[synchronous], run.torque[synchronous]
     fast = np.abs(velocity) >= way.least
     theta, _, error = least_squares(alpha[fast], velocity[fast], torque[fast])

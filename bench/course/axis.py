@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,8 +18,6 @@ from bench.structured import read_toml
 LAB = asset("data", "rigs", "lab.toml")
 #: Mains voltage of the lab - V.
 MAINS = 230.0
-#: rpm in one rad/s, kg*cm**2 in one kg*m**2.
-RPM, KG_CM2 = 30.0 / math.pi, 1e4
 #: What to do where current and speed are counted in opposite directions.
 TURN = 'turn one of them by a rig.toml next to it with [trace.columns] current = "-name of its column [unit]"'
 #: Words that a source in the motor catalogue begins with, which a report calls it by.

@@ -13,6 +13,7 @@ from scipy.special import stdtrit
 
 from bench.arrays import Array
 from bench.assets import asset
+from bench.course.methods import parabola
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import SimulationError, UndeterminedError
@@ -109,22 +110,15 @@ def record_flights(folder: Path, random: np.random.Generator) -> list[Path]:
     return [*paths, truth]
 
 
-def columns(y: Array) -> Array:
-    """A = [y**2, y, 1], (n, 3)."""
-    return np.stack([y**2, y, np.ones_like(y)], axis=1)
-
-
 def fit_path(y: Array, z: Array) -> tuple[Array, float]:
     """Coefficients (3,) - 1/m, 1, m - and remaining quadratic error E - m**2 - of points (n,) - m.
 
     Raises UndeterminedError where all points lie at fewer than three places y.
     """
-    matrix = columns(y)
-    if np.linalg.matrix_rank(matrix) < matrix.shape[1]:
+    if np.unique(y).size < 3:
         reason = "the points lie at fewer than three places y"
         raise UndeterminedError("path of the throw", reason, "points all along the path")
-    theta = np.asarray(np.linalg.lstsq(matrix, z, rcond=None)[0], dtype=np.float64)
-    return theta, float(np.sum((z - matrix @ theta) ** 2))
+    return parabola(y, z)
 
 
 def _halves(flights: Sequence[Array], theta: Array) -> list[float | None]:
@@ -153,7 +147,7 @@ def path(recordings: LabRecordings) -> TaskResult:
         f"The throw is z = {theta[0]:.4g}·y² {theta[1]:+.4g}·y {theta[2]:+.4g} (m), by least squares over {y.size} "
         f"points of {len(flights.points)} experiments; the points lie {rms:.2g} mm RMS from it."
     )
-    matrix = columns(y)
+    matrix = np.vander(y, 3)
     by_normal_equations = np.linalg.lstsq(matrix.T @ matrix, matrix.T @ z, rcond=None)[0]
     solvers = (
         f"The normal equations (AᵀA)⁻¹Aᵀb give the same path within "

@@ -12,14 +12,14 @@ import numpy as np
 from bench.arrays import rms
 from bench.assets import asset
 from bench.course.answers import Worked
-from bench.course.axis import KG_CM2, MAINS, RPM, circuit, torque_constant
+from bench.course.axis import MAINS, circuit, torque_constant
 from bench.course.friction import in_step
+from bench.course.methods import KG_CM2, LEAST_SPEED, RPM, WIDTH
 from bench.course.recordings import LabRecordings
-from bench.course.run import WIDTH, LabRun
+from bench.course.run import LabRun
 from bench.course.ways import Way
 from bench.errors import BenchError, InputError
 from bench.files import read_text, write_text
-from bench.fit.lab import LEAST_SPEED
 from bench.report.document import Document, Paragraph, Section, neighbours, section
 from bench.report.html import html
 from bench.rig.limits import HOT, peak_curve

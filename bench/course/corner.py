@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from bench.course.axis import MAINS, RPM, joined
-from bench.course.peak_torque import datasheet_curve, fall
+from bench.course.axis import MAINS, joined
+from bench.course.methods import RPM
+from bench.course.peak_torque import datasheet_curve, run_up
 from bench.course.recordings import LabRecordings
 from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
 from bench.course.winding import WindingModel, WindingRun, full_speed, identified_axis, run_winding
@@ -52,7 +53,7 @@ def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
 def _measured(recordings: LabRecordings, simulated: float) -> str:
     """The corner of task 10 next to a simulated one - rpm; nothing where that could not be done."""
     try:
-        corner = fall(recordings.fastest, recordings.rig).corner * RPM
+        corner = run_up(recordings.fastest, recordings.rig)[1].corner * RPM
     except BenchError:
         return ""
     made = " (this recording was made by the same equations)" if recordings.fastest.truth else ""

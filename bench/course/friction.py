@@ -9,10 +9,10 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB
-from bench.course.axis import KG_CM2
 from bench.course.inertia import (
     four_signals,
     half_width,
@@ -21,12 +21,13 @@ from bench.course.inertia import (
     require_positive,
     torque_chart,
 )
+from bench.course.methods import DELAY, KG_CM2, LEAST_SPEED, WIDTH, fast_samples, filtered_acceleration
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, chart, curve, panel
-from bench.course.run import DELAY, WIDTH, LabRun, filtered_acceleration
+from bench.course.run import LabRun
 from bench.errors import BenchError, UndeterminedError
 from bench.fit.determined import RECORD
-from bench.fit.lab import LEAST_SPEED, least_squares
+from bench.fit.lab import least_squares
 from bench.fit.rows import ONE_WAY
 from bench.trace.filter import GaussianFilter
 
@@ -35,25 +36,20 @@ SMOOTHING = 5.0
 
 
 def in_step(run: LabRun) -> LabRun:
-    """The run with alpha_filt on t_sync; at its ends, where the mean is cut short, with what there is of it."""
-    mean, synchronous = filtered_acceleration(run)
+    """The run with alpha_filt on t_sync for its acceleration, and the gradient at the ends, which the filter loses."""
+    mean, synchronous = filtered_acceleration(run.acceleration)
     alpha = np.gradient(run.velocity, run.sample_period)
     alpha[synchronous] = mean
     return replace(run, acceleration=alpha)
 
 
-def fast_samples(run: LabRun) -> LabRun:
-    """Samples with |omega| >= 20 rad/s on t_sync, where alpha_filt belongs to the other signals.
-
-    Raises UndeterminedError where the recording is too slow.
-    """
-    _, synchronous = filtered_acceleration(run)
-    fast = np.zeros(run.time.size, dtype=bool)
-    fast[synchronous] = np.abs(run.velocity[synchronous]) >= LEAST_SPEED
+def remaining(run: LabRun) -> NDArray[np.bool_]:
+    """Samples with |omega| >= 20 rad/s on t_sync; UndeterminedError where the recording is too slow."""
+    fast = fast_samples(run.velocity)
     if not fast.any():
         least = f"a run that passes {LEAST_SPEED:g} rad/s in both directions"
         raise UndeterminedError("inertia and friction", f"no sample is faster than {LEAST_SPEED:g} rad/s", least)
-    return in_step(run).at(fast)
+    return fast
 
 
 def lateness(run: LabRun, late: int = 0) -> float:
@@ -62,7 +58,7 @@ def lateness(run: LabRun, late: int = 0) -> float:
     Both are smoothed by one filter that is even in time, so noise and smoothing are alike in them. What is late by tau
     is alpha - tau*alpha', and tau its least-squares estimate.
     """
-    mean, synchronous = filtered_acceleration(run)
+    mean, synchronous = filtered_acceleration(run.acceleration)
     speed = run.velocity[synchronous.start + late : synchronous.stop + late]
     smooth = GaussianFilter(SMOOTHING * run.sample_period, run.sample_period)
     slope, bend = smooth(speed, 1, 2)
@@ -73,37 +69,30 @@ def lateness(run: LabRun, late: int = 0) -> float:
 def samples_that_remain(recordings: LabRecordings) -> TaskResult:
     """Task 8: alpha_filt in step with the speed, and the remaining samples over those of task 7."""
     run = recordings.with_friction
-    kept = fast_samples(run)
+    fast = remaining(run)
     # thousandths of a sample are rounding
     on_t_sync, as_it_comes = (round(lateness(run, late), 3) + 0.0 for late in (0, DELAY))
-    removed = run.time.size - kept.time.size
+    kept, removed = np.count_nonzero(fast), np.count_nonzero(~fast)
     findings = (
-        f"{kept.time.size} of {run.time.size} samples remain; {removed} are slower than 20 rad/s, where friction is no "
-        "constant, or at the ends of the filter.",
+        f"{kept} of {run.time.size} samples remain; {removed} are slower than {LEAST_SPEED:g} rad/s, where friction is "
+        "no constant, or at the ends of the filter.",
         f"alpha_filt is the mean of {WIDTH} backward differences. It is {DELAY} samples late, half a sample of "
-        "that from the difference itself; t_sync takes that back.",
+        "that from the difference itself; t_sync corrects this.",
         f"Against the speed's own derivative, both smoothed alike, alpha_filt on t_sync is {on_t_sync:+.2f} samples "
         f"late, and {as_it_comes:+.2f} as the filter delivers it.",
     )
     numbers = (
-        Number("samples remaining", float(kept.time.size), "1"),
+        Number("samples remaining", float(kept), "1"),
         Number("samples removed", float(removed), "1"),
         Number("alpha_filt late, on t_sync", on_t_sync, "samples"),
         Number("alpha_filt late, as it comes", as_it_comes, "samples"),
     )
-    rest = (kept.velocity, backward_at(run, kept), kept.acceleration, kept.torque)
-    panels = (
-        panel(
-            "t_sync / s", label, curve(time, every, "original", "wide"), curve(kept.time, values, "remaining", "dots")
-        )
-        for (label, (time, every)), values in zip(four_signals(run).items(), rest, strict=True)
-    )
+    panels = []
+    for label, (at, values) in four_signals(run).items():
+        time, left = run.time[at], fast[at]
+        both = curve(time, values, "original", "wide"), curve(time[left], values[left], "remaining", "dots")
+        panels.append(panel("t_sync / s", label, *both))
     return TaskResult(findings, numbers, (chart("Task 8: remaining samples over those of task 7", *panels),))
-
-
-def backward_at(run: LabRun, kept: LabRun) -> Array:
-    """The backward difference of a run at the samples that remain of it - rad/s**2, (n,)."""
-    return run.acceleration[np.searchsorted(run.time, kept.time)]
 
 
 @dataclass(frozen=True)
@@ -135,7 +124,7 @@ def identify_friction(run: LabRun) -> EquationOfMotion:
 
     Raises UndeterminedError where they do not tell inertia and friction apart, or torque and acceleration are opposed.
     """
-    samples = fast_samples(run)
+    samples = in_step(run).at(remaining(run))
     weaker = 0.5 * (1.0 - abs(float(np.mean(np.sign(samples.velocity)))))
     if weaker < ONE_WAY:
         reason = "the axis moves one way only, so a constant torque and Coulomb friction are one number"
@@ -150,16 +139,16 @@ def identify_friction(run: LabRun) -> EquationOfMotion:
 def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
     """Task 9: identify, and draw the reconstructed torque of every sample over the measured one."""
     run = recordings.with_friction
-    found, fitted, every = identify_friction(run), fast_samples(run), in_step(run)
-    estimated = found.torque(every)
-    left, left_of_fitted = rms(run.torque - estimated), np.sqrt(found.error / fitted.time.size)
+    found, fitted = identify_friction(run), np.count_nonzero(remaining(run))
+    estimated = found.torque(in_step(run))
+    left, left_of_fitted = rms(run.torque - estimated), math.sqrt(found.error / fitted)
     true = run.true("moment_of_inertia", KG_CM2)
     half = found.halves
     loads, _ = load_inertia(found.inertia, half[0], recordings, true)
     findings = (
         f"J is {found.inertia * KG_CM2:.4g} ± {half[0] * KG_CM2:.1g} kg·cm², K_fric_w {found.viscous:.3g} N·m·s/rad "
         f"and K_fric_0 {found.coulomb:.3g} N·m.",
-        f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted.time.size} samples of task 8; the theta with the least "
+        f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted} samples of task 8; the theta with the least "
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
         f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, "
         f"{left / rms(run.torque):.2%} of the torque; over the fitted samples {left_of_fitted:.3g} N·m.",
@@ -171,7 +160,7 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
         Number("K_fric_0", found.coulomb, "N·m", run.true("coulomb_friction_torque"), half=half[2]),
         Number("E", found.error, "(N·m)²"),
         *loads[:1],
-        Number("samples of M_est", float(every.time.size), "1"),
+        Number("samples of M_est", float(estimated.size), "1"),
         Number("RMS of M - M_est, all samples", left, "N·m"),
     )
     title, name = "Task 9: reconstructed torque over the measured one", "M_est, all samples"

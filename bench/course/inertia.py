@@ -1,8 +1,4 @@
-"""Tasks 2 and 5 to 7: acceleration, both recordings in SI, and inertia where nothing but inertia resists.
-
-Acceleration is the backward difference u'[k] = (u[k] - u[k-1])/T of the speed; task 2 has it of a sine. Inertia is the
-mean of M/alpha.
-"""
+"""Tasks 2 and 5 to 7: the backward difference, both recordings in SI, and inertia where nothing but inertia resists."""
 
 from __future__ import annotations
 
@@ -11,13 +7,15 @@ import math
 import numpy as np
 
 from bench.arrays import NORMAL95, Array, rms
-from bench.course.axis import KG_CM2, TURN, joined
+from bench.axis_kind import INERTIA
+from bench.course.axis import TURN, joined
+from bench.course.methods import KG_CM2, filtered_acceleration, mean_inertia, num_derivative
 from bench.course.plausible import balance
 from bench.course.recordings import LabRecordings
 from bench.course.result import COMPUTED, RECORDING, Number, TaskResult, chart, curve, panel
-from bench.course.run import LabRun, filtered_acceleration
+from bench.course.run import LabRun
 from bench.errors import InputError, UndeterminedError
-from bench.fit.lab import backward_difference, mean_inertia
+from bench.fit.determined import RECORD
 from bench.report.document import Chart
 
 #: Of the sine - s.
@@ -29,7 +27,7 @@ DURATION = 2.0 * np.pi
 def backward_difference_of_a_sine(recordings: LabRecordings) -> TaskResult:
     """Differentiate sin(t) and compare with cos(t): half a sample late, the difference errs by T/2*|u''|."""
     time = np.arange(0.0, DURATION, SAMPLE_PERIOD)
-    backward = backward_difference(np.sin(time), SAMPLE_PERIOD)
+    backward = num_derivative(np.sin(time), SAMPLE_PERIOD)
     error = (backward - np.cos(time))[1:]
     worst = float(np.max(np.abs(error)))
     findings = (
@@ -52,8 +50,8 @@ def signals(name: str, title: str, recordings: LabRecordings) -> TaskResult:
     They are drawn of a recording that cannot be of the axis, too, for what is wrong with it to be seen.
     """
     run = recordings.run(name)
-    panels = (panel("time / s", label, curve(time, values)) for label, (time, values) in four_signals(run).items())
-    drawn = chart(title, *panels)
+    shown = (panel("time / s", label, curve(run.time[at], values)) for label, (at, values) in four_signals(run).items())
+    drawn = chart(title, *shown)
     try:
         recordings.sound(name)
     except InputError as reason:
@@ -72,14 +70,14 @@ def signals(name: str, title: str, recordings: LabRecordings) -> TaskResult:
     return TaskResult(findings, numbers, (drawn,))
 
 
-def four_signals(run: LabRun) -> dict[str, tuple[Array, Array]]:
-    """Speed, acceleration, alpha_filt on t_sync, and torque, with the times of each, by the label of its graph."""
-    mean, synchronous = filtered_acceleration(run)
+def four_signals(run: LabRun) -> dict[str, tuple[slice, Array]]:
+    """Speed, acceleration, alpha_filt and torque, each with the samples at which it is known, by the graph's label."""
+    mean, synchronous = filtered_acceleration(run.acceleration)
     return {
-        "speed ω / (rad/s)": (run.time, run.velocity),
-        "acceleration α / (rad/s²)": (run.time, run.acceleration),
-        "filtered α_filt / (rad/s²)": (run.time[synchronous], mean),
-        "torque M / (N·m)": (run.time, run.torque),
+        "speed ω / (rad/s)": (slice(None), run.velocity),
+        "acceleration α / (rad/s²)": (slice(None), run.acceleration),
+        "filtered α_filt / (rad/s²)": (synchronous, mean),
+        "torque M / (N·m)": (slice(None), run.torque),
     }
 
 
@@ -139,6 +137,8 @@ def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
     Raises UndeterminedError where the axis never accelerates, or torque and acceleration oppose each other.
     """
     run = recordings.without_friction
+    if not run.acceleration.any():
+        raise UndeterminedError("moment of inertia", "the speed never changes", RECORD[INERTIA])
     inertia, largest, taken = mean_inertia(run.acceleration, run.torque)
     require_positive(inertia)
     true = run.true("moment_of_inertia", KG_CM2)

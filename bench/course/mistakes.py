@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.arrays import Array
-from bench.course.axis import RPM, TURN
+from bench.course.axis import TURN
+from bench.course.methods import RPM, WIDTH
 from bench.course.plausible import LATE, balance, glitches
-from bench.course.run import WIDTH, LabRun, made_run
+from bench.course.run import LabRun, made_run
 from bench.course.ways import LATE_METHODS, Way
 from bench.rig.rig import Rig
 

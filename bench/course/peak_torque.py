@@ -21,7 +21,8 @@ from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
 from bench.arrays import NORMAL95, Array
-from bench.course.axis import MAINS, RPM
+from bench.course.axis import MAINS
+from bench.course.methods import FULL_SHARE, HALF_BIN, RPM, SPEEDS, STILL_RISING, kept_samples, torque_at_speeds
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import UndeterminedError
@@ -32,19 +33,12 @@ from bench.rig.rig import Rig
 
 #: Stretch of the falling current, in shares of its top, that the line is fitted to.
 FROM, TO = 0.9, 0.5
-#: Faster samples, as a share of the highest speed, may belong to the drive's own stop at the speed asked for.
-STILL_RISING = 0.97
 #: The top is the median of samples above this share of the largest.
 TOP = 0.95
 #: Time constant that the search for it starts from - s, and more than a winding's.
 TYPICAL, TOO_LATE = 2e-3, 10e-3
 #: Points of the model a sample: the current bends between two of them.
 FINER = 8
-#: The course drops samples of less torque - N*m - and starts at the first above 3.0 N*m, this share of the lab
-#: motor's peak.
-LEAST_TORQUE, FULL_SHARE = 0.2, 3.0 / 3.5
-#: Speeds of the course's table - rpm, and samples that belong to one: within this of it - rad/s.
-SPEEDS, HALF_BIN = (0.0, 1000.0, 2000.0, 2100.0, 3000.0, 4000.0, 5000.0), 5.0
 
 
 @dataclass(frozen=True)
@@ -122,25 +116,18 @@ def _fall(velocity: Array, current: Array) -> tuple[float, NDArray[np.int64], fl
     return float(np.median(current[high[0] : high[-1] + 1])), high, slope, offset
 
 
-def start(run: LabRun, rig: Rig) -> int:
-    """First sample of full torque, more than 3.0 N*m with the lab's motor; UndeterminedError where there is none."""
-    least = FULL_SHARE * (rig.motor.peak_torque or 0.0)
-    full = run.torque > least
-    if not full.any():
+def run_up(run: LabRun, rig: Rig) -> tuple[LabRun, Decline]:
+    """Samples of task 10, and corner and decline of the run-up from its first full torque on.
+
+    Raises UndeterminedError where it never reaches full torque, and as `decline`.
+    """
+    kept = kept_samples(run.torque, rig.motor.peak_torque or 0.0)
+    if not kept.any():
+        least = FULL_SHARE * (rig.motor.peak_torque or 0.0)
         reason = f"the torque never exceeds {least:.3g} N*m, it reaches {float(run.torque.max()):.3g} N*m"
         raise UndeterminedError("peak torque over speed", reason, "a run-up with the motor's full torque, forward")
-    return int(np.argmax(full))
-
-
-def run_up(run: LabRun, rig: Rig) -> LabRun:
-    """Samples from the first full torque on, those with M < 0.2 N*m dropped; raises as `start`."""
-    return run.at((run.torque >= LEAST_TORQUE) & (np.arange(run.torque.size) >= start(run, rig)))
-
-
-def fall(run: LabRun, rig: Rig) -> Decline:
-    """Corner of the run-up and how the current falls beyond it; raises as `start` and `decline`."""
-    first = start(run, rig)
-    return decline(run.velocity[first:], run.current[first:], run.sample_period)
+    first = int(np.argmax(kept))
+    return run.at(kept), decline(run.velocity[first:], run.current[first:], run.sample_period)
 
 
 def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
@@ -150,26 +137,14 @@ def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
     return speed, (rig.motor.peak_torque or 0.0) * curve.share(speed)
 
 
-def measured_at_speeds(velocity: Array, torque: Array) -> Array:
-    """M_max of a run-up (n,) at SPEEDS - N*m: median within HALF_BIN on the way up.
-
-    NaN where there is no sample, or the drive's speed control may have taken the torque back already.
-    """
-    up = slice(0, int(np.argmax(velocity)) + 1)
-    motors = velocity[up] < STILL_RISING * velocity.max()
-    near = (motors & (np.abs(velocity[up] - speed / RPM) <= HALF_BIN) for speed in SPEEDS)
-    return np.array([np.median(torque[up][samples]) if samples.any() else math.nan for samples in near])
-
-
 def over_speed(recordings: LabRecordings) -> TaskResult:
     """Draw the measured torque over the speed beside the datasheet's curve, and tell both at the drawing's speeds."""
     run, rig, sources = recordings.fastest, recordings.rig, recordings.sources
-    kept = run_up(run, rig)
+    kept, found = run_up(run, rig)
     speed, torque = kept.velocity * RPM, kept.torque
     limit, allowed = datasheet_curve(rig)
-    found = fall(run, rig)
     corner, corner_of_datasheet = found.corner * RPM, float(limit[1]) * RPM
-    measured = dict(zip(SPEEDS, measured_at_speeds(kept.velocity, torque).tolist(), strict=True))
+    measured = dict(zip(SPEEDS, torque_at_speeds(kept.velocity, torque).tolist(), strict=True))
     sheet = dict(zip(SPEEDS, np.interp(SPEEDS, limit * RPM, allowed).tolist(), strict=True))
     numbers = (
         Number("peak torque", float(torque.max()), "N·m", rig.motor.peak_torque if run.truth else None),

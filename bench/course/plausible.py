@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.course.axis import KG_CM2, MAINS, RPM
+from bench.course.axis import MAINS
+from bench.course.methods import KG_CM2, RPM
 from bench.course.run import LabRun
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig

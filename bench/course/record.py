@@ -19,9 +19,10 @@ import tomli_w
 
 from bench.arrays import Array
 from bench.course.answers import Worked, every_mistake, tolerances
-from bench.course.axis import KG_CM2, RPM, embedded, lab_rig, motor_value, without_friction
+from bench.course.axis import embedded, lab_rig, motor_value, without_friction
 from bench.course.catapult import record_flights
 from bench.course.grade import SEALED, key_path, seal
+from bench.course.methods import KG_CM2, RPM
 from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.recordings import LabRecordings, read_truth
 from bench.course.submission import FORM, form

@@ -13,8 +13,9 @@ import numpy as np
 from bench import __version__
 from bench.arrays import Array
 from bench.assets import asset
-from bench.course.axis import KG_CM2
+from bench.course import methods
 from bench.course.course import TASKS, course
+from bench.course.methods import KG_CM2
 from bench.course.pdf import EQUATION, no_typst, write_pdf
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, thinned
@@ -29,8 +30,8 @@ from bench.structured import json_text, read_toml
 TITLE = "Industrial Drives, Part 2: Identification of Mechanical Parameters"
 SCHEMA = "bench.lab/1"
 SCRIPTS = asset("data", "lab", "scripts")
-#: Scripts that others import.
-SHARED = ("course", "fast_samples")
+#: What the scripts import.
+SHARED = (SCRIPTS / "course.py", Path(methods.__file__))
 #: The same for MATLAB and Octave: the task that has to be done for each; all others are functions that they call.
 MATLAB = {"catapult": "1", "JLoad_no_Friction": "6", "JLoad_with_Friction": "9", "SpeedTorqueLimit": "10"}
 #: Factors to SI of what task 11 takes from task 9, by the names there.
@@ -278,7 +279,7 @@ def write_sources(folder: Path, recordings: LabRecordings, results: Sequence[Tas
         rows = np.concatenate([np.column_stack([np.full(len(flight), k), flight]) for k, flight in flights])
         _write_table(folder / "recordings" / "flights.csv", "flight,y [m],z [m]", rows)
     write_text(folder / "values.json", _values(recordings, done))
-    for path in (*scripts, *(SCRIPTS / f"{name}.py" for name in SHARED)):
+    for path in (*scripts, *SHARED):
         write_text(folder / path.name, path.read_text(encoding="utf-8"))
     for path in sorted(SCRIPTS.glob("matlab/*.m")):
         if MATLAB.get(path.stem, "3") in done:

@@ -8,27 +8,21 @@ from bench.arrays import Array
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import InputError
-from bench.rig.motor import DATASHEET
+from bench.rig.motor import DATASHEET, TorqueConstant
 from bench.rig.rig import Rig
 
 
-def datasheet_points(rig: Rig) -> tuple[Array, Array]:
-    """I0 and Imax - A - and torque constants M0/I0 and Mmax/Imax - N*m/A; InputError where one value is missing."""
+def datasheet_points(rig: Rig) -> tuple[Array, Array, TorqueConstant]:
+    """I0 and Imax - A -, torque constants M0/I0 and Mmax/Imax - N*m/A -, and kT(Iq) = a*Iq**2 + c through both.
+
+    The course's kT'(0) = 0 is b = 0. Raises InputError where one value is missing.
+    """
     values = [getattr(rig.motor, name) for name in DATASHEET]
     if None in values:
         raise InputError(f"{rig.source}: motor", "found no kT(Iq)", f"give {', '.join(DATASHEET)}")
     stall, stall_current, peak, peak_current = values
-    return np.array([stall_current, peak_current]), np.array([stall / stall_current, peak / peak_current])
-
-
-def coefficients(rig: Rig) -> Array:
-    """a - N*m/A**3, b - N*m/A**2, c - N*m/A of kT(Iq) = a*Iq**2 + b*Iq + c by three linear equations.
-
-    kT'(0) = 0, which is b = 0 and leaves two: kT(I0) = M0/I0, kT(Imax) = Mmax/Imax. Raises as `datasheet_points`.
-    """
-    current, constant = datasheet_points(rig)
-    a, c = np.linalg.solve(np.stack([current**2, np.ones(2)], axis=1), constant)
-    return np.array([a, 0.0, c])
+    constants = np.array([stall / stall_current, peak / peak_current])
+    return np.array([stall_current, peak_current]), constants, TorqueConstant.from_datasheet(*values)
 
 
 def at_both_points(recordings: LabRecordings) -> TaskResult:
@@ -45,24 +39,22 @@ def at_both_points(recordings: LabRecordings) -> TaskResult:
 
 
 def over_current(recordings: LabRecordings) -> TaskResult:
-    """Solve for the coefficients, check and draw the curve."""
-    points, given = datasheet_points(recordings.rig)
-    a, b, c = coefficients(recordings.rig).tolist()
+    """Coefficients, check and curve of kT(Iq)."""
+    points, given, constant = datasheet_points(recordings.rig)
     current = np.linspace(0.0, points[1], 400)
-    fitted = a * current**2 + b * current + c
-    off = np.abs(a * points**2 + b * points + c - given)
+    fitted = constant(current)
     falls = "falls monotonically" if np.all(np.diff(fitted[1:]) < 0.0) else "does not fall everywhere"
     findings = (
-        f"kT(Iq) = {a:.4g}·Iq² + {c:.4g} N·m/A with Iq in A. Slope at zero {b:g} N·m/A²; {falls} "
-        f"up to {points[1]:g} A; both points of the datasheet met within {off.max():.1g} N·m/A."
+        f"kT(Iq) = {constant.curvature:.4g}·Iq² + {constant.constant:.4g} N·m/A with Iq in A. It is flat at zero, "
+        f"{falls} up to {points[1]:g} A, and passes through both points of the datasheet."
     )
+    named = {"a": (constant.curvature, "N·m/A³"), "b": (0.0, "N·m/A²"), "c": (constant.constant, "N·m/A")}
     source = recordings.sources("motor", *DATASHEET)
-    named = {"a": (a, "N·m/A³"), "b": (b, "N·m/A²"), "c": (c, "N·m/A")}
+    numbers = tuple(Number(name, value, unit, source=source) for name, (value, unit) in named.items())
     axes = panel(
         "current Iq / A",
         "torque constant kT / (N·m/A)",
         curve(current, fitted, "a·Iq² + b·Iq + c"),
         curve(points, given, "datasheet: stall and peak", "large dots"),
     )
-    numbers = tuple(Number(name, value, unit, source=source) for name, (value, unit) in named.items())
     return TaskResult((findings,), numbers, (chart("Task 4: kT(Iq)", axes),))

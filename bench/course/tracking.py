@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from bench.arrays import column_rms
-from bench.course.axis import KG_CM2, joined, motor_value
+from bench.course.axis import joined, motor_value
 from bench.course.friction import identify_friction
+from bench.course.methods import KG_CM2
 from bench.course.recordings import LabRecordings
 from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
 from bench.course.winding import identified_axis

@@ -12,8 +12,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal import butter, filtfilt, savgol_filter
 
 from bench.arrays import Array
-from bench.course.run import DELAY, WIDTH
-from bench.fit.lab import LEAST_SPEED
+from bench.course.methods import DELAY, LEAST_SPEED, WIDTH
 
 
 @dataclass(frozen=True)

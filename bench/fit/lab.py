@@ -10,10 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array
-from bench.axis_kind import INERTIA, VISCOUS
+from bench.axis_kind import VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.estimate import Estimate, Residual, load_inertia
@@ -23,8 +22,6 @@ from bench.trace.trace import Trace
 
 #: The course drops slower samples - rad/s.
 LEAST_SPEED = 20.0
-#: The course takes J from samples above this share of the largest acceleration.
-ACCELERATION_SHARE = 0.25
 
 
 def backward_difference(values: Array, sample_period: float) -> Array:
@@ -36,21 +33,6 @@ def backward_difference(values: Array, sample_period: float) -> Array:
     if not sample_period > 0.0:
         raise InputError("sample period", f"found {sample_period} s", "allowed: more than zero")
     return np.diff(values, prepend=values[:1]) / sample_period
-
-
-def mean_inertia(acceleration: Array, torque: Array) -> tuple[float, float, NDArray[np.bool_]]:
-    """J - kg*m**2 - as the mean of M/alpha - N*m, rad/s**2, (n,) - over |alpha| >= alpha_max/4, without friction.
-
-    Beside it alpha_max, and which samples were taken (n,).
-
-    Raises:
-        UndeterminedError: the axis never accelerates.
-    """
-    largest = float(np.max(np.abs(acceleration), initial=0.0))
-    if largest == 0.0:
-        raise UndeterminedError("moment of inertia", "the speed never changes", RECORD[INERTIA])
-    taken = np.abs(acceleration) >= ACCELERATION_SHARE * largest
-    return float(np.mean(torque[taken] / acceleration[taken])), largest, taken
 
 
 def least_squares(acceleration: Array, velocity: Array, torque: Array) -> tuple[Array, Array, float]:

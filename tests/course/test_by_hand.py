@@ -6,17 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.course import friction, inertia, peak_torque
+from bench.course import friction, inertia, methods, peak_torque
 from bench.course.axis import Sources, lab_rig
+from bench.course.methods import RPM
 from bench.course.record import draw_rig
 from bench.course.recordings import LabRecordings, LabRun
 from bench.errors import UndeterminedError
-from bench.fit.lab import backward_difference
 from bench.report.drive import in_range
 from bench.rig.rig import Rig
 from tests.course.drawn import curves
 
-RPM = 60.0 / (2.0 * math.pi)
 PERIOD = 1e-3
 INERTIA, VISCOUS, COULOMB = 2e-3, 1e-3, 0.08
 
@@ -32,8 +31,7 @@ def run_of(velocity, torque):
     """A recording of speed - rad/s - and torque - N*m."""
     velocity, torque = (np.asarray(signal, dtype=np.float64) for signal in (velocity, torque))
     time = PERIOD * np.arange(velocity.size)
-    alpha = backward_difference(velocity, PERIOD)
-    return LabRun(time, velocity, torque / 0.75, alpha, torque, np.cumsum(velocity) * PERIOD, PERIOD)
+    return LabRun(time, velocity, torque / 0.75, methods.num_derivative(velocity, PERIOD), torque, PERIOD)
 
 
 def there_and_back(backward):
@@ -100,10 +98,8 @@ def test_9_what_is_exact_is_found_and_reconstructed_exactly():
 
 def test_10_the_run_up_begins_at_full_torque_and_leaves_out_what_is_below_a_fifth_of_a_newton_metre():
     torque = [0.5, 2.5, 2.99, 3.01, 2.0, 3.4, 0.21, 0.19, -1.0, 0.2]
-    kept = peak_torque.run_up(run_of(np.arange(10.0), torque), lab_rig())
-    assert kept.torque.tolist() == [3.01, 2.0, 3.4, 0.21, 0.2]
-    assert kept.velocity.tolist() == [3.0, 4.0, 5.0, 6.0, 9.0]
-    assert kept.current == pytest.approx(kept.torque / 0.75)
+    kept = methods.kept_samples(np.array(torque), 3.5)
+    assert np.flatnonzero(kept).tolist() == [3, 4, 5, 6, 9]
     with pytest.raises(UndeterminedError, match=r"reaches 2\.99"):
         peak_torque.run_up(run_of(np.arange(3.0), torque[:3]), lab_rig())
 
@@ -112,8 +108,8 @@ def test_10_a_row_of_the_table_is_the_median_within_five_radians_a_second_on_the
     at = 2000.0 / RPM
     velocity = np.array([at - 5.1, at - 4.9, at, at + 4.9, at + 5.1, 400.0, at, at])
     torque = np.array([9.0, 3.1, 1.0, 2.0, 9.0, 0.5, 7.0, 7.0])
-    measured = peak_torque.measured_at_speeds(velocity, torque)
-    assert peak_torque.SPEEDS == (0.0, 1000.0, 2000.0, 2100.0, 3000.0, 4000.0, 5000.0)
+    measured = methods.torque_at_speeds(velocity, torque)
+    assert methods.SPEEDS == (0.0, 1000.0, 2000.0, 2100.0, 3000.0, 4000.0, 5000.0)
     assert measured[2] == 2.0
     assert np.isnan(measured).tolist() == [True, True, False, *[True] * 4]
 

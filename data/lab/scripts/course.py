@@ -5,10 +5,10 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from methods import filtered_acceleration, num_derivative
 
 HERE = Path(__file__).parent
 VALUES = json.loads((HERE / "values.json").read_text(encoding="utf-8"))
-KG_CM2, RPM = 1e4, 60 / (2 * np.pi)
 
 
 def value(name):
@@ -16,25 +16,9 @@ def value(name):
     return VALUES[name]["value"]
 
 
-def recording(name):
-    """t - s, omega - rad/s, Iq - A, and the sample period T - s."""
-    t, omega, current = np.loadtxt(HERE / "recordings" / f"{name}.csv", delimiter=",", skiprows=1, unpack=True)
-    return t, omega, current, VALUES[f"T_{name}"]["value"]
-
-
-def backward_difference(u, period):
-    """u'[k] = (u[k] - u[k-1])/T, first value 0."""
-    return np.diff(u, prepend=u[:1]) / period
-
-
-WIDTH = 4  # differences in a mean
-DELAY = WIDTH // 2  # the mean is (WIDTH - 1)/2 samples late, the backward difference half a sample
-
-
-def filtered(alpha):
-    """alpha_filt, the mean of WIDTH backward differences, and the samples of the other signals it belongs to."""
-    mean = np.convolve(alpha[1:], np.ones(WIDTH) / WIDTH, mode="valid")
-    return mean, slice(DELAY, DELAY + mean.size)
+def table(name):
+    """Columns of a file in the folder of recordings."""
+    return np.loadtxt(HERE / "recordings" / f"{name}.csv", delimiter=",", skiprows=1, unpack=True)
 
 
 def torque_constant(current):
@@ -45,31 +29,32 @@ def torque_constant(current):
     return a * current**2 + b * current + c
 
 
-def torque(current):
-    """M = kT(Iq)*Iq."""
-    return torque_constant(current) * current
-
-
 def signals(name):
-    """t, omega, alpha, M, alpha_filt and the samples of the others it belongs to: of a recording."""
-    t, omega, current, period = recording(name)
-    alpha = backward_difference(omega, period)
-    return t, omega, alpha, torque(current), *filtered(alpha)
+    """t, omega, alpha and M of a recording, alpha_filt, and the samples of the others that it belongs to."""
+    t, omega, current = table(name)
+    alpha = num_derivative(omega, value(f"T_{name}"))
+    return t, omega, alpha, torque_constant(current) * current, *filtered_acceleration(alpha)
+
+
+def four_signals(name):
+    """Of each of the four graphs of a recording its label, times, values and samples."""
+    t, omega, alpha, M, alpha_filt, sync = signals(name)
+    every = slice(None)
+    return [
+        ("speed / (rad/s)", t, omega, every),
+        ("acceleration / (rad/s^2)", t, alpha, every),
+        ("alpha_filt / (rad/s^2)", t[sync], alpha_filt, sync),
+        ("torque / (N*m)", t, M, every),
+    ]
 
 
 def four_graphs(task, name):
     """Tasks 5 and 7: speed, acceleration, alpha_filt and torque of a recording on one time axis, and their largest."""
-    t, omega, alpha, M, alpha_filt, sync = signals(name)
+    _, omega, alpha, M, *_ = signals(name)
     show("largest speed", np.abs(omega).max(), "rad/s")
     show("largest acceleration", np.abs(alpha).max(), "rad/s^2")
     show("largest torque", np.abs(M).max(), "N*m")
-    graph(
-        f"{task}.png",
-        ("speed / (rad/s)", (t, omega, "-", "")),
-        ("acceleration / (rad/s^2)", (t, alpha, "-", "")),
-        ("alpha_filt / (rad/s^2)", (t[sync], alpha_filt, "-", "")),
-        ("torque / (N*m)", (t, M, "-", "")),
-    )
+    graph(f"{task}.png", *((label, (t, values, "-", "")) for label, t, values, _ in four_signals(name)))
 
 
 def show(name, number, unit):

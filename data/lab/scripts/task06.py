@@ -1,14 +1,11 @@
 """Task 6: J as the mean of M/alpha where the axis accelerates hard; J_load beside the theory of the disk."""
 
 import numpy as np
-from course import KG_CM2, backward_difference, graph, recording, show, torque, value
+from course import graph, show, signals, value
+from methods import KG_CM2, mean_inertia
 
-t, omega, current, T = recording("JLoadWithoutFriction")
-alpha, M = backward_difference(omega, T), torque(current)
-
-alpha_max = np.abs(alpha).max()
-hard = np.abs(alpha) >= alpha_max / 4
-J = np.mean(M[hard] / alpha[hard])
+t, _, alpha, M, *_ = signals("JLoadWithoutFriction")
+J, alpha_max, hard = mean_inertia(alpha, M)
 
 show("alpha_max", alpha_max, "rad/s^2")
 show("J", J * KG_CM2, "kg*cm^2")

@@ -1,15 +1,15 @@
 """Task 8: alpha_filt, and the samples that are left without |omega| < 20 rad/s, drawn over those of task 7."""
 
-from course import graph, show
-from fast_samples import M, M_sync, alpha, alpha_filt, fast, omega, omega_sync, sync, t, t_sync
+from course import four_signals, graph, show
+from methods import fast_samples
+
+graphs = four_signals("JLoadAndFriction")
+fast = fast_samples(graphs[0][2])
 
 show("samples remaining", fast.sum(), "1")
-show("samples removed", t.size - fast.sum(), "1")
-originals = (("speed / (rad/s)", t, omega), ("acceleration / (rad/s^2)", t, alpha))
-originals += (("alpha_filt / (rad/s^2)", t_sync, alpha_filt), ("torque / (N*m)", t, M))
-remaining = (omega_sync, alpha[sync], alpha_filt, M_sync)
+show("samples removed", (~fast).sum(), "1")
 panels = [
-    (label, (x, y, "-", "original"), (t_sync[fast], kept[fast], ".", "remaining"))
-    for (label, x, y), kept in zip(originals, remaining, strict=True)
+    (label, (t, values, "-", "original"), (t[fast[at]], values[fast[at]], ".", "remaining"))
+    for label, t, values, at in graphs
 ]
 graph("task08.png", *panels, x="t_sync / s")

@@ -1,7 +1,8 @@
 """Task 11: the run-up through the winding, U = R*Iq + L*dIq/dt + Ke*omega, hot, cold, and cold with inductance."""
 
 import numpy as np
-from course import RPM, graph, show, torque, value
+from course import graph, show, torque_constant, value
+from methods import RPM
 
 U = np.sqrt(3) * 230
 Ke = U / value("no_load_speed")
@@ -28,7 +29,7 @@ def run_up(start, tau):
         left = min(imax, (U - Ke * omega[-1]) / R)
         late = left if tau == 0 else current[-1] + STEP / tau * (left - current[-1])
         friction = value("K_fric_w") * omega[-1] + value("K_fric_0")
-        omega.append(omega[-1] + STEP / value("J") * (float(torque(current[-1])) - friction))
+        omega.append(omega[-1] + STEP / value("J") * (torque_constant(current[-1]) * current[-1] - friction))
         current.append(late)
     return np.array(omega), np.array(current), corner
 
@@ -40,5 +41,5 @@ runs = {
 }
 for name, (_, _, corner) in runs.items():
     show(f"corner, {name}", corner * RPM, "rpm")
-curves = [(omega * RPM, torque(current), "-", name) for name, (omega, current, _) in runs.items()]
+curves = [(omega * RPM, torque_constant(current) * current, "-", name) for name, (omega, current, _) in runs.items()]
 graph("task11.png", ("torque / (N*m)", *curves), x="speed n / rpm")
