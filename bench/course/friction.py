@@ -150,7 +150,7 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
         f"and K_fric_0 {found.coulomb:.3g} N·m.",
         f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted} samples of task 8; the theta with the least "
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
-        f"M_est is drawn for all {run.time.size} samples. It leaves {left:.3g} N·m RMS, "
+        f"M_est is drawn for all {run.time.size} samples. M - M_est is {left:.3g} N·m RMS, "
         f"{left / rms(run.torque):.2%} of the torque; over the fitted samples {left_of_fitted:.3g} N·m.",
         *_beside_task_6(loads, recordings),
     )

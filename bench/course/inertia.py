@@ -151,7 +151,7 @@ def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
         f"{taken.sum()} of {taken.size} samples accelerate at alpha_max/4 or more; J is the mean of M/α over them, "
         f"{inertia * KG_CM2:.4g} ± {half * KG_CM2:.1g} kg·cm².",
         "In which unit? N·m over rad/s² is N·m·s² = kg·m², as the radian counts as 1; 1 kg·m² = 10⁴ kg·cm².",
-        f"J·α compared with M: they leave {left:.3g} N·m RMS, {left / rms(run.torque[taken]):.1%} of the torque of "
+        f"M - J·α is {left:.3g} N·m RMS, {left / rms(run.torque[taken]):.1%} of the torque of "
         f"these samples. M/α itself scatters by {float(np.std(ratio) / abs(np.mean(ratio))):.1%} from sample to "
         "sample, most of it noise that the difference makes of the speed.",
         *of_load,

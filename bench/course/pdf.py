@@ -22,7 +22,7 @@ TEMPLATE = asset("data", "lab", "report.typ")
 FONTS = Path(get_data_path()) / "fonts" / "ttf"
 #: Width of a diagram - inch, height of what it has on a screen, its most - inch, and size of a legend's letters, of
 #: which four entries stand beside each other - points.
-WIDTH, SHARE, MOST, LEGEND = 6.7, 0.64, 3.5, 6.2
+WIDTH, SHARE, MOST, LEGEND = 6.7, 0.64, 3.6, 6.2
 #: Sections of the first page; room above and below a row of a table that is signed, and of others - points.
 FRONT, SIGNED, ROW = 2, 9.0, 3.4
 #: An equation is a paragraph that ends in this space, and its number in the course's text, where it has one.
@@ -93,9 +93,12 @@ def _part(block: AnyPart, file: Path, row: float) -> dict[str, Any]:
 
 @figures.in_style
 def _diagram(chart: Chart) -> Figure:
-    """A diagram without its title, which stands below it."""
+    """A diagram without its title, which is below it, and with the units of several panels on lines of their own."""
     height, draw = figures.drawing(chart)
+    panels = chart.panels
+    if len(panels) > 1:
+        panels = tuple(one.model_copy(update={"y_label": one.y_label.replace(" / ", " /\n")}) for one in panels)
     with rc_context({"legend.fontsize": LEGEND}):
         figure = Figure(figsize=(WIDTH, min(SHARE * height, MOST)), layout="constrained")
-        draw(figure, chart.model_copy(update={"title": ""}))
+        draw(figure, chart.model_copy(update={"title": "", "panels": panels}))
     return figure

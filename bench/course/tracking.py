@@ -64,9 +64,8 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
         f"The simulated axis is that of the recording: J = {axis.inertia * KG_CM2:.4g} kg·cm², {truly}"
         f" The disk's geometry is {theory / (axis.inertia - rotor) - 1.0:+.1%} off its J_load, as hub, coupling and "
         "bolts turn, too.",
-        f"Of the deviation without J_load the theoretical one leaves {rms[1] / rms[0]:.1%}, the identified one "
-        f"{rms[2] / rms[0]:.1%}. What is left with that is friction, which the feed-forward does not know, at each "
-        "reversal.",
+        f"The theoretical J_load reduces the RMS deviation to {rms[1] / rms[0]:.1%} of that without J_load, the "
+        f"identified one to {rms[2] / rms[0]:.1%}. The rest is friction, which the feed-forward omits, at each reversal.",
     )
     drawn = [
         curve(references.time[::4], deviation[::4, k], f"{name}: {load * KG_CM2:.4g} kg·cm²")

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.course.axis import RPM, Sources, lab_rig
+from bench.course.axis import Sources, lab_rig
+from bench.course.methods import RPM
 from bench.course.recordings import LabRecordings
 from bench.course.tracking import track
 from bench.plant.axis_model import AxisParameters
