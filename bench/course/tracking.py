@@ -65,7 +65,7 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
         f" The disk's geometry is {theory / (axis.inertia - rotor) - 1.0:+.1%} off its J_load, as hub, coupling and "
         "bolts turn, too.",
         f"The theoretical J_load reduces the RMS deviation to {rms[1] / rms[0]:.1%} of that without J_load, the "
-        f"identified one to {rms[2] / rms[0]:.1%}. The rest is friction, which the feed-forward omits, at each reversal.",
+        f"identified one to {rms[2] / rms[0]:.1%}. The rest is friction at each reversal, not fed forward.",
     )
     drawn = [
         curve(references.time[::4], deviation[::4, k], f"{name}: {load * KG_CM2:.4g} kg·cm²")
