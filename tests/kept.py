@@ -23,20 +23,20 @@ INTEGRATOR = (
 )
 
 
-def kept(make: Callable[[], T], *made_by: str) -> T:
+def kept(make: Callable[[], T], *made_by: str | bytes) -> T:
     """What `make` returned when it was last called with the integrator, its callers and traces as they are now.
 
     Args:
         make: simulates; its result is pickled.
-        made_by: files that say what is simulated, the caller's `__file__` first.
+        made_by: files that say what is simulated, the caller's `__file__` first; bytes say it themselves.
     """
     digest = hashlib.sha256()
     of_trace = Path(inspect.getfile(Trace))
-    for path in (of_trace, *map(Path, made_by), *INTEGRATOR):
-        digest.update(path.read_bytes())
+    for one in (of_trace, *made_by, *INTEGRATOR):
+        digest.update(one if isinstance(one, bytes) else Path(one).read_bytes())
     folder = Path(tempfile.gettempdir()) / f"servobench-tests-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
-    path = folder / f"{Path(made_by[0]).stem}-{digest.hexdigest()[:16]}.pickle"
+    path = folder / f"{Path(str(made_by[0])).stem}-{digest.hexdigest()[:16]}.pickle"
     if path.exists():
         return pickle.loads(path.read_bytes())
     result = make()

@@ -14,33 +14,21 @@ from bench.effects.effect import Detected
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.report.verdict import reason as in_words
-from bench.rig.rig import load_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import Axis, write_rig
-from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
-from tests.kept import kept
+from tests.recorded import PLAIN
 
-AXIS = Axis(
-    "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
-)
-SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
-#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
 SPRING = Term(catalogue()["torsion_spring"])
 LAG = {catalogue()["velocity_filter_lag"]: Detected({"time_constant": 4e-3}, {"time_constant": 1e-5})}
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory):
+def recorded():
     """The axis with a torsion spring, recorded twice."""
-    spring = (KINDS["torsion_spring"].draw(AXIS, 0.6, np.random.default_rng(0), 4.0),)
-    motions = [random_motion(AXIS, np.random.default_rng(k), 4.0) for k in range(2)]
-    together = [AXIS] * 2, motions, [spring] * 2, [SENSORS] * 2
-    first, second = kept(lambda: [run.trace for run in simulate(*together, seed=6)], __file__)
-    path = tmp_path_factory.mktemp("rig") / "rig.toml"
-    write_rig(AXIS, path)
-    return load_rig(path), first, second
+    spring = (KINDS["torsion_spring"].draw(PLAIN.axis, 0.6, np.random.default_rng(0), 4.0),)
+    motions = {k: random_motion(PLAIN.axis, np.random.default_rng(k), 4.0) for k in range(2)}
+    first, second = PLAIN.record(dict.fromkeys(motions, spring), motions, 6).values()
+    return PLAIN.rig, first, second
 
 
 def added(recorded, terms, detected=None, with_holdout=True):

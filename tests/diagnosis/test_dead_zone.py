@@ -13,16 +13,13 @@ from bench.fit.rows import Rows
 from bench.rig.rig import load_rig
 from bench.validation.independent.effects import Backlash, CoggingTorque, LoadTorqueEvent, PositionDependentInertia
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import Axis, write_rig
-from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
+from bench.validation.independent.rig import write_rig
 from tests.cases import record
 from tests.kept import kept
+from tests.recorded import QUIET
 from tests.studies.blind import draw
 from tests.studies.blind import record as recording
 
-AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
-SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
 SEED = 5
 #: A contact of 80 Hz against the load, of a fifth of critical damping.
 STIFFNESS, DAMPING = 6.5e-4 * (2.0 * np.pi * 80.0) ** 2, 0.2 * 2.0 * 6.5e-4 * 2.0 * np.pi * 80.0
@@ -37,27 +34,17 @@ BESIDE = {
 }
 
 
-@pytest.fixture(scope="module")
-def recorded(tmp_path_factory):
-    """The rig, a recording by the gap in it, and one by the gap that is beside something else."""
-    path = tmp_path_factory.mktemp("rig") / "rig.toml"
-    write_rig(AXIS, path)
-    motion = random_motion(AXIS, np.random.default_rng(SEED), 5.0)
-    effects = [(Backlash(wide, STIFFNESS, DAMPING),) for wide in GAPS]
-    effects += [(Backlash(wide, STIFFNESS, DAMPING), other) for wide, other in BESIDE.items()]
-    count = len(effects)
-    together = [AXIS] * count, [motion] * count, effects, [SENSORS] * count
-    runs = kept(lambda: [run.trace for run in simulate(*together, SEED, numbers=[0] * count)], __file__)
-    alone, beside = runs[: len(GAPS)], runs[len(GAPS) :]
-    return load_rig(path), dict(zip(GAPS, alone, strict=True)), dict(zip(BESIDE, beside, strict=True))
+def recorded(wide, *beside):
+    """A recording of the axis with a gap, and with something else."""
+    motion = random_motion(QUIET.axis, np.random.default_rng(SEED), 5.0)
+    return QUIET.record({"gap": (Backlash(wide, STIFFNESS, DAMPING), *beside)}, motion, SEED)["gap"]
 
 
 @pytest.mark.parametrize(
     "wide", [*GAPS[1:3], *(pytest.param(one, marks=pytest.mark.slow) for one in GAPS[:1] + GAPS[3:])]
 )
-def test_a_gap_is_found(recorded, wide):
-    rig, traces, _ = recorded
-    bare = fit_bare(Rows.of(traces[wide], rig))
+def test_a_gap_is_found(wide):
+    bare = fit_bare(Rows.of(recorded(wide), QUIET.rig))
     way = bare.scope.rms_speed * bare.scope.width
     found = likeliest_shape(bare, lambda gain: True)
     print(f"gap of {wide / way:.2g} ways: {found[0] / wide - 1.0:+.1%}, contact {found[1] / 2 / np.pi:.0f} Hz")
@@ -78,13 +65,14 @@ NOT_VISITED = pytest.mark.xfail(
         *(pytest.param(one, marks=pytest.mark.slow) for one in list(BESIDE)[3:]),
     ],
 )
-def test_a_gap_is_among_what_is_weighed_with_something_else(recorded, wide):
-    rig, _, traces = recorded
-    visited = search(fit_bare(Rows.of(traces[wide], rig)), list(catalogue().values()), POLICY).visited
+def test_a_gap_is_among_what_is_weighed_with_something_else(wide):
+    visited = search(
+        fit_bare(Rows.of(recorded(wide, BESIDE[wide]), QUIET.rig)), list(catalogue().values()), POLICY
+    ).visited
     (found,) = (each for each in visited if {*each.hypothesis.names} == {"backlash", BESIDE[wide].name})
     shapes = {term.effect.name: term.shape for term in found.terms}
     assert shapes["backlash"][0] == pytest.approx(wide, rel=0.04)
-    assert found.base.inertia == pytest.approx(AXIS.inertia, rel=0.005)
+    assert found.base.inertia == pytest.approx(QUIET.axis.inertia, rel=0.005)
 
 
 @pytest.mark.slow

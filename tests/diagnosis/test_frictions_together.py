@@ -12,7 +12,6 @@ from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.effects.presliding_friction import bristles, sliding_level
 from bench.fit.rows import Rows
-from bench.rig.rig import load_rig
 from bench.validation.independent.effects import (
     DirectionDependentFriction,
     FrictionWarmup,
@@ -21,13 +20,8 @@ from bench.validation.independent.effects import (
     StribeckFriction,
 )
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import Axis, write_rig
-from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
-from tests.kept import kept
+from tests.recorded import QUIET
 
-AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
-SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
 BRISTLES = PreslidingFriction(4.0, 5e-3)
 BESIDE = {
     "rise": (StribeckFriction(0.16, 3.0),),
@@ -38,14 +32,10 @@ BESIDE = {
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory):
-    """The rig, and a recording by what is beside the bristles."""
-    path = tmp_path_factory.mktemp("rig") / "rig.toml"
-    write_rig(AXIS, path)
-    count, motion = len(BESIDE), random_motion(AXIS, np.random.default_rng(5), 6.0)
-    together = [AXIS] * count, [motion] * count, [(BRISTLES, *more) for more in BESIDE.values()], [SENSORS] * count
-    runs = kept(lambda: [run.trace for run in simulate(*together, 5)], __file__)
-    return load_rig(path), dict(zip(BESIDE, runs, strict=True))
+def recorded():
+    """A recording by what is beside the bristles."""
+    motion = random_motion(QUIET.axis, np.random.default_rng(5), 6.0)
+    return QUIET.record({name: (BRISTLES, *more) for name, more in BESIDE.items()}, motion, 5)
 
 
 def test_bristles_slide_at_the_level_of_the_other_frictions():
@@ -66,19 +56,17 @@ def test_bristles_slide_at_the_level_of_the_other_frictions():
 
 @pytest.mark.parametrize("name", BESIDE)
 def test_bristles_are_named_beside_other_frictions(recorded, name):
-    rig, traces = recorded
-    fitted = search(fit_bare(Rows.of(traces[name], rig)), list(catalogue().values()), Policy()).last
+    fitted = search(fit_bare(Rows.of(recorded[name], QUIET.rig)), list(catalogue().values()), Policy()).last
     hidden = (BRISTLES, *BESIDE[name])
     assert sorted(fitted.hypothesis.names) == sorted(effect.name for effect in hidden)
     assert fitted.chi < 1.1
     index = fitted.hypothesis.names.index(BRISTLES.name)
     values = fitted.terms[index].effect.report(fitted.strengths(index), fitted.terms[index].shape, fitted.base)
     assert values["bristle_stiffness"] == pytest.approx(BRISTLES.bristle_stiffness, rel=0.05)
-    assert fitted.theta[:3] == pytest.approx([AXIS.inertia, AXIS.viscous, AXIS.coulomb], rel=0.03)
+    assert fitted.theta[:3] == pytest.approx([QUIET.axis.inertia, QUIET.axis.viscous, QUIET.axis.coulomb], rel=0.03)
 
 
 @pytest.mark.parametrize(("rate", "credible"), [(0.5, False), (50.0, True)])
 def test_bristles_that_bend_over_most_of_the_travel_are_a_spring(recorded, rate, credible):
-    rig, traces = recorded
-    scope = replace(Rows.of(traces["rise"], rig).scope, travel=4.0)
+    scope = replace(Rows.of(recorded["rise"], QUIET.rig).scope, travel=4.0)
     assert catalogue()["presliding_friction"].plausible([[0.08, 0.0]], [(rate,)], scope) is credible

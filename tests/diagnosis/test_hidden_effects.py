@@ -10,56 +10,32 @@ import pytest
 
 from bench.diagnosis.diagnosis import diagnose
 from bench.report.diagnosis import diagnosis_json
-from bench.rig.rig import load_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import Axis, write_rig
-from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
-from tests.kept import kept
 from tests.outside import OUTSIDE
+from tests.recorded import PLAIN
 
-AXIS = Axis(
-    "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
-)
-SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
-#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
 NAMED = ("cogging_torque", "unbalance", "stribeck_friction")
 HIDDEN = ((), *((name,) for name in NAMED), ("vibration",))
 
 
 @pytest.fixture(scope="module")
 def recordings():
-    """Two recordings by what was hidden; all integrated together."""
-    rng, seconds = np.random.default_rng(3), 6.0
-    effects = [tuple((KINDS | OUTSIDE)[name].draw(AXIS, 0.6, rng, seconds) for name in names) for names in HIDDEN]
-    motions = [random_motion(AXIS, np.random.default_rng(k), seconds) for k in range(2)]
-
-    def recorded():
-        runs = simulate(
-            [AXIS] * (2 * len(HIDDEN)),
-            [motions[k] for _ in HIDDEN for k in range(2)],
-            [effect for effect in effects for _ in range(2)],
-            [SENSORS] * (2 * len(HIDDEN)),
-            seed=4,
-        )
-        return [run.trace for run in runs]
-
-    traces = kept(recorded, __file__)
-    return dict(zip(HIDDEN, zip(traces[::2], traces[1::2], strict=True), strict=True))
+    """Two recordings by what was hidden."""
+    rng, seconds, both = np.random.default_rng(3), 6.0, {}
+    motions = [random_motion(PLAIN.axis, np.random.default_rng(k), seconds) for k in range(2)]
+    for names in HIDDEN:
+        effects = tuple((KINDS | OUTSIDE)[name].draw(PLAIN.axis, 0.6, rng, seconds) for name in names)
+        both |= {(names, k): (effects, motion) for k, motion in enumerate(motions)}
+    hidden, moving = ({case: one[k] for case, one in both.items()} for k in range(2))
+    traces = PLAIN.record(hidden, moving, 4)
+    return {names: (traces[names, 0], traces[names, 1]) for names in HIDDEN}
 
 
 @pytest.fixture(scope="module")
-def rig(tmp_path_factory):
-    path = tmp_path_factory.mktemp("rig") / "rig.toml"
-    write_rig(AXIS, path)
-    return load_rig(path)
-
-
-@pytest.fixture(scope="module")
-def found(recordings, rig):
+def found(recordings):
     """Diagnoses by what was hidden."""
-    return {names: diagnose(first, rig, second) for names, (first, second) in recordings.items()}
+    return {names: diagnose(first, PLAIN.rig, second) for names, (first, second) in recordings.items()}
 
 
 def test_nothing_hidden_is_not_named(found):
@@ -73,7 +49,7 @@ def test_a_hidden_effect_is_named_and_the_gap_shrinks(found, name):
     assert [effect.name for effect in diagnosis.effects] == [name]
     torque = diagnosis.torque
     assert torque.identify[1] < 0.7 * torque.identify[0]
-    assert diagnosis.parameters["moment_of_inertia"].value == pytest.approx(AXIS.inertia, rel=3e-3)
+    assert diagnosis.parameters["moment_of_inertia"].value == pytest.approx(PLAIN.axis.inertia, rel=3e-3)
 
 
 def test_physics_outside_the_catalogue_stays_unnamed(found):
@@ -98,8 +74,8 @@ def test_json_is_the_contracts(found):
     assert velocity["after"] < velocity["before"]
 
 
-def test_the_name_left_out_of_the_catalogue_is_not_replaced_by_a_wrong_one(recordings, rig):
+def test_the_name_left_out_of_the_catalogue_is_not_replaced_by_a_wrong_one(recordings):
     first, second = recordings[("cogging_torque",)]
-    diagnosis = diagnose(first, rig, second, excluded=frozenset({"cogging_torque"}))
+    diagnosis = diagnose(first, PLAIN.rig, second, excluded=frozenset({"cogging_torque"}))
     assert diagnosis.verdict == "unexplained_remainder"
     assert diagnosis.effects == []

@@ -13,17 +13,14 @@ from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis
 from bench.fit.rows import Rows
 from bench.plant.tracking import Tracked
-from bench.rig.rig import load_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import Motion, Ramps, slow_reversals
-from bench.validation.independent.rig import write_rig
-from bench.validation.independent.simulate import simulate
 from tests.diagnosis.constructed import RIG, moved
 from tests.diagnosis.constructed import recorded as made_up
 from tests.diagnosis.hand_made import term
-from tests.diagnosis.test_add import AXIS, SENSORS, added
-from tests.kept import kept
+from tests.diagnosis.test_add import added
 from tests.outside import SlowMemoryFriction
+from tests.recorded import PLAIN
 
 OFFSET, COGGING, HARMONIC = 0.1, 0.15, 60.0
 STANDS, JERK = 5.0, 0.02
@@ -40,35 +37,30 @@ def strokes(speeds):
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory):
+def recorded():
     """An axis that runs forward, stands, and runs backward; and one that runs slowly over strong cogging."""
     there = strokes([10.0, 40.0, -2.0, 80.0, 25.0, -2.0, 60.0, 15.0, 90.0])
     back = strokes([-30.0, -70.0, -12.0, -50.0])
-    motions = [
-        Motion((there, Ramps([(0.0, 0.0), (STANDS, 0.0)], JERK), back)),
-        Motion(
+    motions = {
+        "stands": Motion((there, Ramps([(0.0, 0.0), (STANDS, 0.0)], JERK), back)),
+        "cogging": Motion(
             (
                 strokes([10.0, -40.0, 8.0, -25.0, 6.0, -15.0, 30.0]),
                 slow_reversals([4.0, 3.0, 6.0, 2.0], 0.6, JERK),
                 strokes([-30.0, -7.0, -12.0, 5.0]),
             )
         ),
-    ]
-    effects = [
-        (KINDS["torque_offset"](OFFSET), SlowMemoryFriction(0.8, 0.5, 40.0)),
-        (KINDS["cogging_torque"](COGGING, HARMONIC, 0.4),),
-    ]
-    together = [AXIS] * 2, motions, effects, [SENSORS] * 2
-    traces = kept(lambda: [run.trace for run in simulate(*together, seed=3)], __file__)
-    path = tmp_path_factory.mktemp("rig") / "rig.toml"
-    write_rig(AXIS, path)
-    return load_rig(path), *traces
+    }
+    effects = {
+        "stands": (KINDS["torque_offset"](OFFSET), SlowMemoryFriction(0.8, 0.5, 40.0)),
+        "cogging": (KINDS["cogging_torque"](COGGING, HARMONIC, 0.4),),
+    }
+    return PLAIN.record(effects, motions, 3)
 
 
 def test_an_axis_that_stands_in_the_middle_keeps_its_constant_torque(recorded):
     """Beside friction that no catalogue holds. Its first two thirds go forward, where an offset is friction."""
-    rig, stands, _ = recorded
-    result = added((rig, stands, None), [term("direction_dependent_friction")], with_holdout=False)
+    result = added((PLAIN.rig, recorded["stands"], None), [term("direction_dependent_friction")], with_holdout=False)
     assert result.rejected == ()
     (named,) = result.effects  # forward less backward is twice an offset
     assert named.parameters["coulomb_difference"].value == pytest.approx(2.0 * OFFSET, rel=0.02)
@@ -76,8 +68,7 @@ def test_an_axis_that_stands_in_the_middle_keeps_its_constant_torque(recorded):
 
 def test_a_wave_whose_simulation_loses_its_phase_is_judged_by_its_torque(recorded):
     """Held softly, the simulated axis slips over cogs whose stiffness exceeds the cascade's: A*n > 0.37*J*w**2."""
-    rig, _, cogging = recorded
-    found = diagnose(cogging, rig)
+    found = diagnose(recorded["cogging"], PLAIN.rig)
     assert found.verdict == "explained"
     (named,) = found.effects
     assert named.parameters["harmonic"].value == HARMONIC

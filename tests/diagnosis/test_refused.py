@@ -5,6 +5,7 @@ name of the catalogue does, since what is made of torque is made of the modelled
 """
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,34 +18,27 @@ from bench.errors import UndeterminedError
 from bench.plant.model_file import load_model
 from bench.report.diagnosis import diagnosis, diagnosis_json, write_diagnosis
 from bench.report.verdict import reasons
-from bench.rig.rig import load_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import Motion, slow_reversals
-from bench.validation.independent.rig import Axis, write_rig
 from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
 from tests.diagnosis.off import without
-from tests.kept import kept
+from tests.recorded import PLAIN, Recorder
 
-AXIS = Axis(
-    "axis", 1.5e-3, 8e-4, 0.5, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
+RUBBING = Recorder(
+    replace(PLAIN.axis, coulomb=0.5),
+    Sensors(velocity=Noise(white=0.003), current=Noise(white=2e-3), encoder_resolution=2e-5),
 )
-SENSORS = Sensors(velocity=Noise(white=0.003), current=Noise(white=2e-3), encoder_resolution=2e-5)
 STIFFNESS = 0.02
 #: All names but that of the spring.
 EXCLUDED = frozenset(catalogue()) - {"torsion_spring"}
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory):
+def recorded():
     """Rig, and the axis on a spring."""
     speeds = [6.0, 8.0, 4.0, 7.0, 5.0, 9.0]
     motion = Motion((slow_reversals(speeds, 0.25, 0.02), slow_reversals(speeds[::-1], 0.25, 0.02)))
-    one = [AXIS], [motion], [(KINDS["torsion_spring"](STIFFNESS),)], [SENSORS]
-    trace = kept(lambda: simulate(*one, seed=3)[0].trace, __file__)
-    path = tmp_path_factory.mktemp("rig") / "rig.toml"
-    write_rig(AXIS, path)
-    return load_rig(path), trace
+    return RUBBING.rig, RUBBING.record({"spring": (KINDS["torsion_spring"](STIFFNESS),)}, motion, 3)["spring"]
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +62,7 @@ def test_its_model_is_the_last_that_has_an_inertia(lacking, recorded, tmp_path):
     """Here the bare axis, whose J the spring biases by k/w**2 at most."""
     assert lacking.model is not None
     assert lacking.model.model.effects == ()
-    assert lacking.model.model.parameters.inertia == pytest.approx(AXIS.inertia, rel=0.5)
+    assert lacking.model.model.parameters.inertia == pytest.approx(RUBBING.axis.inertia, rel=0.5)
     assert np.isnan(lacking.steps[-1].velocity).all()
     assert np.isfinite(lacking.steps[0].velocity).all()
     write_diagnosis(tmp_path / "found", lacking, "axis")
@@ -91,7 +85,7 @@ def test_physics_of_the_catalogue_names_the_spring(recorded):
     found = diagnose(trace, rig, excluded=EXCLUDED)
     assert (found.verdict, found.refused) == ("explained", {})
     assert found.effects[0].parameters["stiffness"].value == pytest.approx(STIFFNESS, rel=0.01)
-    assert found.parameters["moment_of_inertia"].value == pytest.approx(AXIS.inertia, rel=0.01)
+    assert found.parameters["moment_of_inertia"].value == pytest.approx(RUBBING.axis.inertia, rel=0.01)
 
 
 def test_where_what_is_missing_takes_the_inertia_of_the_bare_axis_there_is_no_model(recorded, monkeypatch):
@@ -110,7 +104,7 @@ def test_where_what_is_missing_takes_the_inertia_of_the_bare_axis_there_is_no_mo
 def test_an_inertia_below_the_rotors_is_refused_with_the_load(recorded):
     """A rig with the rotor of another motor, and a spring that is not to be tried."""
     rig, trace = recorded
-    other = rig.model_copy(update={"motor": rig.motor.model_copy(update={"rotor_inertia": 3.0 * AXIS.inertia})})
+    other = rig.model_copy(update={"motor": rig.motor.model_copy(update={"rotor_inertia": 3.0 * RUBBING.axis.inertia})})
     found = diagnose(trace, other, excluded=frozenset(catalogue()))
     assert set(found.refused) == {"moment_of_inertia", "load_moment_of_inertia"}
     assert not set(found.refused) & set(found.parameters)

@@ -11,49 +11,34 @@ from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
-from bench.rig.rig import Rig, load_rig
 from bench.trace.trace import Trace
 from bench.validation.independent.effects import ElasticCoupling, PreslidingFriction
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import Axis, write_rig
-from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
-from tests.kept import kept
+from tests.recorded import QUIET
 
 ELASTIC = catalogue()["elastic_coupling"]
 PERIOD = 1e-3
-AXIS = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
-SENSORS = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
-#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
-
-
 COUPLING, BRISTLES = ElasticCoupling(14.0, 2.5e-3), PreslidingFriction(3.0, 8e-3)
 SEED, RIGID = 5, "rigid"
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory) -> tuple[Rig, dict[str, Trace]]:
-    """The rig, and a recording by the name of the effect in it: of a rigid axis, too."""
-    path = tmp_path_factory.mktemp("rig") / "rig.toml"
-    write_rig(AXIS, path)
-    effects, motion = [(COUPLING,), (BRISTLES,), ()], random_motion(AXIS, np.random.default_rng(SEED), 6.0)
-    together = [AXIS] * 3, [motion] * 3, effects, [SENSORS] * 3
-    runs = kept(lambda: [run.trace for run in simulate(*together, SEED, numbers=[0] * 3)], __file__)
-    names = [COUPLING.name, BRISTLES.name, RIGID]
-    return load_rig(path), dict(zip(names, runs, strict=True))
+def recorded():
+    """A recording by the name of the effect in it: of a rigid axis, too."""
+    effects = {COUPLING.name: (COUPLING,), BRISTLES.name: (BRISTLES,), RIGID: ()}
+    motion = random_motion(QUIET.axis, np.random.default_rng(SEED), 6.0)
+    return QUIET.record(effects, motion, SEED, dict.fromkeys(effects, 0))
 
 
 @pytest.mark.parametrize(("drag", "ends"), [(0.0, 4.0), (0.02, 4.0), (0.0, 3.7)])
-def test_the_load_moves_as_its_equation_says(tmp_path, drag, ends):
+def test_the_load_moves_as_its_equation_says(drag, ends):
     """A recording that ends in motion rings on behind its end, and none of that comes back at its start."""
     antiresonance, damping = 150.0, 0.01
-    write_rig(AXIS, tmp_path / "rig.toml")
-    rig = load_rig(tmp_path / "rig.toml")
     time = np.arange(0.0, ends, PERIOD)
     turn, speed = 2.0 * np.pi / 4.0, 60.0
     angle, velocity = speed / turn * (1.0 - np.cos(turn * time)), speed * np.sin(turn * time)
     values = {"position": angle, "velocity": velocity, "current": 0.12 * np.cos(turn * time) + 0.1 * np.sign(velocity)}
-    rows = Rows.of(Trace(time, values, {"position": "rad", "velocity": "rad/s", "current": "A"}, "swing"), rig)
+    rows = Rows.of(Trace(time, values, {"position": "rad", "velocity": "rad/s", "current": "A"}, "swing"), QUIET.rig)
 
     def equation(t, state):
         motor, rate = speed / turn * (1.0 - np.cos(turn * t)), speed * np.sin(turn * t)
@@ -69,21 +54,20 @@ def test_the_load_moves_as_its_equation_says(tmp_path, drag, ends):
 
 
 def test_a_soft_coupling_leaves_noise_alone(recorded):
-    (rig, traces), effect = recorded, COUPLING
-    rows = Rows.of(traces[effect.name], rig)
-    antiresonance = np.sqrt(effect.stiffness / (AXIS.inertia - AXIS.rotor_inertia))
+    effect = COUPLING
+    rows = Rows.of(recorded[effect.name], QUIET.rig)
+    antiresonance = np.sqrt(effect.stiffness / (QUIET.axis.inertia - QUIET.axis.rotor_inertia))
     shape = float(antiresonance), 0.5 * effect.damping * float(antiresonance) / effect.stiffness
     fitted = fit(rows, Hypothesis((Term(ELASTIC, shape),)))
-    assert fitted.chi == pytest.approx(fit_bare(Rows.of(traces[RIGID], rig)).chi, rel=0.05)
-    assert fitted.theta[0] == pytest.approx(AXIS.inertia, rel=2e-4)
-    assert fitted.strengths(0)[0] == pytest.approx(AXIS.inertia - AXIS.rotor_inertia, rel=5e-4)
+    assert fitted.chi == pytest.approx(fit_bare(Rows.of(recorded[RIGID], QUIET.rig)).chi, rel=0.05)
+    assert fitted.theta[0] == pytest.approx(QUIET.axis.inertia, rel=2e-4)
+    assert fitted.strengths(0)[0] == pytest.approx(QUIET.axis.inertia - QUIET.axis.rotor_inertia, rel=5e-4)
 
 
 @pytest.mark.parametrize("name", [COUPLING.name, BRISTLES.name])
 def test_none_is_proposed_without_a_load_behind_it(recorded, name):
     """Beside what is hidden still the load of most shapes comes out negative; one of these stood for all others."""
-    rig, traces = recorded
-    bare = fit_bare(Rows.of(traces[name], rig))
+    bare = fit_bare(Rows.of(recorded[name], QUIET.rig))
     gains, loads = [], []
     for proposal in ELASTIC.propose(bare):
         gains.append(proposal.gain)
@@ -94,11 +78,11 @@ def test_none_is_proposed_without_a_load_behind_it(recorded, name):
 
 
 def test_bristles_are_named_with_their_damping(recorded):
-    (rig, traces), effect = recorded, BRISTLES
-    fitted = search(fit_bare(Rows.of(traces[effect.name], rig)), list(catalogue().values()), Policy()).last
+    effect = BRISTLES
+    fitted = search(fit_bare(Rows.of(recorded[effect.name], QUIET.rig)), list(catalogue().values()), Policy()).last
     assert fitted.hypothesis.names == ("presliding_friction",)
     assert fitted.chi < 1.1
     values = fitted.terms[0].effect.report(fitted.strengths(0), fitted.terms[0].shape, fitted.base)
     assert values["bristle_stiffness"] == pytest.approx(effect.bristle_stiffness, rel=0.03)
     assert values["bristle_damping"] == pytest.approx(effect.bristle_damping, rel=0.15)
-    assert fitted.theta[0] == pytest.approx(AXIS.inertia, rel=1e-3)
+    assert fitted.theta[0] == pytest.approx(QUIET.axis.inertia, rel=1e-3)

@@ -2,6 +2,7 @@
 
 import re
 import sys
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -20,8 +21,6 @@ sys.path.insert(0, str(DOCS / "_ext"))
 import command_pages
 import effect_pages
 import signature
-
-TEXT = "\n".join(path.read_text(encoding="utf-8") for path in SOURCES)
 
 
 def links(page):
@@ -87,12 +86,19 @@ def plainly(text):
     return text.translate(str.maketrans("öéá", "oea"))
 
 
+@cache
+def blocks_of_text():
+    """Docstrings and parts between empty lines of all modules."""
+    text = plainly("\n".join(path.read_text(encoding="utf-8") for path in SOURCES))
+    return re.split(r"\n\s*\n|\"\"\"", text)
+
+
 def uncited(source):
     """What is missing of a source's citations, in the text or in the code."""
     author = first_author(source)
     if author not in METHOD:
         return f"{author} is listed and not cited"
-    blocks = [part for part in re.split(r"\n\s*\n|\"\"\"", plainly(TEXT)) if plainly(author) in part]
+    blocks = [part for part in blocks_of_text() if plainly(author) in part]
     years = re.findall(r"(?<!\d)(?:19|20)\d\d(?!\d)", source.split("-")[0] if "arXiv" in source else source)[:1]
     missing = [year for year in years if not any(year in part for part in blocks)]
     return f"no module cites {author} {' '.join(missing)}" if missing or not blocks else ""

@@ -13,14 +13,9 @@ from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import Axis
-from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
-from tests.kept import kept
+from tests.recorded import PLAIN
 
-AXIS = Axis(
-    "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
-)
+AXIS = PLAIN.axis
 RIG = Rig.of(
     {
         "name": "axis",
@@ -35,7 +30,6 @@ RIG = Rig.of(
         },
     }
 )
-SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
 SECONDS = 6.0
 SINGLES = {
     "quadratic_drag": (2.5e-5,),
@@ -56,10 +50,7 @@ DIGIT = 0.02
 def recordings() -> dict[str, Trace]:
     """One without an effect, under the name `null`, and one of each single."""
     cases = {"null": (), **{name: (KINDS[name](*values),) for name, values in SINGLES.items()}}
-    count, motion = len(cases), random_motion(AXIS, np.random.default_rng(11), SECONDS)
-    together = [AXIS] * count, [motion] * count, list(cases.values()), [SENSORS] * count
-    runs = kept(lambda: [run.trace for run in simulate(*together, 11)], __file__)
-    return dict(zip(cases, runs, strict=True))
+    return PLAIN.record(cases, random_motion(AXIS, np.random.default_rng(11), SECONDS), 11)
 
 
 def filtered(current: np.ndarray, time: np.ndarray, lag: float = 1e-3) -> np.ndarray:

@@ -10,20 +10,13 @@ from scipy.stats import binom
 
 from bench.diagnosis.diagnosis import diagnose
 from bench.effects.catalogue import catalogue
-from bench.rig.rig import load_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import Axis, write_rig
-from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
 from tests.cases import parameters
-from tests.kept import kept
+from tests.recorded import PLAIN
 from tests.studies.blind.parameters import WHOLE, compared
 
-AXIS = Axis(
-    "axis", 1.5e-3, 8e-4, 0.08, 5e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3
-)
-SENSORS = Sensors(velocity=Noise(white=0.03), current=Noise(white=8e-3), encoder_resolution=2e-5)
+AXIS = PLAIN.axis
 SEED, SEVERITY, SECONDS = 3, 0.6, 6.0
 DIAGNOSED = [name for name in catalogue() if name in KINDS]  # one more is sought beside a known weight only
 #: What is drawn beside its strength: without a viscous part, a difference of friction is a torque offset.
@@ -48,25 +41,12 @@ def hidden():
 
 
 @pytest.fixture(scope="module")
-def diagnosed(hidden, tmp_path_factory):
+def diagnosed(hidden):
     """The diagnosis of a recording of each, all integrated together."""
-    path = tmp_path_factory.mktemp("rig") / "rig.toml"
-    write_rig(AXIS, path)
-    rig, count, motion = load_rig(path), len(hidden), random_motion(AXIS, np.random.default_rng(SEED), SECONDS)
-
-    def recorded():
-        runs = simulate(
-            [AXIS] * count,
-            [motion] * count,
-            [(effect, WITH[name]) if name in WITH else (effect,) for name, effect in hidden.items()],
-            [SENSORS] * count,
-            SEED,
-            numbers=[number(name) for name in hidden],
-        )
-        return dict(zip(hidden, (run.trace for run in runs), strict=True))
-
-    traces = kept(recorded, __file__)
-    return cache(lambda name: diagnose(traces[name], rig))
+    motion, numbers = random_motion(AXIS, np.random.default_rng(SEED), SECONDS), {name: number(name) for name in hidden}
+    effects = {name: (effect, WITH[name]) if name in WITH else (effect,) for name, effect in hidden.items()}
+    traces = PLAIN.record(effects, motion, SEED, numbers)
+    return cache(lambda name: diagnose(traces[name], PLAIN.rig))
 
 
 def quantities(diagnosis, effect):

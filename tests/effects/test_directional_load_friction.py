@@ -13,13 +13,10 @@ from bench.effects.present import Present
 from bench.effects.signals import Base
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Term
-from bench.rig.rig import load_rig
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import Axis, write_rig
-from bench.validation.independent.sensors import Noise, Sensors
-from bench.validation.independent.simulate import simulate
 from tests.effects.axes import FREE, VALUES, moved, present, signals
+from tests.recorded import QUIET
 
 NAME = "directional_load_friction"
 
@@ -49,14 +46,11 @@ def test_the_coefficient_of_the_load_is_determined_beside_that_of_the_motor():
 
 
 @pytest.mark.parametrize(("amplitude", "also"), [(0.004, (NAME,)), pytest.param(0.2, (), marks=pytest.mark.slow)])
-def test_friction_by_the_motors_torque_may_be_by_the_loads_beside_a_small_load(amplitude, also, tmp_path):
+def test_friction_by_the_motors_torque_may_be_by_the_loads_beside_a_small_load(amplitude, also):
     """Of the independent integrator: no friction by the load's torque, which a small load does not tell."""
-    axis = Axis("axis", 1e-3, 6e-4, 0.08, 3.5e-4, 0.8, 5.0, velocity_gain=0.12, integral_gain=2.0)
-    write_rig(axis, tmp_path / "rig.toml")
     hidden = KINDS["load_dependent_friction"](0.1), KINDS["unbalance"](amplitude, 0.4)
-    sensors = Sensors(velocity=Noise(white=0.01), current=Noise(white=5e-3))
-    (run,) = simulate([axis], [random_motion(axis, np.random.default_rng(3), 6.0)], [hidden], [sensors], 3)
-    recordings = Recordings.of(run.trace, load_rig(tmp_path / "rig.toml"), None)
+    trace = QUIET.record({"both": hidden}, random_motion(QUIET.axis, np.random.default_rng(3), 6.0), 3)["both"]
+    recordings = Recordings.of(trace, QUIET.rig, None)
     terms = Term(catalogue()["load_dependent_friction"]), Term(catalogue()["unbalance"])
     bare = fit_bare(recordings.rows)
     fitted = fit(bare.rows, bare.hypothesis.with_terms(terms))

@@ -5,6 +5,7 @@ what is right:
 
     what = "one sentence: the input, and the rule"
     real = true                       # run on ../shared/faults/NAME, too, where it exists; the default
+    long = true                       # that recording takes long: it is a slow test; the default is false
     [[run]]                           # commands, in order, in one folder
     command = "identify log.csv --rig rig.toml --json out.json"
     status = 0                        # exit status, 0 where it is absent; a list: any of these
@@ -107,7 +108,14 @@ def test_a_synthetic_twin_is_right(name, tmp_path, monkeypatch):
     run_all(FAULTS[name], "twin", monkeypatch, tmp_path)
 
 
-@pytest.mark.parametrize("name", sorted(name for name, fault in FAULTS.items() if fault.get("real", True)))
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] if fault.get("long") else [])
+        for name, fault in sorted(FAULTS.items())
+        if fault.get("real", True)
+    ],
+)
 def test_the_recording_itself_is_right(name, tmp_path, monkeypatch):
     if not (REAL / name).is_dir():
         pytest.skip(f"needs the recordings in ../shared/faults/{name}")
