@@ -7,7 +7,7 @@ from bench.effects.current_filter_lag import EFFECT
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from tests.effects.axes import PERIOD, VALUES, Reversals, model, plant
-from tests.effects.damaged import AXIS, HIDDEN, diagnosed, filtered, inertia_holds, late, names
+from tests.effects.damaged import AXIS, HIDDEN, SINGLES, diagnosed, filtered, inertia_holds, late, names
 
 NAME = "current_filter_lag"
 #: Of a recursive filter of one sample's time constant: the mean of its impulse response, 1/(e - 1) samples - s.
@@ -30,7 +30,7 @@ def test_the_axis_does_not_feel_it():
     assert np.abs(reported_states(model(NAME), states).torque - states.torque).max() > 0.01
 
 
-@pytest.mark.parametrize("single", HIDDEN)
+@pytest.mark.parametrize("single", [pytest.param(None, marks=pytest.mark.slow), *HIDDEN[1:]])
 def test_a_filter_of_a_millisecond_keeps_the_names_of_singles(single):
     found = diagnosed(single or "null", filtered)
     assert names(found) == {NAME, single} - {None}
@@ -39,7 +39,7 @@ def test_a_filter_of_a_millisecond_keeps_the_names_of_singles(single):
     assert inertia_holds(found)
 
 
-@pytest.mark.parametrize("single", HIDDEN)
+@pytest.mark.parametrize("single", [None, *(pytest.param(name, marks=pytest.mark.slow) for name in SINGLES)])
 def test_half_a_millisecond_late_is_no_backlash(single):
     found = diagnosed(single or "null", late)
     assert names(found) - {NAME} == {single} - {None}

@@ -5,9 +5,21 @@ import pytest
 
 from bench.gate import plausible
 from bench.gate.check import Seen
+from bench.rig.rig import Rig
 from tests.fit.motions import recording
 from tests.gate.damage import changed
-from tests.studies.corrupt.__main__ import RIG
+
+#: Of a motor with a disk, together - kg*m**2.
+INERTIA = 1.5e-3
+RIG = Rig.of(
+    {
+        "name": "motor with a disk",
+        "kind": "rotary",
+        "motor": {"torque_constant": "0.8 N*m/A", "rotor_inertia": "2 kg*cm**2", "peak_current": "30 A"}
+        | {"maximum_speed": "320 rad/s"},
+        "load": {"outer_diameter": f"{np.sqrt(8.0 * (INERTIA - 2e-4)):.9g} m", "mass": "1 kg"},
+    }
+)
 
 
 @pytest.fixture(scope="module")

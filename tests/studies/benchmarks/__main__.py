@@ -24,7 +24,7 @@ INTRODUCTION = """# Benchmarks
     python -m tests.studies.benchmarks --out docs
 
 measures what follows (`pip install -e '.[dev,benchmarks]'`). With names, as in
-`python -m tests.studies.benchmarks lstsq --out docs`, it measures some of it anew and leaves the rest as it is. Ways
+`python -m tests.studies.benchmarks sysid --out docs`, it measures some of it anew and leaves the rest as it is. Ways
 that are held against each other are measured within one run, in turn, so that they share what else the machine does;
 times are medians, and a ratio is the median of the ratios within each round. A time of one machine says little about
 another, a ratio more.
@@ -43,13 +43,11 @@ Benchmarks = Mapping[str, tuple[str, Callable[[], list[Table]]]]
 #: Headings of the page's sections in their order, and what measures them, by the names of the command line.
 BENCHMARKS: Benchmarks = {
     "sysid": ("Identification beside mujoco.sysid", partial(measured_by, "beside_sysid")),
-    "lstsq": ("Least squares beside NumPy's", partial(measured_by, "beside_lstsq")),
     "before": ("CPU time of an identification against an earlier version", partial(measured_by, "beside_before")),
     "starting": ("CPU time of whole commands against an earlier version", partial(measured_by, "starting")),
     "stepping": ("Simulation beside bare stepping", partial(measured_by, "beside_stepping")),
     "reading": ("Reading beside pyarrow", partial(measured_by, "beside_pyarrow")),
     "diagnosing": ("CPU time of a diagnosis", partial(measured_by, "diagnosing")),
-    "growth": ("Growth with samples, axes and effects", partial(measured_by, "growth")),
 }
 
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 
 @dataclass(frozen=True)
@@ -31,9 +28,3 @@ class Table:
         """The paragraph and the table."""
         lines = [self.heads, ("---", *("---:" for _ in self.heads[1:])), *self.rows]
         return self.says + "\n\n" + "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def growth(sizes: Sequence[float], seconds: Sequence[float]) -> tuple[str, ...]:
-    """Exponents of time over size from each size to the next, none at the first."""
-    exponents = np.diff(np.log(seconds)) / np.diff(np.log(sizes))
-    return ("", *(f"{exponent:.2f}" for exponent in exponents))

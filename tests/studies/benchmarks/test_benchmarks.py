@@ -11,27 +11,22 @@ from tests.hostile import ROOT
 from tests.studies.benchmarks import __main__ as command
 from tests.studies.benchmarks import (
     beside_before,
-    beside_lstsq,
     beside_pyarrow,
     beside_stepping,
     diagnosing,
-    growth,
     starting,
 )
 from tests.studies.benchmarks.table import Table
-from tests.studies.benchmarks.table import growth as exponents
 from tests.studies.benchmarks.timing import Timed, in_turn
 
 
 @pytest.mark.parametrize(
     ("measured", "rows"),
     [
-        (lambda: beside_lstsq.measured((3.0,), 1), (1,)),
         (lambda: beside_stepping.measured(steps=40, rounds=1), (7,)),
         (lambda: beside_pyarrow.measured((2000,), 1), (2,)),
-        (lambda: growth.measured((1000, 2000), (1, 21), ticks=20, rounds=1), (2, 2)),
     ],
-    ids=["lstsq", "stepping", "reading", "growth"],
+    ids=["stepping", "reading"],
 )
 def test_each_measures_every_way(measured, rows):
     tables = measured()
@@ -86,10 +81,6 @@ def test_a_ratio_is_the_median_of_the_rounds():
     timed = Timed({"a": (2.0, 8.0, 90.0), "b": (1.0, 2.0, 3.0)})
     assert timed.ratio("a", "b") == 4.0
     assert timed.median("a") == 8.0
-
-
-def test_exponent_of_a_square_is_two():
-    assert exponents((1, 10, 1000), (1.0, 100.0, 1e6)) == ("", "2.00", "2.00")
 
 
 def benchmarks(figure):

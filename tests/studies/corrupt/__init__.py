@@ -1,1 +1,1 @@
-"""Recordings of a plain axis corrupted one way at a time, as sensors, recorders and people do it, with their truth."""
+"""Files with one bit flipped: `python -m tests.studies.corrupt.flips --help`."""

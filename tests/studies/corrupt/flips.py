@@ -21,7 +21,6 @@ from bench.errors import BenchError
 from bench.jobs.process import Failure, Limits, WorkerProcess
 from tests.hostile import columns
 from tests.studies.corrupt import files
-from tests.studies.corrupt.__main__ import RIG
 
 #: Samples of a recording: few, so that as many flips fall upon what describes them as upon themselves.
 SAMPLES = 60
@@ -38,7 +37,7 @@ def read(item: tuple[str, str]) -> str | tuple[tuple[str, ...], list[np.ndarray]
     warnings.simplefilter("error")
     path, kept = item
     try:
-        trace = bench.read(path, files.COLUMNS.get(kept.split()[0], RIG.trace))
+        trace = bench.read(path, files.COLUMNS.get(kept.split()[0], files.PLAIN))
     except BenchError as error:
         return str(error)
     return tuple(trace.notes), [trace.time, trace["velocity"], trace["current"]]

@@ -1,13 +1,11 @@
 """Kill commands at moments spread evenly over their run and over their writing, and look at what they leave.
 
     python -m tests.studies.crash --kills 300
-    python -m tests.studies.crash --faults
 
 Half of the kills fall anywhere into a command's run, a quarter into its writing by the clock, a quarter exactly before
 one of its steps of writing. After each, every file has to be whole or absent, no input may have changed and no process
 live on; every few kills the command runs to its end, which has to succeed and to leave nothing but its outputs.
-`--faults` are the full disk, the folder that cannot be written to, and two runs with one folder. Whatever is found is
-printed, and ends it with 1.
+Whatever is found is printed, and ends it with 1.
 """
 
 import argparse
@@ -20,7 +18,6 @@ from pathlib import Path
 
 from tests.hostile import ROOT
 from tests.studies.crash.commands import COMMANDS
-from tests.studies.crash.faults import FAULTS
 from tests.studies.crash.kills import Trial
 
 
@@ -29,7 +26,6 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("--kills", type=int, default=300, help="of all commands together")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="after which no further kill begins")
     parser.add_argument("--signal", default="KILL", choices=["KILL", "TERM", "INT", "HUP"])
-    parser.add_argument("--faults", action="store_true", help="in the place of kills")
     parser.add_argument("--commands", nargs="*", default=list(COMMANDS), choices=list(COMMANDS))
     return parser
 
@@ -43,7 +39,7 @@ def main() -> None:
         until = time.monotonic() + asked.seconds / len(asked.commands)
         above = Path(tempfile.mkdtemp(prefix="crash-"))
         try:
-            found = _faulty(name, above) if asked.faults else _killed(name, kills, until, above, asked.signal)
+            found = _killed(name, kills, until, above, asked.signal)
         finally:
             shutil.rmtree(above)
         faults += [f"{name}: {one}" for one in found]
@@ -64,17 +60,6 @@ def _killed(name: str, kills: int, until: float, above: Path, number: str) -> li
         flush=True,
     )
     return tally.faults
-
-
-def _faulty(name: str, above: Path) -> list[str]:
-    found = []
-    for fault, tried in FAULTS.items():
-        folder = above / fault.replace(" ", "-")
-        folder.mkdir()
-        outcome = tried(COMMANDS[name], folder)
-        print(f"{name}: {fault}: {outcome.runs} runs, {len(outcome.faults)} faults {outcome.about}", flush=True)
-        found += [f"{fault}: {one}" for one in outcome.faults]
-    return found
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The commands that are tried, each with inputs so small that a run is short, and a second one for the same folder."""
+"""The commands that are tried, each with inputs so small that a run is short."""
 
 from __future__ import annotations
 
@@ -13,42 +13,27 @@ from tests.hostile import RIG, ROOT, columns, csv_of
 
 @dataclass(frozen=True)
 class Command:
-    """A line of `bench` that writes into `out`, and another one that writes the same files.
+    """A line of `bench` that writes into `out`.
 
     Attributes:
         line: arguments.
-        other: of the run beside it; the same line where it can be asked for nothing else.
         resumes: goes on where an earlier run was ended, so that its time says nothing of a run from the start.
     """
 
     line: str
-    other: str
     resumes: bool = False
 
 
 COMMANDS = {
-    "demo": Command("demo --out out", "demo --out out"),
-    "simulate": Command(
-        "simulate simulated.toml --out out/run.csv.gz --seed 1", "simulate simulated.toml --out out/run.csv.gz --seed 2"
-    ),
-    "identify": Command(
-        "identify run.csv --rig rig.toml --out out --json out/found.json",
-        "identify short.csv --rig rig.toml --out out --json out/found.json",
-    ),
-    "diagnose": Command(
-        "diagnose run.csv --rig rig.toml --out out", "diagnose short.csv --rig rig.toml --out out"
-    ),
-    "check": Command(
-        "check run.csv --rig rig.toml --baseline out/base.toml --update",
-        "check short.csv --rig rig.toml --baseline out/base.toml --update",
-    ),
-    "export": Command(
-        "export model.toml --snippet --joint elbow --out out/joint.xml",
-        "export model.toml --snippet --joint knee --out out/joint.xml",
-    ),
-    "fleet": Command("fleet fleet.csv --out out", "fleet other.csv --out out", resumes=True),
-    "lab": Command("lab --data recordings --out out", "lab --data others --out out"),
-}  # fmt: skip
+    "demo": Command("demo --out out"),
+    "simulate": Command("simulate simulated.toml --out out/run.csv.gz --seed 1"),
+    "identify": Command("identify run.csv --rig rig.toml --out out --json out/found.json"),
+    "diagnose": Command("diagnose run.csv --rig rig.toml --out out"),
+    "check": Command("check run.csv --rig rig.toml --baseline out/base.toml --update"),
+    "export": Command("export model.toml --snippet --joint elbow --out out/joint.xml"),
+    "fleet": Command("fleet fleet.csv --out out", resumes=True),
+    "lab": Command("lab --data recordings --out out"),
+}
 
 
 def make_inputs(folder: Path) -> None:
@@ -59,15 +44,13 @@ def make_inputs(folder: Path) -> None:
     shutil.copy(ROOT / "data" / "rigs" / "sh30701p.toml", folder / "simulated.toml")
     head, rows = "file,rig,axis,time\n", "run.csv,rig.toml,one,0\nshort.csv,rig.toml,one,1\nnone.csv,rig.toml,one,2\n"
     (folder / "fleet.csv").write_text(head + rows)
-    (folder / "other.csv").write_text(head + rows.replace("one", "other"))
     (folder / "model.toml").write_text(
         'schema = "bench.model/1"\nkind = "rotary"\n[parameters]\nmoment_of_inertia = "0.0022 kg*m**2"\n'
         'viscous_friction_coefficient = "8e-4 N*m*s/rad"\ncoulomb_friction_torque = "0.06 N*m"\nload_torque = "0 N*m"\n'
         'motor_moment_of_inertia = "0.0002 kg*m**2"\n'
     )
-    for name, recording in (("recordings", "JLoadWithoutFriction"), ("others", "JLoadAndFriction")):
-        (folder / name).mkdir()
-        shutil.copy(ROOT / "data" / "traces" / f"{recording}.trace", folder / name / "JLoadWithoutFriction.trace")
+    (folder / "recordings").mkdir()
+    shutil.copy(ROOT / "data" / "traces" / "JLoadWithoutFriction.trace", folder / "recordings")
     (folder / "out").mkdir()
 
 

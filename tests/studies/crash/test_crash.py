@@ -1,4 +1,4 @@
-"""A few kills and faults of one command, and what the long run (`python -m tests.studies.crash`) judges by."""
+"""A few kills of one command, and what the long run (`python -m tests.studies.crash`) judges by."""
 
 import gzip
 import re
@@ -6,10 +6,9 @@ import shlex
 
 import pytest
 
-from tests.hostile import ROOT, bound_by_permissions
+from tests.hostile import ROOT
 from tests.studies.crash.__main__ import options
 from tests.studies.crash.commands import COMMANDS
-from tests.studies.crash.faults import full_disk, read_only, two_writers
 from tests.studies.crash.kills import EACH, Trial
 from tests.studies.crash.look import left, whole
 
@@ -37,18 +36,6 @@ def test_a_kill_just_before_the_output_takes_its_name_leaves_it_under_way_and_th
     assert trial.tally.faults == []
 
 
-def test_a_full_disk_is_reported_in_one_line_and_leaves_what_was_there(folder):
-    outcome = full_disk(COMMANDS["export"], folder, shares=(0.0, 0.6))
-    assert outcome.faults == []
-    assert outcome.runs >= 2  # and a third on a small file system, where root may mount one
-
-
-@pytest.mark.skipif(bound_by_permissions() is None, reason="root, and no setpriv")
-def test_a_folder_closed_by_permissions_is_reported_in_one_line(folder):
-    outcome = read_only(COMMANDS["export"], folder)
-    assert (outcome.runs, outcome.faults) == (1, [])
-
-
 def test_the_page_has_commands_that_there_are():
     page = (ROOT / "docs" / "robustness.md").read_text(encoding="utf-8")
     lines = re.findall(r"^python -m tests\.studies\.crash(.*)$", page, re.MULTILINE)
@@ -57,12 +44,6 @@ def test_the_page_has_commands_that_there_are():
         options().parse_args(shlex.split(line))
     for name in COMMANDS:
         assert f"| `{name}` |" in page
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["simulate", "identify", "fleet"])
-def test_of_two_runs_with_one_folder_one_wins_whole(folder, name):
-    assert two_writers(COMMANDS[name], folder).faults == []
 
 
 @pytest.mark.parametrize(
