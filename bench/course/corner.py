@@ -12,7 +12,7 @@ from bench.course.methods import RPM
 from bench.course.peak_torque import datasheet_curve, run_up
 from bench.course.recordings import LabRecordings
 from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
-from bench.course.winding import WindingModel, WindingRun, full_speed, identified_axis, run_winding
+from bench.course.winding import WindingRun, full_speed, identified_axis, run_winding
 from bench.errors import BenchError
 from bench.report.document import Chart
 from bench.rig.limits import COLD, HOT
@@ -34,7 +34,7 @@ def why_the_corner_lies_higher(recordings: LabRecordings) -> TaskResult:
     """State how many rpm of the corner's shift are due to each of the two causes."""
     rig, axis = recordings.rig, identified_axis(recordings)
     demand = full_speed(rig, axis)
-    runs = {name: run_winding(WindingModel.of(rig, *way), axis, demand) for name, way in WAYS.items()}
+    runs = {name: run_winding(rig, axis, demand, *way) for name, way in WAYS.items()}
     inductance = f"L/R: {recordings.sources('motor', 'electrical_time_constant')}"
     numbers = tuple(
         Number(name, run.corner * RPM, "rpm", source=joined(SIMULATED, *([inductance] if WAYS[name][1] else [])))

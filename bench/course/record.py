@@ -26,7 +26,7 @@ from bench.course.methods import KG_CM2, RPM
 from bench.course.plausible import FASTEST, WITH_FRICTION, WITHOUT_FRICTION
 from bench.course.recordings import LabRecordings, read_truth
 from bench.course.submission import FORM, form
-from bench.course.winding import STEP, WindingModel, run_winding
+from bench.course.winding import STEP, run_winding
 from bench.errors import InputError
 from bench.files import whole, write_text
 from bench.plant.axis_model import AxisParameters
@@ -82,7 +82,7 @@ def _record_fastest(path: Path, rig: Rig, random: np.random.Generator) -> list[P
     time = np.arange(0.0, STOP + TOP_SPEED / BRAKING + START, STEP)
     demand = np.where(time < START, 0.0, np.clip(TOP_SPEED - BRAKING * (time - STOP), 0.0, TOP_SPEED))
     sensors, axis = Sensors.from_rig(rig), AxisParameters.from_rig(rig)
-    run = run_winding(WindingModel.of(rig, COLD, True), axis, demand)
+    run = run_winding(rig, axis, demand, COLD, True)
     every = slice(None, None, round(sensors.sample_period / STEP))
     time, velocity, current = run.time[every], run.velocity[every], run.current[every]
     velocity = velocity + sensors.velocity_noise * random.standard_normal(time.size)

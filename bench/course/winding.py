@@ -27,7 +27,6 @@ from bench.errors import BenchError, SimulationError
 from bench.plant.axis_model import AxisParameters, build_spec
 from bench.plant.plant import DIVERGED
 from bench.rig.limits import HOT, Circuit
-from bench.rig.motor import TorqueConstant
 from bench.rig.rig import Rig
 
 #: Step of the integration - s. MuJoCo's current errs to first order: the corner by 0.3 rpm (tests/course).
@@ -38,40 +37,6 @@ CURRENT_LOOP = 0.4e-3
 LENGTH = 3.0
 #: Of the drive, torque asked for per missing speed - N*m*s/rad.
 VELOCITY_GAIN = 0.9
-
-
-@dataclass(frozen=True)
-class WindingModel:
-    """What the current has to pass.
-
-    Attributes:
-        circuit: of the motor, at its mains voltage.
-        torque_constant: kT(Iq).
-        peak_current: limit of the drive - A.
-        temperature: of the winding as the run starts, and of its surroundings - degC.
-        inductive: whether the winding has its inductance, or current follows voltage at once.
-    """
-
-    circuit: Circuit
-    torque_constant: TorqueConstant
-    peak_current: float
-    temperature: float
-    inductive: bool
-
-    @classmethod
-    def of(cls, rig: Rig, temperature: float, inductive: bool) -> WindingModel:
-        """Of a rig's motor at MAINS; raises InputError where the rig lacks something."""
-        return cls(circuit(rig), torque_constant(rig), motor_value(rig, "peak_current"), temperature, inductive)
-
-    @property
-    def resistance(self) -> float:
-        """As the run starts - ohm."""
-        return self.circuit.resistance_at(self.temperature)
-
-    @property
-    def inductance(self) -> float:
-        """L - H; zero without."""
-        return self.circuit.inductance if self.inductive else 0.0
 
 
 @dataclass(frozen=True)
@@ -105,23 +70,29 @@ class WindingRun:
         return speed + (self.limit - last) * (speed - slower) / (last - before)
 
 
-def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array) -> WindingRun:
-    """Let an axis follow a speed - rad/s, (steps,) at every STEP - through its motor's winding.
+def run_winding(rig: Rig, axis: AxisParameters, demand: Array, temperature: float, inductive: bool) -> WindingRun:
+    """Let an axis follow a speed through its motor's winding.
 
-    Raises SimulationError where it diverges.
+    Args:
+        rig: of the motor, whose mains voltage is MAINS; InputError where it lacks a value.
+        axis: that the motor turns.
+        demand: speed asked for at every STEP - rad/s, (steps,); SimulationError where the run diverges.
+        temperature: of the winding as the run starts, and of its surroundings - degC.
+        inductive: whether the winding has its inductance; otherwise current follows voltage at once.
     """
-    model = _model(winding, axis)
+    winding, constant, limit = circuit(rig), torque_constant(rig), motor_value(rig, "peak_current")
+    inductance = winding.inductance if inductive else 0.0
+    model = _model(winding, axis, temperature, inductance)
     data = mujoco.MjData(model)
-    circuit, constant, limit = winding.circuit, winding.torque_constant, winding.peak_current
-    ke, loop_gain = circuit.back_emf_constant, winding.inductance / CURRENT_LOOP
+    ke, loop_gain = winding.back_emf_constant, inductance / CURRENT_LOOP
     current_gain = VELOCITY_GAIN / constant.constant
     record = np.zeros((demand.size, 4))
     for k, wanted in enumerate(demand.tolist()):
         omega = data.qvel[0]
         target = min(max(current_gain * (wanted - omega), -limit), limit)
-        resistance, before = circuit.resistance_at(winding.temperature + data.act[0]), data.act[-1]
+        resistance, before = winding.resistance_at(temperature + data.act[0]), data.act[-1]
         wanted = resistance * target + ke * omega + loop_gain * (target - before)
-        voltage = data.ctrl[0] = min(max(wanted, -circuit.voltage), circuit.voltage)
+        voltage = data.ctrl[0] = min(max(wanted, -winding.voltage), winding.voltage)
         mujoco.mj_forward(model, data)
         current = data.actuator_force[0] / ke
         record[k] = omega, current, voltage, data.act[0]
@@ -131,20 +102,19 @@ def run_winding(winding: WindingModel, axis: AxisParameters, demand: Array) -> W
         raise SimulationError(DIVERGED)
     velocity, current, voltage, warming = record.T
     time = STEP * np.arange(demand.size, dtype=np.float64)
-    return WindingRun(time, velocity, current, voltage, constant.torque(current), warming, circuit.voltage)
+    return WindingRun(time, velocity, current, voltage, constant.torque(current), warming, winding.voltage)
 
 
-def _model(winding: WindingModel, axis: AxisParameters) -> mujoco.MjModel:
-    """The axis with a dcmotor for its drive. Activations: warming - K, and with inductance the current - A."""
-    circuit = winding.circuit
+def _model(winding: Circuit, axis: AxisParameters, temperature: float, inductance: float) -> mujoco.MjModel:
+    """The axis with a dcmotor for its drive. Activations: warming - K, and with inductance - H - the current - A."""
     spec = build_spec(axis, STEP)
-    capacity = circuit.thermal_time_constant / circuit.thermal_resistance
+    capacity = winding.thermal_time_constant / winding.thermal_resistance
     spec.actuator(DRIVE).set_to_dcmotor(
-        motorconst=[circuit.back_emf_constant, circuit.back_emf_constant],
-        resistance=circuit.resistance,
+        motorconst=[winding.back_emf_constant, winding.back_emf_constant],
+        resistance=winding.resistance,
         # MuJoCo keeps L/R fixed whatever the temperature: it is that of the winding as it is
-        inductance=[0.0, winding.inductance / winding.resistance],
-        thermal=[circuit.thermal_resistance, capacity, 0.0, circuit.temperature_coefficient, HOT, winding.temperature],
+        inductance=[0.0, inductance / winding.resistance_at(temperature)],
+        thermal=[winding.thermal_resistance, capacity, 0.0, winding.temperature_coefficient, HOT, temperature],
         ctrlspec=int(mujoco.mjtCtrlInput.mjINPUT_VOLTAGE),
     )
     return spec.compile()

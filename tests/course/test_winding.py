@@ -1,24 +1,15 @@
 """The simulated winding against an independent integrator, and the split of task 11 against closed forms."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from bench.course.axis import lab_rig, torque_constant
-from bench.course.winding import (
-    CURRENT_LOOP,
-    STEP,
-    VELOCITY_GAIN,
-    WindingModel,
-    run_winding,
-)
+from bench.course.methods import RPM
+from bench.course.winding import CURRENT_LOOP, STEP, VELOCITY_GAIN, run_winding
 from bench.plant.axis_model import AxisParameters
 from bench.rig.limits import COLD, HOT, Circuit
 from tests.course.drawn import extrapolated_corner
-
-RPM = 60.0 / (2.0 * np.pi)
 
 
 @pytest.fixture
@@ -37,22 +28,21 @@ def test_circuit_from_the_datasheets_curve(circuit):
     assert circuit.back_emf_constant == pytest.approx(torque_constant(lab_rig()).constant, rel=0.05)
 
 
-def independent(winding, axis, demand, duration):
+def independent(c, k, axis, demand, duration, temperature, limit=5.7):
     """The same equations by an integrator with adaptive steps; current, speed, warming."""
-    c, k, limit = winding.circuit, winding.torque_constant, winding.peak_current
     inductance = c.inductance
 
     def rates(t, state):
         current, speed, warm = state
         target = np.clip(VELOCITY_GAIN / k.constant * (demand - speed), -limit, limit)
-        resistance = c.resistance * (1.0 + c.temperature_coefficient * (winding.temperature + warm - HOT))
+        resistance = c.resistance * (1.0 + c.temperature_coefficient * (temperature + warm - HOT))
         voltage = resistance * target + c.back_emf_constant * speed + inductance / CURRENT_LOOP * (target - current)
         voltage = np.clip(voltage, -c.voltage, c.voltage)
         torque = (k.constant + k.curvature * current**2) * current
         friction = axis.viscous_friction_coefficient * speed + axis.coulomb_friction * np.tanh(speed / 1e-3)
         heat = resistance * current**2 - warm / c.thermal_resistance
         # as MuJoCo has it, L/R stays that of the start: L follows R by the warming, at most a percent
-        slowed = inductance * resistance / winding.resistance
+        slowed = inductance * resistance / c.resistance_at(temperature)
         return [
             (voltage - resistance * current - c.back_emf_constant * speed) / slowed,
             (torque - friction) / axis.inertia,
@@ -67,11 +57,10 @@ def independent(winding, axis, demand, duration):
 def test_run_through_the_winding_agrees_with_an_independent_integrator(circuit):
     rig = lab_rig()
     axis = AxisParameters.from_rig(rig)
-    winding = WindingModel(circuit, torque_constant(rig), 5.7, COLD, True)
     top, duration = 5000.0 / RPM, 0.6
-    run = run_winding(winding, axis, np.full(round(duration / STEP), top))
+    run = run_winding(rig, axis, np.full(round(duration / STEP), top), COLD, True)
     every = slice(None, None, round(1e-3 / STEP))
-    current, speed, warming = independent(winding, axis, top, duration)
+    current, speed, warming = independent(circuit, torque_constant(rig), axis, top, duration, COLD)
     off = np.abs(run.velocity[every] - speed).max(), np.abs(run.current[every] - current)[5:].max()
     corners = extrapolated_corner(speed, current) * RPM, extrapolated_corner(run.velocity, run.current) * RPM
     print(f"speed off by {off[0]:.2g} rad/s, current by {off[1]:.2g} A, corner by {corners[1] - corners[0]:+.2g} rpm")
@@ -98,10 +87,8 @@ def test_11_split_against_closed_forms(done, circuit):
     assert ends[1] < cold < ends[0]
 
 
-def test_11_without_warming_the_hot_corner_is_the_datasheets(circuit):
+def test_11_without_warming_the_hot_corner_is_the_datasheets():
     rig = lab_rig()
-    axis = AxisParameters.from_rig(rig)
-    slow = replace(circuit, thermal_time_constant=1e9)
-    winding = WindingModel(slow, torque_constant(rig), 5.7, HOT, False)
-    run = run_winding(winding, axis, np.full(round(0.6 / STEP), 5000.0 / RPM))
+    slow = rig.model_copy(update={"motor": rig.motor.model_copy(update={"thermal_time_constant": 1e9})})
+    run = run_winding(slow, AxisParameters.from_rig(rig), np.full(round(0.6 / STEP), 5000.0 / RPM), HOT, False)
     assert extrapolated_corner(run.velocity, run.current) * RPM == pytest.approx(2100.0, abs=0.5)
