@@ -118,14 +118,10 @@ def symmetric_inverse(matrix: Array, least: float) -> Array:
 
 
 def recurrence(kept: Array, added: Array) -> Array:
-    """y[k] = kept[k]*y[k - 1] + added[k] (n,) that begins at zero, by doubling the reach of sums; kept in 0 to 1."""
-    kept, found = kept.copy(), added.copy()
-    reach = 1
-    while reach < found.size and kept[reach:].any():
-        found[reach:] += kept[reach:] * found[:-reach]
-        kept[reach:] *= kept[:-reach]
-        reach *= 2
-    return found
+    """y[k] = kept[k]*y[k - 1] + added[k] (n,) that begins at zero: a triangular system of two bands."""
+    bands = np.ones((2, kept.size), order="F")
+    bands[1, :-1] = -kept[1:]
+    return _unit_lower_solve(bands, added)
 
 
 def recursive_filter(
@@ -141,13 +137,18 @@ def recursive_filter(
         values: (n,), any unit.
         held: by the filter before the first value, which it adds to the first of y - the same unit.
     """
-    from scipy.linalg import get_blas_funcs  # 0.1 s, which only a filter has to pay
-
     driven = np.convolve(values, numerator)[: values.size]
     driven[0] += held
     bands = np.tile(np.asarray(denominator, dtype=np.float64), (values.size, 1)).T  # in Fortran's order, as BLAS has it
+    return _unit_lower_solve(bands, driven)
+
+
+def _unit_lower_solve(bands: Array, driven: Array) -> Array:
+    """Solution (n,) of a lower triangular system by its bands (b, n), the diagonal, which is 1, first."""
+    from scipy.linalg import get_blas_funcs  # 0.1 s, which only a filter has to pay
+
     (solve,) = get_blas_funcs(("tbsv",), dtype=np.float64)
-    return solve(len(denominator) - 1, bands, driven, lower=1, diag=1)
+    return solve(len(bands) - 1, bands, driven, lower=1, diag=1)
 
 
 def spline(values: Array) -> Array:

@@ -83,6 +83,8 @@ class Detected:
 
 #: Columns of raw signals of a stretch, or of each of a recording's stretches.
 ColumnsOf = Callable[[Signals], Sequence[Column]] | Sequence[Sequence[Column]]
+#: What makes those of each stretch for shapes (k, s).
+TablesOf = Callable[[Sequence[Signals], Array], Sequence[Sequence[Column]]]
 
 
 class Fitted(Protocol):
@@ -114,6 +116,7 @@ class Fitted(Protocol):
     @property
     def stretches(self) -> Sequence[Signals]: ...
     def seen(self, columns: ColumnsOf, of_motion: bool) -> Array: ...
+    def behind(self, tables: TablesOf, shapes: Array) -> Array: ...
     def gains(self, columns: Array, width: int) -> Array: ...
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]: ...
 

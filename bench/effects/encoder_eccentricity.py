@@ -21,8 +21,9 @@ from bench.units import Quantity
 
 #: Amplitudes that are tried where the bare axis tells no inertia - rad.
 AMPLITUDES = (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3)
-#: Newton steps that turn a measured into a true angle: the error after k of them is below e**(2**k).
-STEPS = 5
+#: Newton steps that turn a measured into a true angle at most: the error after k of them is below e**(2**k). A step
+#: below the least is the last - rad.
+STEPS, LEAST = 5, 1e-9
 
 
 class EncoderEccentricity(Wave, EncoderFault):
@@ -80,7 +81,10 @@ def true_motion(position: Array, velocity: Array, sine: float, cosine: float) ->
     angle = position
     for _ in range(STEPS):
         sin, cos = np.sin(angle), np.cos(angle)
-        angle = angle - (angle + sine * sin + cosine * cos - position) / (1.0 + sine * cos - cosine * sin)
+        step = (angle + sine * sin + cosine * cos - position) / (1.0 + sine * cos - cosine * sin)
+        angle = angle - step
+        if np.abs(step).max() < LEAST:
+            break
     return angle, velocity / (1.0 + sine * np.cos(angle) - cosine * np.sin(angle))
 
 

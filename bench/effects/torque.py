@@ -84,7 +84,7 @@ class Friction(Torque):
             return forward
         if not self.directed:
             return signals.sign * forward
-        backward = self.friction(values, axis, at._replace(direction=-1.0))
+        backward = self.friction(values, axis, at.of_direction(-1.0))
         return 0.5 * (forward - backward) + 0.5 * (forward + backward) * signals.sign
 
     def law(self, values: Mapping[str, float], axis: Axis) -> FrictionLaw | None:

@@ -25,6 +25,7 @@ from bench.effects.effect import (
     Distortion,
     Effect,
     Proposal,
+    TablesOf,
 )
 from bench.effects.signals import Base, Scope, Signals
 from bench.effects.torque import Friction
@@ -240,6 +241,12 @@ class Fit:
     def seen(self, columns: ColumnsOf, of_motion: bool) -> Array:
         """Columns (m, k) of raw signals as one term more would see them; `of_motion`: accelerations or speeds."""
         return self.beside.table(columns, delays(self.rows, self.hypothesis)[0 if of_motion else 1])
+
+    def behind(self, tables: TablesOf, shapes: Array) -> Array:
+        """Columns (m, k) of what follows the motion alone behind couplings of shapes (k, s), made once."""
+        lag = delays(self.rows, self.hypothesis)[0]
+        made_of = tables, shapes.tobytes(), lag, self.beside.motion
+        return self.rows.memory.get(made_of, lambda: self.beside.table(tables(self.stretches, shapes), lag))
 
     def gains(self, columns: Array, width: int) -> Array:
         """Squares that groups of columns (m, groups*width) would take beyond what is fitted (groups,)."""

@@ -183,7 +183,7 @@ class SteppedEffects:
         forward = _not_below_zero(self._level(at))
         if not self._directed:
             return forward, self._none
-        backward = _not_below_zero(self._level(at._replace(direction=-1.0)))
+        backward = _not_below_zero(self._level(at.of_direction(-1.0)))
         mean, offset = 0.5 * (forward + backward), 0.5 * (backward - forward)
         if self._bristled is not None:  # bristles bend to the level of their direction, and no torque acts with them
             xp = namespace(at.velocity)
@@ -266,7 +266,7 @@ def _laden(some: EffectOnAxes[Inertia], inertia: Number, at: AxisState) -> Numbe
 
 def _rubbed(some: EffectOnAxes[Friction], level: Number, at: AxisState) -> Number:
     """Level of dry friction with the effect's."""
-    at = at._replace(friction=level) if some.effect.scales_friction else at
+    at = at.of_friction(level) if some.effect.scales_friction else at
     return level + some.effect.friction(some.values, some.axis, at)
 
 
