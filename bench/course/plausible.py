@@ -135,11 +135,12 @@ def _of_signals(run: LabRun, rig: Rig) -> Iterator[str]:
         if step > COARSE:
             yield f"its {signal} comes in steps of {step * largest:.2g} {unit}, {step:.1%} of the largest: too coarse"
     changes = np.flatnonzero(np.diff(run.current, prepend=np.nan, append=np.nan))
-    for start, length in zip(changes, np.diff(changes), strict=False):
-        value = abs(run.current[start])
-        if step < FINE and length > HELD and 0.0 < value < AT_LIMIT * (peak or math.inf):  # the current's step
-            where = f"{length} samples after {run.time[start]:.4g} s"
-            yield f"its current is {run.current[start]:.4g} A to the last digit for {where}: it was cut off, or held"
+    lengths, values = np.diff(changes), np.abs(run.current[changes[:-1]])
+    held = (lengths > HELD) & (values > 0.0) & (values < AT_LIMIT * (peak or math.inf))
+    if step < FINE and held.any():  # the current's step
+        start, length = int(changes[:-1][held][0]), int(lengths[held][0])
+        where = f"{length} samples after {run.time[start]:.4g} s"
+        yield f"its current is {run.current[start]:.4g} A to the last digit for {where}: it was cut off, or held"
     for signal, unit, values in signals:
         alone = glitches(values, signal == "speed")
         if alone.size:

@@ -1,6 +1,7 @@
 """A class' throws scatter: no scatter of a launch may be taken for a mistake, and a mistaken flight is seen."""
 
 import numpy as np
+import pytest
 
 from bench.course.flights import contradiction
 
@@ -18,15 +19,17 @@ def throws(random, flights=10, points=20):
     return path + 0.004 * random.standard_normal(path.shape)
 
 
-def test_no_scatter_of_the_launch_is_a_mistake():
+@pytest.mark.parametrize("students", [150, pytest.param(1000, marks=pytest.mark.slow)])
+def test_no_scatter_of_the_launch_is_a_mistake(students):
     """Of 1000 students none is flagged; at half the limit some five are, and a class of 40 fails one time in six."""
     random = np.random.default_rng(1)
-    assert [found for found in (contradiction(throws(random)) for _ in range(1000)) if found] == []
+    assert [found for found in (contradiction(throws(random)) for _ in range(students)) if found] == []
 
 
-def test_a_flight_counted_the_other_way_is_seen_in_every_draw():
+@pytest.mark.parametrize("draws", [20, pytest.param(100, marks=pytest.mark.slow)])
+def test_a_flight_counted_the_other_way_is_seen_in_every_draw(draws):
     random = np.random.default_rng(2)
-    for k in range(100):
+    for k in range(draws):
         flights = throws(random)
         flights[k % 10][:, 0] *= -1.0
         assert contradiction(flights).endswith("its y is counted the other way")
