@@ -5,16 +5,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench.assets import asset
 from bench.course.axis import Sources, lab_rig
 from bench.course.methods import RPM
 from bench.course.recordings import LabRecordings
 from bench.course.tracking import track
 from bench.plant.axis_model import AxisParameters
 from bench.report.drive import in_range
+from bench.rig.rig import load_rig
 from tests.course.drawn import curves
 
 #: Inertia of the lab's rotor - kg*m**2.
 ROTOR = 0.25e-4
+
+
+def test_the_courses_axis_differs_from_the_guides_in_friction_and_disk():
+    """What both rig files say of why there are two."""
+    lab, guides = (load_rig(asset("data", "rigs", f"{name}.toml")) for name in ("lab", "sh30701p"))
+    assert (lab.simulated.friction, guides.simulated.friction) == ("drive", "mechanics")
+    assert guides.simulated.moment_of_inertia is None  # it is that of rotor and disk
+    assert lab.simulated.moment_of_inertia - ROTOR > 1.1 * lab.load.disk_inertia
 
 
 def test_identified_inertia_tracks_best(done):

@@ -20,9 +20,11 @@ from bench.course import record
 from bench.course.grade import SEALED, read_truth_of_class, seal
 from bench.course.record import draw_rig
 from bench.course.submission import QUESTIONS
+from bench.course.suspicion import SUSPECT
 from bench.errors import InputError
 from bench.trace.read import read
 from tests.command import bench
+from tests.studies.copied import donors, measured
 
 DEG, RPM = np.pi / 180.0, 30.0 / np.pi
 
@@ -353,6 +355,15 @@ def test_a_form_that_was_not_handed_in_is_suspected_as_a_source_too(four, tmp_pa
     fill(tmp_path / "in", 4, four.students[2].answers(), np.random.default_rng(0))
     grades_of(four, tmp_path)
     assert "04,02," in (tmp_path / "out" / "suspicion.csv").read_text(encoding="utf-8")
+
+
+def test_hardly_an_honest_pair_is_suspected_and_nearly_every_copy_is(four):
+    """Forty classes of twenty, drawn as `tests.studies.copied` draws 1000."""
+    copies, pairs, _ = measured(40, 20, 1, donors(four.folder / "class.truth.json"))
+    suspected, found = np.count_nonzero(pairs > SUSPECT), np.mean(copies > SUSPECT)
+    print(f"{suspected} of {pairs.size} honest pairs suspected, {found:.1%} of copies found")
+    assert suspected / pairs.size <= 1e-3
+    assert found >= 0.95
 
 
 def test_honest_factors_of_their_own_are_no_suspicion(four, tmp_path):

@@ -30,13 +30,10 @@ TORQUE, SPEED = np.array([0.0, 1.0, 1.0, 1.0, 2.0]), np.array([0.0, -1.0, -1.0, 
 J, K_W, K_0, E = 1, 2, 3, 4
 
 
-def donors(students: int, seed: int) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Of each recorded student: expected (q,), standard deviations (q,), and ratios of known mistakes (k, q)."""
+def donors(truth: Path) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Of each student of a class: expected (q,), standard deviations (q,), and ratios of known mistakes (k, q)."""
     promised = {question.name: question.tolerance for question in QUESTIONS}
-    with tempfile.TemporaryDirectory() as folder:
-        *_, truth = record.record_class(Path(folder) / "class", students, seed)
-        known = read_truth_of_class(truth)
-    found = []
+    known, found = read_truth_of_class(truth), []
     for one in known.values():
         expected = np.array([one["expected"][name] for name in COMPARED])
         own = [max(promised[name] or 0.0, one["tolerance"].get(name, 0.0)) for name in COMPARED]
@@ -101,42 +98,41 @@ def honest(random, expected, spread, known):
     return given
 
 
+def measured(classes, students, seed, bank):
+    """Evidence of every copy (classes,), of all honest pairs, and the share of copies whose source comes first."""
+    random, copies, pairs, first = np.random.default_rng(seed), [], [], 0
+    for _ in range(classes):
+        expected, spread, known = drawn_class(random, students, bank)
+        given = honest(random, expected, spread, known)
+        copied = random.integers(students - 1)
+        jitter = random.uniform(0.0015, 0.01)
+        given[-1] = given[copied] * (1.0 + jitter * random.standard_normal(given.shape[1]))
+        found = evidence(given, expected, spread, known, given, expected)
+        first += int(np.argmax(found[-1]) == copied)
+        both = np.maximum(found, found.T)
+        copies.append(both[-1, copied])
+        both[copied, -1] = np.nan
+        rest = both[np.triu_indices(students, 1)]
+        pairs.append(rest[np.isfinite(rest)])
+    return np.array(copies), np.concatenate(pairs), first / classes
+
+
 def main() -> None:
     """Print both rates."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     for name, preset in (("--classes", 1000), ("--students", 20), ("--seed", 1), ("--recorded", 6)):
         parser.add_argument(name, type=int, default=preset)
     asked = parser.parse_args()
-    random, bank = np.random.default_rng(asked.seed), donors(asked.recorded, asked.seed)
-    pairs = suspected = copies = found = right_source = 0
-    highest, missed = [], []
-    for _ in range(asked.classes):
-        expected, spread, known = drawn_class(random, asked.students, bank)
-        given = honest(random, expected, spread, known)
-        copied = random.integers(asked.students - 1)
-        jitter = random.uniform(0.0015, 0.01)
-        given[-1] = given[copied] * (1.0 + jitter * random.standard_normal(given.shape[1]))
-        found_here = evidence(given, expected, spread, known, given, expected)
-        both = np.maximum(found_here, found_here.T)
-        of_copy, rest = both[-1, copied], both[np.triu_indices(asked.students, 1)]
-        alarms = int(np.count_nonzero(rest > SUSPECT)) - int(of_copy > SUSPECT)
-        pairs, suspected = pairs + rest.size - 1, suspected + alarms
-        copies, found = copies + 1, found + int(of_copy > SUSPECT)
-        right_source += int(np.argmax(found_here[-1]) == copied)
-        missed.append(of_copy)
-        both[-1, copied] = both[copied, -1] = 0.0
-        highest += np.sort(both[np.triu_indices(asked.students, 1)])[-3:].tolist()
-    print(f"{suspected} of {pairs} honest pairs suspected, {1000.0 * suspected / pairs:.3f} in 1000")
-    print(f"{found} of {copies} copies found, {found / copies:.1%}; their source first in {right_source / copies:.1%}")
-    levels = [
-        f"{level:.1f}: {np.mean(np.array(missed) > level):.3f}, {np.sum(np.array(highest) > level)}"
-        for level in np.arange(2.0, 6.1, 0.5)
-    ]
-    print(
-        "log10 of evidence, share of copies above, honest pairs above (of the three highest a class):",
-        *levels,
-        sep="\n  ",
-    )
+    with tempfile.TemporaryDirectory() as folder:
+        *_, truth = record.record_class(Path(folder) / "class", asked.recorded, asked.seed)
+        bank = donors(truth)
+    copies, pairs, first = measured(asked.classes, asked.students, asked.seed, bank)
+    suspected, found = (int(np.count_nonzero(of > SUSPECT)) for of in (pairs, copies))
+    print(f"{suspected} of {pairs.size} honest pairs suspected, {1000.0 * suspected / pairs.size:.3f} in 1000")
+    print(f"{found} of {copies.size} copies found, {found / copies.size:.1%}; their source first in {first:.1%}")
+    print("log10 of evidence, share of copies above, honest pairs above:")
+    for level in np.arange(2.0, 6.1, 0.5):
+        print(f"  {level:.1f}: {np.mean(copies > level):.3f}, {np.count_nonzero(pairs > level)}")
 
 
 if __name__ == "__main__":
