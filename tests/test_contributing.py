@@ -6,7 +6,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
@@ -101,9 +100,13 @@ def test_a_reader_is_among_the_formats_that_a_refusal_lists(extras):
         ),
     ],
 )
-def test_what_is_no_reader_is_refused(monkeypatch, value, said):
-    monkeypatch.setattr("bench.offered.entry_points", lambda group: [EntryPoint("other", value, group)])
-    with pytest.raises(InputError, match=rf"servobench.readers: {value} of \w+: {said}"):
+def test_what_is_no_reader_is_refused(tmp_path, monkeypatch, value, said):
+    installed = tmp_path / "other-1.0.dist-info"
+    installed.mkdir()
+    (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: other\nVersion: 1.0\n")
+    (installed / "entry_points.txt").write_text(f"[servobench.readers]\nother = {value}\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(InputError, match=rf"servobench.readers: {value} of other: {said}"):
         readers.__wrapped__()
 
 

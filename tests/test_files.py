@@ -23,6 +23,7 @@ from bench.export.mjcf import link_inertia
 from bench.files import held, keeping, read_bytes, sha256, whole, write_text
 from bench.plant.mjcf_file import read_mjcf
 from bench.plant.robot import Robot
+from tests.calls import calls_of
 from tests.command import bench
 from tests.hostile import RIG, ROOT, assert_one_line, columns, csv_of
 from tests.sources import SOURCES, nodes
@@ -221,13 +222,10 @@ def test_the_umask_is_respected_and_permissions_are_kept(tmp_path, mask):
     assert stat.S_IMODE((tmp_path / "shared").stat().st_mode) == 0o640
 
 
-def test_a_file_is_on_the_disk_before_it_takes_its_name(tmp_path, monkeypatch):
-    done, path = [], tmp_path / "x"
-    flush, replace = os.fsync, type(path).replace
-    monkeypatch.setattr(os, "fsync", lambda handle: (done.append("flush"), flush(handle))[1])
-    monkeypatch.setattr(type(path), "replace", lambda self, to: (done.append("name"), replace(self, to))[1])
-    write_text(path, "x")
-    assert done == ["flush", "name", "flush"]
+def test_a_file_is_on_the_disk_before_it_takes_its_name(tmp_path):
+    with calls_of(os.fsync, os.replace) as done:
+        write_text(tmp_path / "x", "x")
+    assert done == [os.fsync, os.replace, os.fsync]
 
 
 def test_a_failure_leaves_what_was_there_and_nothing_else(tmp_path):

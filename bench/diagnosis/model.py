@@ -26,7 +26,7 @@ from bench.effects.waves import Wave
 from bench.errors import InputError
 from bench.fit.determined import INDEPENDENT_SHARE
 from bench.fit.fit import Fit, fit
-from bench.fit.hypothesis import Hypothesis, lay_out
+from bench.fit.hypothesis import Hypothesis, Term, lay_out
 from bench.fit.rows import Rows
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
 from bench.plant.model_file import Mounting, StoredModel
@@ -230,6 +230,12 @@ class Recorded:
         return float(np.std(measured_velocity(self.trace)[self.judged]))
 
 
+def keeps_phase(terms: Iterable[Term], drift: float) -> bool:
+    """Whether what terms have over position acts where the axis has it, at a drift of position - rad (m)."""
+    numbers = (term.effect.wave_number(term.shape) for term in terms if isinstance(term.effect, Placed))
+    return not max(numbers, default=0.0) * drift > OUT_OF_PHASE
+
+
 class VelocityGaps:
     """Velocity gaps of models along recordings, each simulated once, over whatever part of a recording they are taken.
 
@@ -257,10 +263,9 @@ class VelocityGaps:
 
     def in_phase(self, extension: Extension, recorded: Recorded) -> bool:
         """Whether what a model has over position acts where the axis has it, as far as there is a simulation."""
-        placed = ((term.effect, term.shape) for term in extension.fitted.terms)
-        numbers = [effect.wave_number(shape) for effect, shape in placed if isinstance(effect, Placed)]
-        (tracked,) = self._tracked([(extension.model, recorded)]) if numbers else (None,)
-        return tracked is None or not max(numbers) * recorded.drift(tracked.position) > OUT_OF_PHASE
+        placed = [term for term in extension.fitted.terms if isinstance(term.effect, Placed)]
+        (tracked,) = self._tracked([(extension.model, recorded)]) if placed else (None,)
+        return tracked is None or keeps_phase(placed, recorded.drift(tracked.position))
 
     def velocities(self, models: Iterable[StoredModel | None], recorded: Recorded) -> list[Array | None]:
         """Of models along a recording, (n,) each - rad/s (m/s); None without one, or where it diverged."""

@@ -24,6 +24,7 @@ def each(
     limits: Limits | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
+    starts: float = STARTS,
 ) -> Iterator[tuple[int, Result | Failure]]:
     """Index of each item with its result or failure, in order of completion.
 
@@ -36,6 +37,7 @@ def each(
         limits: of one item.
         workers: most processes on this machine; None: one a core. There are as many as pay.
         scheduler: address of a Dask cluster that does the work instead.
+        starts: time that a process takes to start - s; one more starts where it saves more.
 
     Raises:
         InputError: no Dask scheduler answers at the address.
@@ -47,11 +49,11 @@ def each(
 
         yield from on_dask(work, numbered, limits, scheduler)
     else:
-        yield from _on_this_machine(work, numbered, limits, workers or os.cpu_count() or 1)
+        yield from _on_this_machine(work, numbered, limits, workers or os.cpu_count() or 1, starts)
 
 
 def _on_this_machine(
-    work: Callable[[Item], Result], waiting: deque[tuple[int, Item]], limits: Limits, most: int
+    work: Callable[[Item], Result], waiting: deque[tuple[int, Item]], limits: Limits, most: int, starts: float
 ) -> Iterator[tuple[int, Result | Failure]]:
     """The same by threads, each with a worker process, that take from what is waiting; all end with the iterator."""
     done: SimpleQueue[tuple[int, Result | Failure, float] | Exception] = SimpleQueue()
@@ -60,7 +62,7 @@ def _on_this_machine(
 
     def another_pays() -> bool:
         """Whether one worker more saves more time than it takes to start, judged by the last pieces."""
-        return not threads or (bool(seconds) and len(waiting) * median(seconds) / len(threads) > STARTS)
+        return not threads or (bool(seconds) and len(waiting) * median(seconds) / len(threads) > starts)
 
     def serve(process: WorkerProcess[Item, Result]) -> None:
         with process, suppress(IndexError):  # nothing waits any more
@@ -80,9 +82,9 @@ def _on_this_machine(
                 threads[thread] = process
                 thread.start()
             try:
-                outcome = done.get(timeout=STARTS)
+                outcome = done.get(timeout=starts)
             except Empty:  # a piece takes longer than a start
-                seconds.append(STARTS)
+                seconds.append(starts)
                 continue
             if isinstance(outcome, Exception):
                 raise outcome

@@ -33,12 +33,13 @@ def on_dask(
     numbered: Sequence[tuple[int, Item]],
     limits: Limits,
     scheduler: str,
+    answers: float = ANSWERS,
 ) -> Iterator[tuple[int, Result | Failure]]:
     """Results by the items' numbers, in the order in which they come; other arguments as of `bench.jobs.each.each`.
 
     InputError where there is no such cluster, or its workers have no servobench of this version.
     """
-    with _client(scheduler) as client, ExitStack() as stack:
+    with _client(scheduler, answers) as client, ExitStack() as stack:
         name = f"bench-{uuid4().hex}"
         try:
             client.register_plugin(WorkerProcesses(name, work, limits))  # also for a worker that comes later
@@ -53,13 +54,13 @@ def on_dask(
             yield future.key[1], _outcome(future)
 
 
-def _client(scheduler: str) -> Client:
+def _client(scheduler: str, answers: float) -> Client:
     try:
         with ThreadPoolExecutor(1) as thread:  # a notebook's own runs a loop already
-            thread.submit(asyncio.run, asyncio.wait_for(_answered(scheduler), ANSWERS)).result()
-        return Client(scheduler, timeout=ANSWERS)
+            thread.submit(asyncio.run, asyncio.wait_for(_answered(scheduler), answers)).result()
+        return Client(scheduler, timeout=answers)
     except (OSError, ValueError, TypeError) as error:
-        found = f"no Dask scheduler answers ({' '.join(str(error).split()) or f'nothing within {ANSWERS} s'})"
+        found = f"no Dask scheduler answers ({' '.join(str(error).split()) or f'nothing within {answers:g} s'})"
         allowed = "allowed: the address of one, e.g. tcp://host:8786"
         raise InputError(f"--scheduler {scheduler}", found, allowed) from error
 

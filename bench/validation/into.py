@@ -184,18 +184,24 @@ def fate(found: Diagnosis, effect: str, beside: Sequence[str]) -> tuple[str, tup
     return WRONG if named.false else FLAGGED if found.verdict == UNEXPLAINED else MISSED, named.false
 
 
-def tried(own: Own, strengths: Sequence[float], seed: int, name: str) -> tuple[Injection, ...]:
+def tried(
+    own: Own,
+    strengths: Sequence[float],
+    seed: int,
+    name: str,
+    trial: Callable[[Own, str, float, int], Injection | None] = put_into,
+) -> tuple[Injection, ...]:
     """One effect at each strength asked for, or without any at those that close in on the least that is named.
 
-    Arguments as `inject` and `put_into` have them.
+    Arguments as `inject` and `put_into` have them; `trial` tries one strength.
     """
     if strengths:
-        at = (put_into(own, name, strength, seed) for strength in strengths)
+        at = (trial(own, name, strength, seed) for strength in strengths)
         return tuple(case for case in at if case is not None)
     (low, high), cases = SPAN, []
     for _ in range(TRIALS):
         middle = math.sqrt(low * high)
-        case = put_into(own, name, middle, seed)
+        case = trial(own, name, middle, seed)
         low, high = (low, middle) if case is not None and case.named else (middle, high)
         cases += [] if case is None else [case]
     return tuple(cases)

@@ -3,16 +3,10 @@
 Truth from the independent integrator.
 """
 
-from types import SimpleNamespace
-
 import pytest
 
-from bench.diagnosis import model as modelling
 from bench.diagnosis.diagnosis import diagnose
-from bench.fit.fit import fit
-from bench.fit.hypothesis import Hypothesis
-from bench.fit.rows import Rows
-from bench.plant.tracking import Tracked
+from bench.diagnosis.model import Recorded, keeps_phase
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import Motion, Ramps, slow_reversals
 from tests.diagnosis.constructed import RIG, moved
@@ -86,12 +80,7 @@ def test_a_wave_whose_simulation_loses_its_phase_is_judged_by_its_torque(recorde
         (term("torsion_spring"), 1.0, True),
     ],
 )
-def test_phase_is_kept_within_a_sixth_of_a_turn_of_the_wave_or_of_the_gap(monkeypatch, one, drift, kept):
+def test_phase_is_kept_within_a_sixth_of_a_turn_of_the_wave_or_of_the_gap(one, drift, kept):
     """A wave out of phase by p leaves |exp(j*p) - 1| of itself: all of it from pi/3 on."""
     trace = made_up(moved(2.0))
-    away = Tracked(trace["position"] + drift, trace["velocity"])
-    monkeypatch.setattr(modelling, "track_all", lambda held, bandwidth: [away for _ in held])
-    bare, fitted = (fit(Rows.of(trace, RIG), Hypothesis(terms)) for terms in ((), (one,)))
-    stage = SimpleNamespace(fitted=fitted, model=modelling.stored_model(bare, {}, RIG))
-    gaps = modelling.VelocityGaps(20.0, fitted.base.inertia)
-    assert gaps.in_phase(stage, modelling.Recorded("recording", trace, RIG)) is kept
+    assert keeps_phase([one], Recorded("recording", trace, RIG).drift(trace["position"] + drift)) is kept

@@ -34,8 +34,8 @@ def stiff_speed(velocity):
     return 0.04 * np.sign(velocity) / (1.0 + np.exp(-(np.abs(velocity) - 6.0) / 0.4))
 
 
-def held_out(extra, duration=20.0, seed=0):
-    """An extension without effects of a recording, and its held-out motion; `extra` of time, position and speed."""
+def recorded(extra, duration=20.0, seed=0):
+    """A recording of the axis with an `extra` torque, of time, position and speed."""
     rng, time = np.random.default_rng(seed), PERIOD * np.arange(round(duration / PERIOD))
     waves = [(2.2, 0.31, 0.3), (1.1, 0.83, 1.1), (0.35, 1.9, 2.0)]  # amplitude - rad -, frequency - Hz -, phase
     angle = [(a, 2.0 * np.pi * f, 2.0 * np.pi * f * time + p) for a, f, p in waves]
@@ -49,7 +49,12 @@ def held_out(extra, duration=20.0, seed=0):
         "velocity [rad/s]": velocity + rng.normal(scale=1e-3, size=time.size),
         "torque [N*m]": torque + rng.normal(scale=NOISE, size=time.size),
     }
-    recordings = Recordings.of([Trace.from_arrays(signals)], RIG, None)
+    return Trace.from_arrays(signals)
+
+
+def held_out(extra, duration=20.0, seed=0):
+    """An extension without effects of a recording, and its held-out motion."""
+    recordings = Recordings.of([recorded(extra, duration, seed)], RIG, None)
     extension = Extension(recordings.rows, Hypothesis(()), {}, RIG)
     return extension, HeldOut.of(recordings, True, True, extension.fitted)
 
@@ -102,10 +107,21 @@ def test_tables_are_ranked_by_blocks_that_they_were_not_fitted_to():
     assert ranked[0][0].name == "unknown_torque_over_position"
 
 
-@needs_shared
-def test_a_real_axis_moves_by_its_table_and_keeps_its_verdict(tmp_path):
-    folder = SHARED / "data/real/damiao_m1"
-    found = bench.diagnose(folder / "r1.csv.gz", folder / "rig.toml", folder / "r2.csv.gz")
+def synthetic():
+    """The axis with the bump, twice, and its rig."""
+    one, other = (recorded(lambda _, position, __: bump(position), 8.0, seed) for seed in range(2))
+    return one, RIG, other
+
+
+def real():
+    """A joint of a robot, twice, and its rig."""
+    return tuple(SHARED / "data/real/damiao_m1" / name for name in ("r1.csv.gz", "rig.toml", "r2.csv.gz"))
+
+
+@pytest.mark.parametrize("axis", [synthetic, pytest.param(real, marks=[pytest.mark.slow, needs_shared])])
+def test_an_axis_moves_by_its_table_and_keeps_its_verdict(tmp_path, axis):
+    recording, rig, holdout = axis()
+    found = bench.diagnose(recording, rig, holdout)
     assert found.verdict == "unexplained_remainder"
     assert found.unknown_effect is not None
     assert found.unknown_effect.torque[1] < found.unknown_effect.torque[0]
@@ -120,6 +136,6 @@ def test_a_real_axis_moves_by_its_table_and_keeps_its_verdict(tmp_path):
     without = replace(found, model=replace(found.model, model=found.model.model.with_effects(plain)))
     gaps = []
     for model in (without, tmp_path):
-        replayed = bench.replay(model, folder / "r2.csv.gz", folder / "rig.toml")
+        replayed = bench.replay(model, holdout, rig)
         gaps.append(np.sqrt(np.nanmean((replayed.torque - replayed.torque_simulated) ** 2)))
     assert gaps[1] < 0.9 * gaps[0]

@@ -7,6 +7,7 @@ import pytest
 from bench.plant.run import run
 from bench.plant.tracking import SoftTracking, track
 from bench.trace.trace import Trace
+from tests.calls import calls_of
 from tests.effects.axes import AXIS, Reversals, model, plant
 
 SAMPLE_PERIOD = 1e-3
@@ -23,19 +24,6 @@ MANY_TICKED = (
 )
 
 
-@pytest.fixture
-def steps(monkeypatch):
-    """One entry for each call by which Python steps an axis."""
-    calls = []
-
-    def counted(model, data, mj_step=mujoco.mj_step):
-        calls.append(model)
-        return mj_step(model, data)
-
-    monkeypatch.setattr(mujoco, "mj_step", counted)
-    return calls
-
-
 def recorded(duration):
     times = SAMPLE_PERIOD * np.arange(round(duration / SAMPLE_PERIOD))
     position, velocity, acceleration = Reversals(duration, 20.0).at(times)
@@ -49,15 +37,17 @@ def tracked(names, trace):
 
 
 @pytest.mark.parametrize(("names", "each"), [((), 0), (NATIVE, 0), (TICKED, STEPS), (MANY_TICKED, STEPS)], ids=str)
-def test_native_effects_leave_all_steps_to_mujoco(names, each, steps):
+def test_native_effects_leave_all_steps_to_mujoco(names, each):
     trace = recorded(0.2)
-    assert np.isfinite(tracked(names, trace)).all()
+    with calls_of(mujoco.mj_step) as steps:
+        assert np.isfinite(tracked(names, trace)).all()
     assert len(steps) == pytest.approx(each * len(trace), abs=STEPS)
 
 
-def test_a_drive_takes_one_step_a_tick(steps):
+def test_a_drive_takes_one_step_a_tick():
     references, one = Reversals(0.02).references(), plant(*MANY_TICKED)
-    run(one, references)
+    with calls_of(mujoco.mj_step) as steps:
+        run(one, references)
     assert len(steps) == len(references.time) * one.substeps
 
 

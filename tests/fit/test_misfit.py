@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.fit import quantities
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Hypothesis, Term, lay_out
 from bench.fit.quantities import uncertain
@@ -44,19 +43,15 @@ def test_noise_alone_widens_nothing(name):
     assert clean.std_error == pytest.approx(least.std_error, rel=1e-3)
 
 
-def test_beside_a_name_a_friction_too_weak_for_one_counts(monkeypatch):
+def test_beside_a_name_a_friction_too_weak_for_one_counts():
     """It leaves 1.07 floors. Without a name nothing counts below 1.12, as with `identify`."""
     trace = spoiled(1, 4e-6)
     velocity = trace["velocity"]
     weak = 0.04 * np.sign(velocity) * np.exp(-((velocity / 15.0) ** 2))
-    rows = Rows.of(trace.with_signals({"current": trace["current"] + weak}, {"current": "A"}), RIG)
-    fitted = fit(rows, Hypothesis((Term(catalogue()["quadratic_drag"]),)))
-    assert 1.03 < fitted.chi < NOISE_ALONE
-
-    def halves(which):
-        found = uncertain(which)
-        return np.array([one.half_width for one in found.base(UNITS).values()])
-
-    counted = halves(fitted)
-    monkeypatch.setattr(quantities, "NOISE_ALONE", 1.0)
-    assert (counted > 1.05 * halves(fitted)).all()
+    with_weak = trace.with_signals({"current": trace["current"] + weak}, {"current": "A"})
+    drag = Hypothesis((Term(catalogue()["quadratic_drag"]),))
+    without, having = (fit(Rows.of(one, RIG), drag) for one in (trace, with_weak))
+    assert 1.03 < having.chi < NOISE_ALONE
+    less, more = (np.array([one.half_width for one in uncertain(which).base(UNITS).values()])
+                  for which in (without, having))  # fmt: skip
+    assert (more > 1.05 * having.chi / without.chi * less).all()

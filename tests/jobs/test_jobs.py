@@ -7,6 +7,7 @@ import pytest
 
 from bench.errors import InputError
 from bench.jobs.each import each
+from bench.jobs.on_dask import on_dask
 from bench.jobs.process import Failure, Limits, WorkerProcess
 from tests.jobs.pieces import refuse, work
 
@@ -58,21 +59,18 @@ def test_a_worker_that_is_lost_is_dasks_matter_and_ends_no_run(cluster):
     assert found == {1 + number: number**2 for number in range(20)}
 
 
-def test_short_jobs_have_one_process(monkeypatch):
-    monkeypatch.setattr("bench.jobs.each.STARTS", 60.0)
-    short = dict(each(work, [("process", 0)] * 5, LIMITS, workers=2))
+def test_short_jobs_have_one_process():
+    short = dict(each(work, [("process", 0)] * 5, LIMITS, workers=2, starts=60.0))
     assert len(set(short.values())) == 1
 
 
-def test_long_jobs_have_several_processes(monkeypatch):
-    monkeypatch.setattr("bench.jobs.each.STARTS", 0.05)
-    long = dict(each(work, [("slowly", 2.0)] * 4, LIMITS, workers=2))
+def test_long_jobs_have_several_processes():
+    long = dict(each(work, [("slowly", 2.0)] * 4, LIMITS, workers=2, starts=0.05))
     assert len(set(long.values())) == 2
 
 
-def test_processes_are_ended_with_the_run(monkeypatch):
-    monkeypatch.setattr("bench.jobs.each.STARTS", 1e-9)
-    found = dict(each(work, [("process", 0)] * 40, LIMITS, workers=2))
+def test_processes_are_ended_with_the_run():
+    found = dict(each(work, [("process", 0)] * 40, LIMITS, workers=2, starts=1e-9))
     assert sorted(found) == list(range(40))
     ended(found.values())
 
@@ -118,18 +116,16 @@ def test_work_that_cannot_be_loaded_says_so(tmp_path, monkeypatch):
         assert "No module named 'passing'" in beside.do(1).reason
 
 
-def test_a_scheduler_that_is_not_there_is_named(monkeypatch):
-    monkeypatch.setattr("bench.jobs.on_dask.ANSWERS", 0.5)
+def test_a_scheduler_that_is_not_there_is_named():
     with pytest.raises(InputError, match=r"--scheduler tcp://127.0.0.1:9: no Dask scheduler answers"):
-        list(each(work, ITEMS, LIMITS, scheduler="tcp://127.0.0.1:9"))
+        list(on_dask(work, [*enumerate(ITEMS)], LIMITS, "tcp://127.0.0.1:9", answers=0.5))
 
 
-def test_a_scheduler_that_accepts_and_says_nothing_is_named(monkeypatch):
-    monkeypatch.setattr("bench.jobs.on_dask.ANSWERS", 0.5)
+def test_a_scheduler_that_accepts_and_says_nothing_is_named():
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(InputError, match=r"no Dask scheduler answers \(nothing within 0.5 s\)"):
-            list(each(work, ITEMS, LIMITS, scheduler=address))
+            list(on_dask(work, [*enumerate(ITEMS)], LIMITS, address, answers=0.5))
 
 
 def test_no_item_is_no_work():

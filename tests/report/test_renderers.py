@@ -2,6 +2,7 @@
 
 import json
 import math
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from io import BytesIO, TextIOWrapper
 
@@ -73,10 +74,10 @@ def test_a_terminal_shows_the_headline_the_answers_and_all_but_details(capsys):
     assert "left" not in out
 
 
-def test_a_terminal_that_has_ascii_alone_gets_letters(monkeypatch):
-    monkeypatch.setattr("sys.stdout", TextIOWrapper(BytesIO(), encoding="ascii"))
-    assert writable("(1.31 ± 0.01)·10⁻³ kg·m²") == "(1.31 +- 0.01)*10**-3 kg*m**2"
-    assert writable("−2\N{NO-BREAK SPACE}Ω") == "-2 ohm"
+def test_a_terminal_that_has_ascii_alone_gets_letters():
+    with redirect_stdout(TextIOWrapper(BytesIO(), encoding="ascii")):
+        assert writable("(1.31 ± 0.01)·10⁻³ kg·m²") == "(1.31 +- 0.01)*10**-3 kg*m**2"
+        assert writable("−2\N{NO-BREAK SPACE}Ω") == "-2 ohm"
 
 
 def test_what_only_a_page_can_show_is_left_out():

@@ -9,7 +9,6 @@ import pytest
 from bench.effects.catalogue import catalogue
 from bench.errors import InputError, UndeterminedError
 from bench.parameter import Parameter
-from bench.validation import into
 from bench.validation.coverage import of_effects
 from bench.validation.independent.effects import CoggingTorque
 from bench.validation.into import Injection, Injections, Own, axis_of, fate, inject, own, tried
@@ -58,12 +57,11 @@ def test_a_name_that_no_such_recording_tells_from_it_is_right():
 
 
 @pytest.mark.parametrize("least", [0.2, 3.3, 20.0])
-def test_the_least_that_is_named_is_closed_in_on(monkeypatch, least):
-    def put_into(own, name, strength, seed):
+def test_the_least_that_is_named_is_closed_in_on(least):
+    def trial(own, name, strength, seed):
         return replace(CASE, strength=strength, fate="right" if strength >= least else "flagged")
 
-    monkeypatch.setattr(into, "put_into", put_into)
-    cases = tried(OWN, (), 1, "cogging_torque")
+    cases = tried(OWN, (), 1, "cogging_torque", trial)
     assert len(cases) == 5
     named = Injections(OWN, cases, True, (), {}).least["cogging_torque"]
     assert least <= named.strength <= 1.19 * least
