@@ -64,7 +64,7 @@ def beside(name):
 def simulated():
     effects = [(*beside(name), effect_of(name)) for name in RIGID]
     count, sensors = len(effects), Sensors(sample_period=PERIOD, encoder_resolution=0.0)
-    return simulate([AXIS] * count, [MOTION] * count, effects, [sensors] * count)
+    return simulate([AXIS] * count, [MOTION] * count, effects, [sensors] * count, longest_step=AXIS.control_period)
 
 
 @pytest.fixture(scope="module")

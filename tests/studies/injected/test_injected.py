@@ -208,12 +208,11 @@ def test_how_likely_the_effect_is_and_others_that_are_new():
 def test_a_simulated_axis_is_recorded_once_more_with_the_effect():
     """Friction by the load carries an offset that is put in, too; put into the recording it would not."""
     drawn = one(3, 0)
-    source = Source("made", "made", None, None, "", replace(drawn, hidden=replace(drawn.hidden, effects=(LOADED,))), 3)
+    short = replace(drawn.hidden, effects=(LOADED,), duration=2.0)
+    source = Source("made", "made", None, None, "", replace(drawn, hidden=short), 3)
     assert source.hidden == ("load_dependent_friction",)
     axis = drawn.hidden.axis
-    made = source.made_with(None, TorqueOffset(0.5 * axis.coulomb))
-    both, alone = (source.made_with(None, TorqueOffset(value)) for value in (0.0, 0.0))
-    assert np.array_equal(both["current"], alone["current"])
+    made, alone = (source.made_with(None, TorqueOffset(share * axis.coulomb)) for share in (0.5, 0.0))
     assert np.mean(made["current"] - alone["current"]) * axis.torque_constant == pytest.approx(
         0.5 * axis.coulomb, rel=0.2
     )
