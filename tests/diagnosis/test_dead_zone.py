@@ -34,10 +34,16 @@ BESIDE = {
 }
 
 
+#: Gaps, and what is beside them, of the tests that are not slow: recorded together.
+USUAL = [(GAPS[1], ()), (GAPS[2], ()), (0.02, (BESIDE[0.02],))]
+
+
 def recorded(wide, *beside):
     """A recording of the axis with a gap, and with something else."""
+    cases = USUAL if (wide, beside) in USUAL else [(wide, beside)]
+    effects = {case: (Backlash(case[0], STIFFNESS, DAMPING), *case[1]) for case in cases}
     motion = random_motion(QUIET.axis, np.random.default_rng(SEED), 5.0)
-    return QUIET.record({"gap": (Backlash(wide, STIFFNESS, DAMPING), *beside)}, motion, SEED)["gap"]
+    return QUIET.record(effects, motion, SEED, dict.fromkeys(cases, 0))[wide, beside]
 
 
 @pytest.mark.parametrize(
