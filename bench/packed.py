@@ -52,10 +52,10 @@ def unpack(path: Path, kind: type) -> Any:  # noqa: ANN401 - of this kind
             arrays = {name: stored[name] for name in stored.files}
         result = _unpack(parse_json(str(arrays[_PARTS]), path), arrays)
     except _UNKNOWN as error:
-        found = f"holds no result that this version knows ({error})"
+        found = f"contains no result of this version ({error})"
         raise InputError(path, found, "allowed: what the same version's `save` wrote") from error
     if not isinstance(result, kind):
-        raise InputError(path, f"holds another result ({type(result).__name__})", f"allowed: {kind.__name__}")
+        raise InputError(path, f"contains another result ({type(result).__name__})", f"allowed: {kind.__name__}")
     return result
 
 

@@ -18,7 +18,7 @@ from bench.files import read_text
 from bench.names import cell
 
 #: What Python says of an integer beyond 4300 digits is advice to a programmer.
-TOO_MANY_DIGITS = "holds an integer of thousands of digits"
+TOO_MANY_DIGITS = "contains an integer of thousands of digits"
 #: Levels of JSON; Arrow takes gigabytes for hundreds of them.
 _DEEPEST = 64
 #: Parts of a dotted key, which take `tomllib` the square of their number in time and memory; files of the bench have 4.

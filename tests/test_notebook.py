@@ -114,7 +114,7 @@ REFUSED = {
     'bench.load_rig("emp")': r"no shipped rig, did you mean 'emps'",
     'bench.Diagnosis.load("estimate")': r"estimate/diagnosis.npz: no such file",
     'bench.Estimate.load("estimate.json").plot()': r"plot\(\), residuals: found an estimate without its recording",
-    'bench.Estimate.load("kept/diagnosis.json")': r"kept/diagnosis.json: holds no estimate",
+    'bench.Estimate.load("kept/diagnosis.json")': r"kept/diagnosis.json: contains no estimate",
 }
 
 

@@ -30,7 +30,7 @@ def test_it_is_what_it_was_with_arrays_effects_and_what_is_not_known(tmp_path):
 def test_what_is_no_dataclass_of_the_bench_is_not_made(named, tmp_path):
     content = json.dumps({"class": named, "fields": {"args": "touch ran"}})
     np.savez(tmp_path / "x.npz", result=np.array(content))
-    with pytest.raises(InputError, match="holds no result that this version knows"):
+    with pytest.raises(InputError, match="contains no result of this version"):
         unpack(tmp_path / "x.npz", Parameter)
 
 
@@ -43,7 +43,7 @@ def test_another_file_is_reported(content, tmp_path):
 
 def test_another_result_is_reported(tmp_path):
     pack(tmp_path / "x.npz", Between(1.0, (0.0, 2.0)))
-    with pytest.raises(InputError, match="holds another result"):
+    with pytest.raises(InputError, match="contains another result"):
         unpack(tmp_path / "x.npz", Parameter)
 
 

@@ -178,7 +178,7 @@ def _of_quantities(
         differences = tuple(Difference.of(before, value, between, allowed.otherwise * between) for value in values)
         held_back = allowed.unlike if name == TORQUE_GAP else ""
         if name == VELOCITY_GAP and allowed.otherwise:
-            held_back = "what a simulation leaves depends on the motion"
+            held_back = "the residual of a simulation depends on the motion"
         found = Comparison(name, before.unit, before.value, values[0].value, differences, margin, held_back=held_back)
         yield found.tested(least_chance)
 
@@ -278,7 +278,7 @@ def _of_appeared(after: AxisEffect, baseline: State, allowed: Allowed) -> Compar
     """Comparison of the torque of an effect that is new with what the baseline's recording would have shown."""
     torque = after.torque
     if torque is None or baseline.shows is None:
-        why = "shown by its signals alone, which do not say from when on the baseline would have shown it"
+        why = "found in its signals only; they do not show from which size on the baseline would have found it"
         return _undetermined(after.label, why, effect="appeared")
     significant = baseline.shows.torque.value * math.sqrt(max(len(after.quantities), 1))
     least = allowed.factor * max(significant, baseline.shows.residual.value)

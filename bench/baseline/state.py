@@ -12,7 +12,7 @@ version = "0.1.0"
 value = "0.00131 kg*m**2"
 std_error = "1.2e-06 kg*m**2"
 recordings = 1
-spread = "not told by fewer than two recordings"
+spread = "not determined by fewer than two recordings"
 [[effects]]
 name = "cogging_torque"
 """
@@ -51,7 +51,7 @@ INSTANTS = 24
 SCHEMA = "bench.baseline/1"
 HEAD = "# The baseline of bench check; bench check --update writes it again.\n"
 #: Written instead of an unknown spread.
-NO_SPREAD = "not told by fewer than two recordings"
+NO_SPREAD = "not determined by fewer than two recordings"
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?: (.+))?")
 _ALLOWED = "allowed: as bench check --update wrote it"
 #: Magnitudes of what is known of an axis, unless it is zero: their fourth powers, which comparisons take, are numbers.

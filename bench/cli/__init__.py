@@ -147,7 +147,7 @@ def _fault(fault: BaseException) -> str:
     place = f"{Path(last.filename).name}:{last.lineno}"
     what = f"{type(fault).__name__}: {short(str(fault))}" if str(fault) else type(fault).__name__
     whose = at_fault(fault.__traceback__) or "the bench itself"
-    told = " as SECURITY.md says" if whose == "the bench itself" else " there"
+    told = " as SECURITY.md describes" if whose == "the bench itself" else " there"
     again = "" if "--debug" in sys.argv else "; run it again with --debug, and"
     return f"a fault of {whose}, not of your input ({what}, at {place}){again} report it{told}"
 

@@ -39,7 +39,7 @@ def check(
     simulated: Annotated[Path | None, Option(help="model.toml to check in the place of recordings.")] = None,
     update: Annotated[bool, Option("--update", help="Accept the present state: write the baseline.")] = False,
     without_names: Annotated[
-        bool, Option("--without-names", help="With --update: compare parameters alone, in a tenth of the time.")
+        bool, Option("--without-names", help="With --update: compare only parameters, in a tenth of the time.")
     ] = False,
     junit: Annotated[Path | None, Option(help="JUnit XML to write.")] = None,
     json: common.JsonOption = None,
@@ -90,10 +90,10 @@ def _require_consistent(
         raise InputError("--rig", "missing", allowed)
     if quick and not (update and traces):
         found = "found without --update TRACE..."
-        raise InputError("--without-names", found, "allowed: when the baseline is made, which says so from then on")
+        raise InputError("--without-names", found, "allowed: when the baseline is made; it then states this")
     if update and written:
         found = "found with --junit, --json or --report"
-        raise InputError("--update", found, "allowed: alone; the check after it has results")
+        raise InputError("--update", found, "allowed: no output of results; the next check has results")
 
 
 def _observed(of: Subject, traces: list[Path], axis: str | None, names: bool) -> Observed:
@@ -146,7 +146,7 @@ def _accept(baseline: Path, state: State, recordings: int = 0) -> None:
     write_baseline(baseline, state)
     common.list_files([baseline])
     if 0 < recordings < ENOUGH:
-        counted = "1 recording tells" if recordings == 1 else f"{recordings} recordings tell"
+        counted = "1 recording determines" if recordings == 1 else f"{recordings} recordings determine"
         advice = f"make the baseline of {ENOUGH} or more, or state it in [check.between] of the rig"
         how = f"{counted} little of how recordings of this axis differ, so defaults count (docs/check.md)"
         common.warn([f"{how}: {advice}"])

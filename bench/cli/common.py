@@ -87,13 +87,13 @@ MjcfOption = Annotated[
 JointOption = Annotated[list[str] | None, Option("--joint", help="Joint of the MJCF that the log is of.")]
 AtOption = Annotated[
     list[str] | None,
-    Option("--at", help="NAME=ANGLE of a joint that stands and that the log does not hold. Repeatable."),
+    Option("--at", help="NAME=ANGLE of a joint that stands still and is not in the log. Repeatable."),
 ]
 RIG_HELP = "Rig file (TOML), or a shipped rig's name: what is known about the axis."
 RigOption = Annotated[Path, Option("--rig", help=RIG_HELP, **_RIG)]
 OptionalRigOption = Annotated[Path | None, Option("--rig", help=RIG_HELP, **_RIG)]
 RigArgument = Annotated[Path, Argument(help="Rig file with [drive] and [simulation], or a shipped rig.", **_RIG)]
-AxisOption = Annotated[str | None, Option("--axis", help="Axis to read where a recording holds several.")]
+AxisOption = Annotated[str | None, Option("--axis", help="Axis to read where a recording contains several.")]
 FiguresOption = Annotated[
     Literal["png", "pdf", "svg"], Option("--figures", help="Format of the figures that --out writes.")
 ]

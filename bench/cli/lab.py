@@ -24,7 +24,7 @@ def lab(
     truth: Annotated[Path | None, Option(help="Sealed truth that --students wrote.")] = None,
     key: Annotated[Path | None, Option(help="Key of its seal; preset: next to it, with the ending .key.")] = None,
     acceleration: Annotated[
-        str, Option(help="With --grade: task 9 is right as the text says, synchronised, or either.")
+        str, Option(help="With --grade: task 9 is right as in the text, synchronised, or either.")
     ] = "either",
     notebooks: Annotated[Path | None, Option(help="Only write a notebook for each task, into this folder.")] = None,
     folders: Annotated[

@@ -134,7 +134,7 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
         warnings.append(f"free-running, the model is not shown: {error}")
     if "position" not in recording:
         warnings.append(
-            f"{trace.name} holds no position: shown is the integral of its speed, from zero after each hole"
+            f"{trace.name} contains no position; the page shows the integral of its speed, from zero after each hole"
         )
     return shown, free, warnings
 
@@ -148,7 +148,7 @@ def export(
         str | None, Option(help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
     ] = None,
     actuator: Annotated[str | None, Option(help="With --to bam: BAM's name of the actuator.")] = None,
-    snippet: Annotated[bool, Option("--snippet", help="A default class and a body on this joint alone.")] = False,
+    snippet: Annotated[bool, Option("--snippet", help="A default class and a body with only this joint.")] = False,
     ranges: Annotated[
         Path | None, Option(help="JSON of identify or diagnose: ranges for domain randomisation.")
     ] = None,
@@ -207,7 +207,9 @@ def _robot(
         models = {"": models[ALONE]}
     if out.suffix == ".urdf":
         if not is_urdf(robot):
-            raise InputError(out, f"found a URDF to be made of {robot.name}, an MJCF", "allowed: `--out robot_id.xml`")
+            raise InputError(
+                out, f"found a URDF to be written from {robot.name}, an MJCF", "allowed: `--out robot_id.xml`"
+            )
         text, lines = urdf_with(robot, models)
         return text, list(lines)
     shares = {share.value: share for share in ArmatureShare}
@@ -238,7 +240,7 @@ def compensate(
     axis, stored = bench.load_rig(rig), load_model(model).model
     kind = stored.parameters.kind
     if kind is not axis.axis_kind:
-        raise InputError(f"{model}: kind", f"found '{kind.name}'", f"allowed: '{axis.kind}', as {axis.source} says")
+        raise InputError(f"{model}: kind", f"found '{kind.name}'", f"allowed: '{axis.kind}', as in {axis.source}")
     motion = plan(profile, MotionLimits.from_rig(axis, stored.parameters, Cascade.from_rig(axis).control_period))
     reach = float(motion.position.min()), float(motion.position.max())
     with progress(f"tracking {profile}") as done:

@@ -29,7 +29,7 @@ def inspect(
     rig: common.OptionalRigOption = None,
     json: common.JsonOption = None,
     out: Annotated[Path | None, Option(help="Picture of every signal: .png, .pdf or .svg.")] = None,
-    draft: Annotated[Path | None, Option(help="Rig file to write, as far as the file tells.")] = None,
+    draft: Annotated[Path | None, Option(help="Rig file to write, as far as the recording determines it.")] = None,
     motor: Annotated[str | None, Option(help="For --draft: a motor of the catalogue.")] = None,
     axis_name: common.AxisOption = None,
     report: common.ReportOption = None,
@@ -105,7 +105,7 @@ def _require_consistent(traces: list[Path], estimator: Estimator, refine: bool, 
     """InputError where options contradict each other, or the number of recordings."""
     lab = estimator == "lab"
     if lab and (refine or tuned):
-        raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: alone")
+        raise InputError("--estimator lab", "found with --refine, --offset or --cutoff", "allowed: without them")
     if len(traces) > 1 and (refine or lab):
         found = f"found with {len(traces)} recordings"
         raise InputError("--refine" if refine else "--estimator lab", found, "allowed: with one recording")
@@ -337,4 +337,4 @@ def fleet(
         common.say(f"{found.evaluated} evaluated now")
     if not found.summary.counts["done"]:
         reason = f"none of {len(found.manifest)} recordings gave a result"
-        raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} asks for")
+        raise UndeterminedError("the fleet", reason, f"what the column `reason` of {out / TABLE} recommends")

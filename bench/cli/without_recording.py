@@ -164,7 +164,7 @@ def validate(
     effect: Annotated[list[str] | None, common.effect_option("With --into, instead of all.")] = None,
     strength: Annotated[
         list[float] | None,
-        Option(help="With --into, over what it leaves; else the least named is sought. Repeatable."),
+        Option(help="With --into, relative to its residual; else the least found is searched for. Repeatable."),
     ] = None,
     workers: Annotated[int | None, Option(help="Processes on this machine.", min=1)] = None,
     scheduler: Annotated[str | None, Option(help="Dask cluster to work on, e.g. tcp://host:8786.")] = None,

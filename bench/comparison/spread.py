@@ -115,6 +115,6 @@ def spread_warning(name: str, own: Sequence[Parameter]) -> str:
     """A warning that recordings differ in a quantity by more than their own errors."""
     low, high = min(each.value for each in own), max(each.value for each in own)
     return (
-        f"the recordings differ in {name} by more than their own intervals say ({low:.4g} to {high:.4g} "
-        f"{own[0].unit}): the joint interval counts it, `between` says what the next one may tell"
+        f"the recordings differ in {name} by more than their own intervals allow ({low:.4g} to {high:.4g} "
+        f"{own[0].unit}): the joint interval counts it, `between` predicts the next recording"
     )

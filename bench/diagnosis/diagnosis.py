@@ -447,7 +447,7 @@ def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> l
     if inertia is None or rotor is None or inertia.unit != "kg*m**2" or inertia.ci95[1] >= rotor:
         return clipped(trace, rig)
     return [
-        f"the moment of inertia, {inertia.value:.3g} kg*m**2, is less than the rotor's alone, {rotor:.3g} kg*m**2: "
+        f"the moment of inertia, {inertia.value:.3g} kg*m**2, is less than the rotor's, {rotor:.3g} kg*m**2: "
         "check the units of current and speed and the torque constant",
         *clipped(trace, rig),
     ]
@@ -468,7 +468,7 @@ def left_open(rows: Rows, kind: AxisKind) -> list[str]:
     offset, friction = kind.parameter(OFFSET), kind.parameter(COULOMB)
     forward = float(np.mean(rows.values(lambda s: s.sign))) > 0.0
     return [
-        f"the axis moves {'forward' if forward else 'backward'} only: {friction} holds any "
+        f"the axis moves {'forward' if forward else 'backward'} only: {friction} contains any "
         f"{offset} too, and no effect on friction was sought; record both directions for that"
     ]
 
@@ -489,7 +489,7 @@ def out_of_phase(added: Added) -> list[str]:
     """A warning of recordings along which simulated waves, or impacts, lose the phase of the measured motion."""
     lost = [each.name for each in added.recorded if not added.gaps.in_phase(added.extension, each)]
     return [
-        f"the simulated position leaves the {name}'s by more than waves or impacts allow: they are judged by their "
-        "torque at the measured position, and by the velocity gap where its squares double"
+        f"the simulated position differs from the {name}'s by more than waves or impacts allow: they are judged by "
+        "their torque at the measured position, and by the velocity gap where its squares double"
         for name in lost
     ]

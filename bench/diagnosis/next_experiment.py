@@ -110,7 +110,7 @@ def alternatives(added: Added, model: AxisModel) -> Iterator[Alternatives]:
             if _of_motion(catalogue()[other]):
                 kept = [present for present in model.effects if present.effect is not effect.effect]
                 models = model, model.with_effects([*kept, Present.of(other, effect.values)])
-                yield (effect.name, other), models, "this recording cannot tell them apart"
+                yield (effect.name, other), models, "this recording cannot distinguish them"
     yield from nearly_as_good(added, model)
     if added.recordings.rows.scope.one_way:
         yield from one_direction(added.recordings, added.extension.fitted.base.coulomb, model)
@@ -137,7 +137,7 @@ def nearly_as_good(added: Added, model: AxisModel) -> Iterator[Alternatives]:
             continue
         other = fit(added.recordings.rows, visited.hypothesis, visited)
         if other.rms < NEARLY * whole.rms:
-            reason = f"{rival.name} leaves but {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
+            reason = f"{rival.name} leaves only {other.rms / whole.rms - 1.0:.0%} more of the torque unexplained"
             try:
                 instead = stored_model(other, added.extension.outside, added.recordings.rig).model
             except InputError:

@@ -45,16 +45,16 @@ class Policy:
             some hundred candidates: on axes that lack nothing the best one saves 6 in the median and 116 at most.
         remainder: residual over noise floor above which the residual is not noise.
         large: residual over white noise from which on it is not noise, even if the noise is stronger than it appears.
-        holdout_gap: torque gap of the holdout over that of the recording, noise at least, that a model may leave.
+        holdout_gap: torque gap of the holdout over that of the recording, noise at least, of a model.
         remaining: weight of the residual above noise over that of the bare axis: it acts as a number of independent
             rows, which other effects of a real axis make few (`bench.diagnosis.probability`; all weights are fitted,
             `docs/certainty.md`).
         over: weight of the residual above noise over noise.
         number: weight of a fitted number.
-        outside: weight of an effect from outside the catalogue.
+        outside: weight of an unknown effect.
         none: weight of effects that were not tried.
         with_unknown: residual over noise floor, as share of that without a name, up to which the name is present
-            together with an effect from outside the catalogue.
+            together with an unknown effect.
     """
 
     chance: float = 40.0

@@ -166,7 +166,7 @@ def _require_samples(trace: Trace) -> None:
     if len(trace) < needed:
         raise UndeterminedError(
             WHAT,
-            f"{trace.origin} holds {len(trace)} samples, {len(trace) * trace.sample_period:.2g} s",
+            f"{trace.origin} contains {len(trace)} samples, {len(trace) * trace.sample_period:.2g} s",
             f"at this rate {needed * trace.sample_period:.2g} s at least, better ten times that, "
             "in both directions with several reversals",
         )
@@ -195,7 +195,7 @@ def _decidable(trace: Trace, rig: Rig, policy: Policy) -> tuple[Rows, tuple[str,
         lengths = ((part.stop - part.start) * smooth.sample_period - ends for part in trace.segments)
         filtered = sum(length for length in lengths if length > 0.0)
         if usual.independent * (whole - ends) > INDEPENDENT * filtered:  # as many without holes
-            reason = f"holes between samples leave {filtered:.2g} s of {whole:.3g} s to the filter, {needed}"
+            reason = f"with holes between samples {filtered:.2g} s of {whole:.3g} s can be filtered, {needed}"
             raise UndeterminedError(WHAT, reason, "the same motion without holes")
         raise UndeterminedError(
             WHAT,
@@ -208,7 +208,7 @@ def _decidable(trace: Trace, rig: Rig, policy: Policy) -> tuple[Rows, tuple[str,
         raise UndeterminedError(
             WHAT,
             f"noise of the {source} is more than {NOISY:.0%} of the acceleration's power at every cut-off of the "
-            f"filter that leaves {INDEPENDENT} independent samples",
+            f"filter that keeps {INDEPENDENT} independent samples",
             f"{RECORD[INERTIA]}, or a finer {source}",
         )
     rows, smooth = found.rows, found.rows.conditioning.filter
@@ -236,7 +236,7 @@ def _require_above_noise(base: Fit, unit: str, policy: Policy) -> None:
     if varies <= 2.0 * noise:
         raise UndeterminedError(
             WHAT,
-            f"the motor torque varies by {varies:.3g} {unit}, its noise alone by {noise:.3g} {unit}",
+            f"the motor torque varies by {varies:.3g} {unit}, its noise by {noise:.3g} {unit}",
             f"a motion that takes more than {4.0 * noise:.2g} {unit} to accelerate and brake"
             if noise > 0.0
             else "the signal that the motor's torque follows: this one never changes",
@@ -250,7 +250,7 @@ def _require_above_noise(base: Fit, unit: str, policy: Policy) -> None:
     if least > loud:
         raise UndeterminedError(
             WHAT,
-            f"only effects above {least:.3g} {unit} would stand out of the noise, friction is {friction:.3g} {unit} "
+            f"only effects above {least:.3g} {unit} would exceed the noise, friction is {friction:.3g} {unit} "
             f"and the torque {torque:.3g} {unit}",
             f"{LONGER * (least / loud) ** 2:.2g} times as long, or accelerations {LONGER * least / loud:.2g} times as "
             "large",

@@ -139,7 +139,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: GivenRig, units: Un
         warnings.append(f"the model is of '{table['name']}', the rig file of '{rig.name}'")
     left = known_rms(torque - simulated) / max(known_rms(torque), 1e-300)
     if left > LEFT:
-        warnings.append(f"the model leaves {left:.0%} of the torque unexplained: another axis, or other units?")
+        warnings.append(f"the model does not explain {left:.0%} of the torque: another axis, or other units?")
     moved = measured[0], position, measured[1], velocity
     return Replay(
         trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, rig.own_effort(trace)[1], tuple(warnings)
@@ -160,7 +160,7 @@ def parts_of(
         path, table = model, read_table(model)
     kind = table.get("kind", rig.kind)
     if kind != rig.kind:  # before parameters are read, as those of that kind
-        raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as {rig.source} says")
+        raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as in {rig.source}")
     if isinstance(model, Diagnosis):
         return path, table, model.balance, model.model
     return path, table, load_balance(model), load_model(model) if "parameters" in table else None

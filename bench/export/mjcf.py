@@ -163,7 +163,7 @@ def _beside(spec: mujoco.MjSpec, one: AddedBody, path: Path) -> str:
     """
     if not one.joint:
         add_body(spec, PAYLOAD, one, path)
-        return f"{one.body}: carries {one.mass:.4g} kg, the body '{PAYLOAD}'"
+        return f"{one.body}: with a payload of {one.mass:.4g} kg, the body '{PAYLOAD}'"
     model = compiled(spec)
     body, own = spec.joint(one.joint).parent, link_about_centre(model, one.joint)
     share = 1.0 + one.inertia / own
@@ -239,7 +239,7 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature
     behind = f", behind a gear of {ratio:g}: all values are those of the joint" if ratio != 1.0 else ""
     inertia = (
         f"armature {armature.value:.4g} {unit}, {armature.origin}; the links beyond the joint have {links:.4g} {unit} "
-        f"where the MJCF stands{behind}"
+        f"in the configuration of the MJCF{behind}"
     )
     couplings = joint.parent.joints[1:] if model.coupled else []
     between = [f"'{each.name}' lies between motor and link: '{name}' is the motor's" for each in couplings]
@@ -251,7 +251,7 @@ def _mass_of(body: mujoco.MjsBody, stored: StoredModel) -> str:
     if not stored.model.parameters.kind.turns:
         return f"mass {body.mass:.4g} kg: what of the model's is not the motor's"
     known = stored.mounting.load_mass is not None
-    origin = "of the rig's disk" if known else "stands in for one that is not known: give the body its own"
+    origin = "of the rig's disk" if known else "as a placeholder: give the body its own"
     return f"inertia of a flat disk; mass {body.mass:.4g} kg {origin}"
 
 
@@ -329,7 +329,7 @@ def _angle(joint: mujoco.MjsJoint) -> float:
 def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float) -> None:
     """Join motor and link by a second joint of the link, along the first: the sum of both is the link's position."""
     if len(joint.parent.joints) > 1:
-        allowed = "allowed: one that has its body alone, as motor and load part"
+        allowed = "allowed: a joint with a body of its own, as motor and load separate"
         raise InputError(f"--joint {name}", "found a body of several joints", allowed)
     for between in axis.body(LOAD).joints:
         added = joint.parent.add_joint(name=f"{name} {between.name}", type=joint.type, axis=joint.axis, pos=joint.pos)
@@ -373,7 +373,7 @@ def _ranges(
             origin = "interval of 95 %"
             if between.get(name) is not None:
                 ahead = [float(bound) for bound in between[name]["predictive95"]]
-                low, high, origin = min(low, ahead[0]), max(high, ahead[1]), "what one recording more may tell, at 95 %"
+                low, high, origin = min(low, ahead[0]), max(high, ahead[1]), "expected of one more recording, at 95 %"
             value, low = float(table["value"]), max(low, lowest.get(name, -np.inf))
             ranges[name] = {"value": value, "low": low, "high": high, "unit": str(table["unit"]), "from": origin}
     return ranges

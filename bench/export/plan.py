@@ -80,7 +80,9 @@ def motions(rig: Rig, wanted: Present | None = None, profile: str | None = None)
     found.sort(key=lambda each: each.worst)
     if not np.isfinite(found[0].worst):
         what = "inertia and friction" if effect is None else words(effect.name)
-        raise UndeterminedError(what, f"no profile tells it: {found[0].reason}", "nothing yet: state more of the rig")
+        raise UndeterminedError(
+            what, f"no profile determines it: {found[0].reason}", "nothing yet: state more of the rig"
+        )
     return found
 
 

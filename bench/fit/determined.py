@@ -83,7 +83,7 @@ def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, Undetermi
         return {INERTIA: open_terms[INERTIA]}
     if equations.one_way is None:
         return open_terms
-    name = f"{kind.in_words(COULOMB)} apart from {kind.in_words(OFFSET)}"
+    name = f"{kind.in_words(COULOMB)} separate from {kind.in_words(OFFSET)}"
     one_way = UndeterminedError(name, f"the axis moves {equations.one_way} only", RECORD[COULOMB])
     open_terms.pop(COULOMB, None)
     return {COULOMB: one_way, OFFSET: one_way, **open_terms}
@@ -135,7 +135,7 @@ def refused_masses(
             reason = "; ".join([f"its interval, {low:.3g} to {high:.3g} {found.unit}, contains zero", *suspicions])
             refused[name] = UndeterminedError(kind.in_words(INERTIA), reason, RECORD[INERTIA])
     if LOAD in refused and kind.inertia not in refused:
-        refused[kind.inertia] = UndeterminedError(kind.in_words(INERTIA), "it is less than the rotor's alone", SMALLER)
+        refused[kind.inertia] = UndeterminedError(kind.in_words(INERTIA), "it is less than the rotor's", SMALLER)
     return refused
 
 

@@ -168,7 +168,7 @@ class Estimate(Presented, Mapping[str, Parameter]):
                 _stored(table.get("coupling", {})),
             )
         except (KeyError, TypeError, AttributeError) as error:
-            raise InputError(path, f"holds no estimate ({error})", "allowed: what Estimate.save writes") from error
+            raise InputError(path, f"contains no estimate ({error})", "allowed: what Estimate.save writes") from error
 
 
 def _with_nan(table: Mapping[str, Any]) -> dict[str, Any]:

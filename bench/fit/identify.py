@@ -374,7 +374,7 @@ def _estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
         _estimate_of(gathered, [each.solution for each in members], parameters, left, rig),
         warnings=(
             *(f"{each.alone.origin}: {warning}" for each in members for warning in each.warnings),
-            *(f"{each.alone.origin} alone: {each.alone.reason}" for each in members if each.alone.reason),
+            *(f"{each.alone.origin} by itself: {each.alone.reason}" for each in members if each.alone.reason),
             *_differences(members, excesses, kind),
             *_offset(members, rig),
         ),
@@ -506,7 +506,7 @@ def _require_distinct(gathered: Sequence[Gathered]) -> None:
         if one.effort_unit != other.effort_unit:
             found = f"gives its effort in {other.effort_unit}, {one.solution.rows.origin} in {one.effort_unit}"
             raise InputError(
-                other.solution.rows.origin, found, "allowed: recordings of one kind of effort; say kT in the rig"
+                other.solution.rows.origin, found, "allowed: recordings of one kind of effort; set kT in the rig"
             )
         if np.array_equal(one.solution.whole.gram, other.solution.whole.gram):
             found = f"found the same recording as {one.solution.rows.origin}"
@@ -547,7 +547,7 @@ def _differences(members: Sequence[Member], excesses: Mapping[str, Excess], kind
     silent = [kind.parameter(term) for term, found in excesses.items() if not found.degrees and term != OFFSET]
     if differing and silent:
         yield (
-            f"no two recordings tell {' or '.join(silent)} alike, so the interval does not count how recordings "
+            f"no two recordings determine {' or '.join(silent)} alike, so the interval does not count how recordings "
             "differ in it: record each direction twice"
         )
 

@@ -47,7 +47,7 @@ def least_squares(acceleration: Array, velocity: Array, torque: Array) -> tuple[
     columns = np.stack([acceleration, velocity, np.sign(velocity)], axis=1)
     theta, _, rank, _ = np.linalg.lstsq(columns, torque, rcond=None)
     if rank < 3 or len(torque) <= 3:
-        reason = f"the {len(torque)} samples faster than {LEAST_SPEED:g} rad/s do not tell inertia and friction apart"
+        reason = f"the {len(torque)} samples faster than {LEAST_SPEED:g} rad/s cannot separate inertia and friction"
         raise UndeterminedError("inertia and friction", reason, RECORD[VISCOUS])
     error = float(np.sum((torque - columns @ theta) ** 2))
     variance = error / (len(torque) - 3) * np.diag(np.linalg.inv(columns.T @ columns))

@@ -155,7 +155,7 @@ def marked(url: str, storages: Sequence[str] = STORAGES) -> str:
     InputError where there is no such file, or a storage that is not one of these, or cannot be reached.
     """
     if other := [name for link in url.split("::") if (name := link.partition("://")[0]) not in storages]:
-        allowed = f"allowed: {', '.join(storages)}, or a path; --storage allows another that fsspec knows"
+        allowed = f"allowed: {', '.join(storages)}, or a path; --storage allows another storage of fsspec"
         raise InputError(url, f"found the storage '{short(other[0])}'", allowed)
     with _errors_as_input(url):
         storage, path = url_to_fs(url)

@@ -234,7 +234,7 @@ def _why(found: Plain) -> dict[str, str]:
         return {found["status"]: found["reason"]}
     why, explained = {}, found["explained"]
     if found.get("verdict") == "unexplained_remainder":
-        why["unexplained"] = "something is left that no effect of the catalogue explains"
+        why["unexplained"] = "no effect of the catalogue explains the residual"
     elif "verdict" not in found and explained is not None and explained < EXPLAINED:
         share = f"inertia and friction explain only {explained:.0%} of the effort"
         why["unexplained"] = f"{share}; add `--diagnose` to search for the missing effects"

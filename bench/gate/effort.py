@@ -28,7 +28,7 @@ ABOVE_NOISE = 3.0
 MORE = 0.3
 
 ALLOWED = f"inertia, friction and position explain {WARNED:.0%} of the effort at least, with positive inertia"
-ALLOWED_SIGN = "an effort of both signs, or one that leaves zero where the axis moves"
+ALLOWED_SIGN = "an effort of both signs, or one that differs from zero where the axis moves"
 ALLOWED_CONSTANTS = "kT is Ke, 3/2 or sqrt(3) of it, as Ke is meant, within their tolerances, 10 % where none is stated"
 
 
@@ -64,7 +64,7 @@ def follows_motion(seen: Seen) -> Check:
         return absent(FOLLOWS, seen.unbalanced, ALLOWED)
     found, speed = judged(fitted, seen.effort[1]), rms(fitted.columns[:, 1])
     if found.status == "fail" and seen.trace.axis_kind.turns and speed < CREEPING:
-        advice = "the joint stands or creeps, and its friction takes what it is given: move it"
+        advice = "the joint stands still or creeps, and friction balances the torque: move it"
         return replace(found, found=f"{found.found}; it moves at {speed:.2g} rad/s RMS", advice=advice)
     return found
 

@@ -24,7 +24,7 @@ EVERY, MOST, ROWS = 0.25, 200, 3
 #: by 0.4 rad and more, and 0.2 at least beside effects of the joint's own (`tests/gate/test_neighbours.py`).
 LEFT = 0.1
 
-ALLOWED = "torque that goes with the joint's own motion, where others are stated to stand"
+ALLOWED = "torque that goes with the joint's own motion, where others are stated to stand still"
 
 
 def stand(seen: Seen) -> Check | None:
@@ -38,7 +38,7 @@ def stand(seen: Seen) -> Check | None:
     over_time, unit = _over_time(seen), seen.trace.axis_kind.effort_unit
     if not 0.0 < over_time < float(seen.trace.metadata[STANDING_ASK]):
         return Check(NAME, "pass", f"stated, not seen: {standing}", ALLOWED)
-    found = f"{over_time:.3g} {unit} go with time and not with the joint's own motion, beside {standing}, as stated"
+    found = f"{over_time:.3g} {unit} depend on time and not on the joint's own motion, next to {standing}, as stated"
     advice = "one of these moved, or something else pushed: record their positions, too"
     return Check(NAME, "warn", found, ALLOWED, advice)
 

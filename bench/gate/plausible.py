@@ -19,14 +19,14 @@ EXPLAINED = 0.8
 #: Share of the samples that lie below what counts as the largest: spikes are no motion - %.
 MOST = 99.5
 
-ALLOWED = f"what the rig says, within {WARNED - 1.0:.0%}"
+ALLOWED = f"the values of the rig, within {WARNED - 1.0:.0%}"
 
 
 def agrees(seen: Seen) -> Check:
     """Compare a recording with its rig."""
     compared = list(_compared(seen))
     if not compared:
-        return absent(NAME, "the rig says neither inertia, top speed nor peak current", ALLOWED)
+        return absent(NAME, "the rig states neither inertia, top speed nor peak current", ALLOWED)
     off, found = max((max(ratio, 1.0 / ratio), text) for ratio, text in compared)
     if off <= WARNED:
         return Check(NAME, "pass", found, ALLOWED)

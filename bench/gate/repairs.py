@@ -53,9 +53,9 @@ def none_lost(seen: Seen) -> Check | Repaired:
     """The recording with lost and repeated samples put right."""
     trace = seen.trace
     if len(trace) < SHORTEST or not {"position", "velocity"} & set(trace.signals):
-        return absent(NAME, "too short a recording to tell, or without motion", ALLOWED)
+        return absent(NAME, "the recording is too short, or without motion", ALLOWED)
     if trace.time_base is not None and trace.time_base.resampled and trace.time_base.jitter > JITTER:
-        return absent(NAME, "the times jitter: what is between samples tells of no loss", ALLOWED)
+        return absent(NAME, "the times jitter: intervals between samples cannot show a loss", ALLOWED)
     right, lost, stale = trace, 0, 0
     most = (MOST if "velocity" in trace else MOST_BLIND) * len(trace)
     for _ in range(PASSES):
@@ -188,7 +188,7 @@ def runs_on(seen: Seen) -> Check | Repaired:
         found = (
             f"position jumps {places.size} times, by up to {longest:.4g} {trace.units['position']}, not by one period"
         )
-        advice = "record so that it runs on, cut the recording at the jumps, or leave the position out"
+        advice = "record so that it runs on, cut the recording at the jumps, or omit the position"
         return Check(WRAPS, "fail", found, ALLOWED_WRAPS, advice)
     wraps = Wraps(period, int(places.size))
     wrapping = {"position": position}

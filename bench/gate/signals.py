@@ -27,7 +27,7 @@ STILL = 1.2
 STEADY = 0.1
 #: Speed, as share of its RMS, above which an axis moves.
 MOVING = 0.5
-#: Share of samples that stand at exactly the largest value, in rows of so many, which no motion and no noise make.
+#: Share of samples that are exactly the largest value, in rows of so many, which no motion and no noise make.
 CLIPPED, ROW = 0.005, 5
 #: Distance from the drive's own limit within which standing there is the drive's doing and the value true.
 AT_LIMIT = 0.02
@@ -43,7 +43,7 @@ FINE, COARSE = 8.0, 1.0
 LEAST = 64
 
 ALLOWED_MOVES = "motion and effort that change, and no sensor that stands still meanwhile"
-ALLOWED_CLIPS = "no signal that stands at the end of its range"
+ALLOWED_CLIPS = "no signal that stays at the end of its range"
 ALLOWED_STEPS = f"{FINE:g} steps within the spread of motion and of effort"
 
 
@@ -166,7 +166,7 @@ def _standing(
     share = float(lengths.sum()) / len(trace)
     if share <= CLIPPED:
         return None
-    where = f"{share:.1%} of {name} stand at exactly {side * top + 0.0:.4g} {trace.units[name]}"
+    where = f"{share:.1%} of {name} are exactly {side * top + 0.0:.4g} {trace.units[name]}"
     return where, samples, (int(starts[0]), int(starts[-1] + lengths[-1] - 1))
 
 

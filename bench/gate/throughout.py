@@ -39,7 +39,7 @@ ALLOWED = "one balance of effort and motion, from beginning to end"
 
 
 def holds(seen: Seen) -> Check:
-    """Whether one balance holds throughout, and the likeliest fault where none does."""
+    """Whether one balance is valid throughout, and the likeliest fault where none does."""
     fitted = seen.balance()
     if seen.effort is None or fitted is None:
         return absent(NAME, seen.unbalanced, ALLOWED)
@@ -48,7 +48,7 @@ def holds(seen: Seen) -> Check:
         return Check(NAME, "fail", found, ALLOWED, advice)
     for found, advice, left in _delayed(fitted, name, seen.trace):
         return Check(NAME, "fail" if left <= DELAYED else "warn", found, ALLOWED, advice)
-    return Check(NAME, "pass", "one balance holds", ALLOWED)
+    return Check(NAME, "pass", "one balance is valid", ALLOWED)
 
 
 def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, str]]:
@@ -124,5 +124,5 @@ def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, s
     if abs(delay) >= max(LATE, SAMPLES * trace.sample_period) and left[best] < min(LEFT * left[none], 1.0 - EXPLAINED):
         late = f"{name} is {abs(delay) * 1e3:.3g} ms {'late' if delay > 0.0 else 'early'}"
         found = f"{late}: so shifted, motion explains {1.0 - left[best]:.0%} of it, and {1.0 - left[none]:.0%} as it is"
-        advice = "likeliest the columns were recorded apart: record them by one clock, or shift one of them"
+        advice = "the columns were probably recorded separately: record them by one clock, or shift one of them"
         yield found, advice, float(left[best] / left[none])

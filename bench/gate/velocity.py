@@ -72,7 +72,7 @@ def compared(seen: Seen) -> tuple[float, float, float] | None:
 
 def judged(ratio: float, lag: float, remainder: float) -> Check:
     """What a comparison of speed and position, as of `compared`, says."""
-    units = "check the units (and signs) of both columns and of the time, or leave one of the two columns out"
+    units = "check the units (and signs) of both columns and of the time, or omit one of the two columns"
     if abs(ratio - 1.0) > REFUSED and remainder < REMAINDER:
         thousands = math.log10(abs(ratio)) / 3.0 if ratio else 0.0
         likeliest = (

@@ -200,7 +200,7 @@ class AxisModel:
             raise InputError(
                 couplings[0],
                 f"found {self.parameters.motor_inertia:g} of {self.parameters.inertia:g} kg*m**2 in the motor",
-                "allowed: a rig that states the motor's inertia, and a load beside it",
+                "allowed: a rig that states the motor's inertia and has a load",
             )
 
     @property

@@ -76,7 +76,7 @@ def read_spec(path: str, stand: bool = False) -> tuple[mujoco.MjSpec, tuple[str,
     free = [joint for joint in spec.joints if joint.type == mujoco.mjtJoint.mjJNT_FREE] if stand else []
     if free:
         bodies = ", ".join(f"'{joint.parent.name}'" for joint in free)
-        notes.append(f"{bodies} is fixed as on a stand" + (", keyframes are left out" if spec.keys else ""))
+        notes.append(f"{bodies} is fixed as on a stand" + (", keyframes are omitted" if spec.keys else ""))
     for element in (*free, *(spec.keys if free else ())):
         spec.delete(element)
     folder = Path(path).parent / spec.meshdir
@@ -84,12 +84,12 @@ def read_spec(path: str, stand: bool = False) -> tuple[mujoco.MjSpec, tuple[str,
     for geom in [one for one in spec.geoms if one.meshname in missing]:
         if not geom.parent.explicitinertial and _moves(geom.parent):
             raise ValueError(
-                f"mesh '{geom.meshname}' is not there, and the inertia of '{geom.parent.name}' is made of it"
+                f"mesh '{geom.meshname}' does not exist, and the inertia of '{geom.parent.name}' is computed from it"
             )
         spec.delete(geom)
     for mesh in missing.values():
         spec.delete(mesh)
-    note = f"meshes that are not there are left out of {Path(path).name}: {', '.join(sorted(missing))}"
+    note = f"meshes that do not exist are omitted from {Path(path).name}: {', '.join(sorted(missing))}"
     return spec, (*notes, *([note] if missing else []))
 
 

@@ -329,5 +329,5 @@ def _set_masses(spec: mujoco.MjSpec, kind: AxisKind, mounting: Mounting) -> str:
     known = mounting.load_mass
     spec.body(LOAD).mass = NO_MASS if known is None else known
     load = "the load's either" if known is None else f"the load's is the disk's, {known:.4g} kg"
-    nothing = f"{NO_MASS:g} kg stands in for what is not known"
+    nothing = f"{NO_MASS:g} kg is used for what is not known"
     return f"Inertias are those of flat disks. The motor's mass is not known, {load}; {nothing}."

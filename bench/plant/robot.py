@@ -152,15 +152,15 @@ class Robot:
         for k in joints:
             if int(model.jnt_type[k]) not in UNITS:
                 body = model.body(int(model.jnt_bodyid[k])).name
-                found = "found a free or ball joint, whose motion no log of joints tells"
+                found = "found a free or ball joint, whose motion is in no log of joints"
                 allowed = (
                     "for a robot on a stand, `bench robot --stand`, or delete this joint and the <keyframe> element "
                 )
                 allowed += "from the file; on its feet the forces of the ground are in no log of joints"
                 raise InputError(f"{path}: body '{body}'", found, allowed)
         for reason in _bound(model, model.joint(joint).id):
-            found = f"found {reason}, whose torque no log tells"
-            raise InputError(f"{path}: joint '{joint}'", found, "allowed: a joint that moves by its motor alone")
+            found = f"found {reason}, whose torque is in no log"
+            raise InputError(f"{path}: joint '{joint}'", found, "allowed: a joint that only its motor moves")
         dof = model.joint(joint).dofadr[0]
         for field in (model.dof_armature, model.dof_damping, model.dof_dampingpoly, model.dof_frictionloss):
             field[dof] = 0.0
@@ -382,7 +382,7 @@ def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
     own = Rig.of(alone, robot.source) if rig is None else rig.of_joint(robot.joint)
     if own.axis_kind.turns is not turns:
         found = f"found a joint that {'turns' if turns else 'slides'}"
-        raise InputError(f"--joint {robot.joint}", found, f"allowed: a {own.kind} one, as {own.source} says")
+        raise InputError(f"--joint {robot.joint}", found, f"allowed: a {own.kind} one, as in {own.source}")
     return rig_within(own, robot)
 
 
@@ -451,7 +451,7 @@ def _known(
     if unit != own.effort_unit:
         allowed = f"allowed: {own.effort_unit}, or its torque_constant under [joints.{robot.joint}] in a rig"
         where = f"{trace.origin}: joint '{robot.joint}'"
-        raise InputError(where, f"found an effort in {unit}, beside links in kg", allowed)
+        raise InputError(where, f"found an effort in {unit}, with links in kg", allowed)
     torque, momentum = robot.rest(position, velocity)
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
@@ -557,9 +557,9 @@ def _require_within(position: Array, joint: str, robot: Robot, path: Path) -> No
     low, high = robot.model.jnt_range[at]
     if robot.model.jnt_limited[at] and max(low - position.min(), position.max() - high) > high - low:
         unit = robot.unit(joint)
-        found = f"stands at {position.min():.4g} to {position.max():.4g} {unit}"
+        found = f"is at {position.min():.4g} to {position.max():.4g} {unit}"
         allowed = f"allowed: {low:.4g} to {high:.4g} {unit}, as the MJCF limits it; its unit (or axis) may be another: "
-        raise InputError(f"{path}: joint '{joint}'", found, f"{allowed}columns under [joints.{joint}] in a rig say it")
+        raise InputError(f"{path}: joint '{joint}'", found, f"{allowed}set columns under [joints.{joint}] in a rig")
 
 
 def _holds(recording: Recording, name: str) -> bool:

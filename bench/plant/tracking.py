@@ -250,4 +250,4 @@ def references_of(trace: Trace, period: float, stride: int) -> References:
     if "position_reference" in trace:
         position = CubicSpline(samples, trace["position_reference"])
         return References(ticks, position(ticks), position(ticks, 1), position(ticks, 2))
-    raise InputError(trace.origin, "holds no references", "allowed: velocity_reference or position_reference")
+    raise InputError(trace.origin, "contains no references", "allowed: velocity_reference or position_reference")

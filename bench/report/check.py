@@ -29,7 +29,7 @@ TONES: dict[str, doc.Tone] = {SAME: "sure", UNDECIDED: "open", CHANGED: "refused
 NEXT = {
     CHANGED: "Look at what changed; where the new state is right, accept it with --update.",
     SAME: "Nothing.",
-    "rig": "Make the baseline anew: --update with recordings of the old state and the rig file of now.",
+    "rig": "Make a new baseline: --update with recordings of the old state and the rig file of now.",
     "conditions": "Record the motion of the baseline at its sampling, and check again.",
     UNDECIDED: "Record again, several times: a difference near its margin needs more than one recording to decide.",
 }
@@ -182,7 +182,7 @@ def _answers(checked: Checked) -> dict[str, str]:
     if pairs:
         came = unit_text(sentence("; ".join(described(one, checked) for _, one in pairs))) + "."
     elif not (checked.baseline.names and checked.now.names):
-        came = "Not asked: the baseline has parameters alone."
+        came = "Not checked: the baseline has only parameters."
     else:
         kept = ", ".join(words(effect.label) for effect in checked.now.effects)
         came = f"No effect; {kept} as in the baseline." if kept else "No effect: none is named in either state."
@@ -247,18 +247,18 @@ def _unlike(checked: Checked) -> doc.Points | doc.Paragraph:
     if lines:
         return doc.points(lines)
     if not checked.now.conditions:
-        return doc.Paragraph(text="The two models are compared: neither rests on a recording here.")
+        return doc.Paragraph(text="The two models are compared: neither is fitted to a recording here.")
     return doc.Paragraph(text="The rig, the motion and the sampling are those of the baseline.")
 
 
 def _gaps_table(checked: Checked) -> doc.Table:
     """What is left in both states, and their verdicts."""
     rows: list[tuple[str | None, ...]] = [
-        ("verdict", *(words(state.verdict) or "not asked" for state in (checked.baseline, checked.now)), "")
+        ("verdict", *(words(state.verdict) or "not checked" for state in (checked.baseline, checked.now)), "")
     ]
     for name, unit, *gaps in _gaps(checked):
         what = effort_word(unit) if name == "torque" else words(name)
-        for of, value in (("residual", "after"), ("noise alone", "noise_floor")):
+        for of, value in (("residual", "after"), ("noise floor", "noise_floor")):
             both = (None if gap is None else number(getattr(gap, value).value, digits=3) for gap in gaps)
             rows.append((f"{what}, {of} (RMS)", *both, unit_text(unit)))
     caption = "Verdicts, and what inertia, friction and effects do not explain"

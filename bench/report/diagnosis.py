@@ -223,7 +223,11 @@ def _files(found: Diagnosis, provenance: Mapping[str, Any] | None) -> list[doc.F
     about = "the model with all that was found, for bench replay"
     files = [doc.file("model.toml", about, toml)]
     if found.model is not None:
-        files.append(doc.file("model.xml", "what MuJoCo has of it natively; opens alone", model_xml(found.model)))
+        files.append(
+            doc.file(
+                "model.xml", "the part that MuJoCo has natively; opens without other files", model_xml(found.model)
+            )
+        )
     return [*files, doc.file("diagnosis.json", "all results as numbers", diagnosis_json(found, provenance) + "\n")]
 
 
@@ -397,7 +401,7 @@ def _over_time(found: Diagnosis, series: TimeSeries) -> doc.TimeGraph:
     ]
     alternative = (
         f"Speed and {effort} of {Path(series.origin).name}, measured and modelled. RMS residuals "
-        f"with inertia and friction alone, then with all that was found: speed "
+        f"with inertia and friction only, then with all effects found: speed "
         f"{number(first.velocity[place], digits=3)}, {number(last.velocity[place], found.velocity.unit, 3)}; {effort} "
         f"{number(first.torque[place], digits=3)}, {number(last.torque[place], found.torque.unit, 3)}. "
         f"{sentence(effort)} has holes about standstill, where the direction of friction is not known."

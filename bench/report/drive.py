@@ -24,7 +24,7 @@ from bench.trace.trace import Trace
 
 def plan_table(best: PlannedMotion) -> doc.Table:
     """What a motion will tell, and how well."""
-    title = f"{best.profile}, {best.motion.time[-1]:.3g} s: what it will tell, and how well"
+    title = f"{best.profile}, {best.motion.time[-1]:.3g} s: what it will determine, and how well"
     rows = (
         (words(name), number(found.value), number(found.std_error, digits=2), unit_text(found.unit))
         for name, found in best.expected.items()
@@ -52,7 +52,7 @@ def tracking_table(title: str, before: Tracking, after: Tracking, kind: AxisKind
 #: Mains voltage that a motor is held to which states no curve - V - and revolutions per minute of 1 rad/s.
 MAINS, RPM = 230.0, 30.0 / math.pi
 COLD_FINDING = (
-    "A cold winding leaves more voltage at speed, until it has warmed: its peak reserve is none to plan with. It "
+    "A cold winding has more voltage in reserve at speed, until it has warmed: do not plan with its peak reserve. It "
     "changes nothing where the magnets limit, nor for heat."
 )
 
@@ -89,7 +89,7 @@ def limits(trace: Trace, rig: Rig) -> doc.Document:
         tone="sure" if least >= 0.0 else "refused",
         answers={},
         sections=(
-            doc.section("findings", "What it leaves", doc.points(found.findings)),
+            doc.section("findings", "Reserve", doc.points(found.findings)),
             doc.section("range", "Operating range", *blocks),
         ),
         origin=origin(None),
@@ -152,8 +152,9 @@ def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
 def _thermal_finding(left: Reserve) -> str:
     hot = ", the motor would overheat if this repeats" if left.thermal < 0.0 else ""
     return (
-        f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average leaves "
-        f"{left.thermal:.3g} A ({left.thermal_share:.0%}) to the continuous {left.continuous_current:.3g} A{hot}."
+        f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average has "
+        f"{left.thermal:.3g} A ({left.thermal_share:.0%}) in reserve to the continuous "
+        f"{left.continuous_current:.3g} A{hot}."
     )
 
 
@@ -162,7 +163,7 @@ def _heat_finding(left: Reserve, limit: OperatingRange) -> str:
     by_torque = left.rms_torque / float(limit.torque_constant(np.asarray(left.continuous_current)))
     return (
         f"Heat goes with the square of the current. The RMS torque of {left.rms_torque:.3g} N·m over the torque "
-        f"constant at continuous current would say {by_torque:.3g} A; the iron saturates at the peaks, so they take "
+        f"constant at continuous current would give {by_torque:.3g} A; the iron saturates at the peaks, so they take "
         f"more: {left.rms_current:.3g} A."
     )
 

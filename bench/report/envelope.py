@@ -114,7 +114,7 @@ def _simulators(found: Envelope, ratio: float) -> Iterator[doc.Paragraph | doc.C
         yield doc.Paragraph(text="None: a limit that the log does not reach would make the simulated motor too weak.")
         return
     peak = found.peak.value * ratio
-    yield doc.Paragraph(text="At the joint. MuJoCo (torque alone):")
+    yield doc.Paragraph(text="At the joint. MuJoCo (torque only):")
     yield doc.Code(
         text=f'<motor joint="JOINT" ctrlrange="-{peak:.4g} {peak:.4g}" forcerange="-{peak:.4g} {peak:.4g}"/>'
     )

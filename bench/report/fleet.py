@@ -58,7 +58,7 @@ BRIEFLY = {
 MEANT = {
     "done": "evaluated",
     "missing": "no such file; evaluated by the next run that finds it",
-    "refused": "cannot be read, or cannot answer; the column reason says what to record instead",
+    "refused": "cannot be read, or cannot answer; the column reason states what to record instead",
     "failed": "stopped by an unexpected error; evaluated again with --retry",
     "timed_out": "no result within the deadline; evaluated again with --retry",
 }
@@ -135,7 +135,7 @@ def fleet_document(fleet: Fleet, provenance: Mapping[str, Any]) -> doc.Document:
     marked = (k for k, status in enumerate(STATUSES) if status != "done" and summary.counts[status])
     recordings = doc.table("By status", ("status", "recordings>", "which~"), statuses, marked)
     rows_of = "a row for each recording: parameters, errors, verdict, reason, provenance"
-    files = {TABLE: rows_of, SUMMARY: "all that this page says, without a bound on its length"}
+    files = {TABLE: rows_of, SUMMARY: "the contents of this page, without a bound on its length"}
     reasons = _reasons(summary)
     options = ", ".join(key for key, value in provenance["options"].items() if value) or "none"
     return doc.Document(
@@ -385,7 +385,7 @@ class FleetPages:
             sections=doc.sections(
                 doc.section("parameters", "Parameters", *([parameters_table("", values)] if values else [])),
                 doc.section("effects", "What was missing", *lacking),
-                doc.section("gap", "What is left", *([_gaps(found["gap"])] if found.get("gap") else [])),
+                doc.section("gap", "Residual", *([_gaps(found["gap"])] if found.get("gap") else [])),
                 doc.section("checks", "Checks and warnings", *warned),
                 doc.section("more", "More", *graphs, doc.neighbours(above)),
             ),
@@ -405,7 +405,7 @@ class FleetPages:
         drawn, x, values = drawn_values(times, history, near, changed)
         reach = NORMAL95 * history.errors[near]
         if changed is None:
-            trend = f"The latest {number(float(history.values[-1]), history.unit)}; no change stands out."
+            trend = f"The latest {number(float(history.values[-1]), history.unit)}; no significant change."
         else:
             step = changed.step
             until, later = np.array([x[0], times[step.place]]), np.array([times[step.place], x[-1]])
@@ -443,12 +443,12 @@ def _recording_verdict(found: Plain) -> str:
         return f"{sentence(words(found['status']))}: no result."
     match found.get("verdict"):
         case "unexplained_remainder":
-            beside = f" beside {names}" if names else ""
-            return f"Something is left{beside} that no effect of the catalogue explains."
+            found_too = f", in addition to {names}" if names else ""
+            return f"No effect of the catalogue explains the remaining residual{found_too}."
         case "explained":
             return f"{sentence(names)} {'was' if len(found['effects']) == 1 else 'were'} missing."
         case "nothing_missing":
-            return "Inertia and friction explain it: nothing is missing."
+            return "Inertia and friction explain it: no missing effect found."
         case _:
             explained = found["explained"]
             known = "" if explained is None else f" and explain {share(explained)} of the effort"
@@ -461,7 +461,7 @@ def _gaps(gaps: Mapping[str, Plain]) -> doc.Table:
     for name, gap in gaps.items():
         values = (gap[key] for key in ("before", "after", "noise_floor"))
         rows.append((name, *(None if value is None else number(value, gap["unit"]) for value in values)))
-    return doc.table("RMS of what the model leaves", ("signal", "before any effect>", "left>", "noise alone>"), rows)
+    return doc.table("RMS residual", ("signal", "before any effect>", "after>", "noise floor>"), rows)
 
 
 def news(one: Changed) -> str:

@@ -92,7 +92,7 @@ def _effect(found: FrictionMap) -> Values:
 def _verdict(found: FrictionMap) -> str:
     before, after = found.unexplained
     if found.name is None:
-        return f"Friction is a straight line over speed: no effect bends it, and {share(before)} is left unexplained."
+        return f"Friction is a straight line over speed: no effect bends it, and {share(before)} is unexplained."
     values = ", ".join(f"{words(name)} {number(value, unit)}" for name, (value, unit) in _effect(found).items())
     bent = f"{sentence(words(found.name))} ({values}) bends the curve"
     return f"{bent}: {share(before)} was unexplained without, {share(after)} with it."
@@ -108,9 +108,9 @@ def _answers(found: FrictionMap) -> dict[str, str]:
         chance = f"{words(found.best.name)} is best, {chance}"
     elif found.name is None:
         chance = "physics allows no effect here"
-    left = "Nothing that steady speeds would tell."
+    left = "None that steady speeds determine."
     if found.offset is None:
-        left = "A constant offset is counted in the effect: such recordings do not tell them apart."
+        left = "A constant offset is counted in the effect: such recordings do not distinguish them."
     between = f"{number(speeds.min(), digits=3)} to {number(speeds.max(), found.kind.speed_unit, 3)}"
     return {
         "Friction?": friction,

@@ -264,9 +264,7 @@ def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeG
     if acceleration:
         signals.append(Plotted("acceleration", one.kind.acceleration_unit, moved.time, moved.acceleration))
     signals.append(Plotted(effort, unit, moved.time, moved.effort, [one.left], "modelled"))
-    alternative = (
-        f"Speed of {one.name}, its {effort} as measured and with inertia and friction alone, and the residual."
-    )
+    alternative = f"Speed of {one.name}, its {effort} as measured and with inertia and friction only, and the residual."
     return time_graph("Over time.", alternative, moved.time, signals, (), 1.0 / graphs)
 
 
@@ -295,7 +293,7 @@ def _rest(estimate: Estimate, motions: Sequence[Moved]) -> doc.Chart:
         panels.append(doc.Panel(x_label=name, x_unit=unit_text(of), series=(*band, dots)))
     return doc.Chart(
         title="Residual.",
-        alternative=f"Mean of measured less modelled {effort_word(unit)} in bins; what stands out of the noise floor "
+        alternative=f"Mean of measured less modelled {effort_word(unit)} in bins; what exceeds the noise floor "
         "has a cause in addition to inertia and friction.",
         y_label="residual",
         y_unit=unit_text(unit),

@@ -15,10 +15,11 @@ from bench.validation.into import FATES, PART, RIGHT, SPAN, WRONG, Injection, In
 
 SCHEMA = "bench.validate.into/1"
 NOTE = (
-    "Each effect alone was put into the recording, whose motion stays as it was. strength: the torque of it that "
-    "inertia and friction cannot take up, RMS, over what the recording's own diagnosis leaves. right: named, and "
-    "nothing else is new; part: something else, too; flagged: a remainder without the name, or a refusal; missed: "
-    "neither; wrong: only another name. inside: quantities whose interval of 95 % holds the truth."
+    "One effect at a time was put into the recording; the motion is unchanged. strength: the torque of it that "
+    "inertia and friction cannot take up, RMS, relative to the residual of the recording's own diagnosis. "
+    "right: named, and nothing else is new; part: something else, too; flagged: a remainder without the name, "
+    "or a refusal; missed: neither; wrong: only another name. "
+    "inside: quantities whose interval of 95 % contains the truth."
 )
 
 
@@ -89,13 +90,13 @@ def _verdict(found: Injections) -> str:
         named = sum(case is not None for case in found.least.values())
         return f"This recording shows {named} of the {len(found.least)} effects that were put into it."
     rates = (f"{counted[RIGHT]} of {sum(counted.values())} at {s:g} times" for s, counted in _counts(found).items())
-    return sentence(f"{', '.join(rates) or 'nothing'} what it leaves named rightly.")
+    return sentence(f"{', '.join(rates) or 'nothing'} its own residual named rightly.")
 
 
 def _answers(found: Injections) -> Iterator[tuple[str, str]]:
     own = found.own
     names = ", ".join(map(words, own.names)) or "no effect"
-    yield "What it leaves itself?", f"{number(own.left, own.unit)} RMS, after {names} ({words(own.verdict)})."
+    yield "What is its own residual?", f"{number(own.left, own.unit)} RMS, after {names} ({words(own.verdict)})."
     wrong = (case for case in found.cases if case.fate in (WRONG, PART))
     false = "; ".join(f"{', '.join(map(words, case.names))} of {words(case.effect)}" for case in wrong)
     yield "False names?", f"{sentence(false or 'none')}."
@@ -135,4 +136,4 @@ def _cases(found: Injections) -> doc.Table:
     ]
     marked = (place for place, case in enumerate(found.cases) if case.fate in (WRONG, PART))
     headings = ("effect", "size>", "unit", "strength>", "fate", "named", "inside>", "as found~")
-    return doc.table("What was put in, and what was said", headings, rows, marked)
+    return doc.table("What was put in, and what was found", headings, rows, marked)

@@ -107,9 +107,9 @@ def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, doc.Tone]
     """What the recording is good for, in a sentence, and how that is meant."""
     if found.asks is not None or found.duration is None or found.rate is None:
         several = f"It has {len(found.axes)} axes: pick one with --axis {found.axes[0]}." if _of_axes(found) else ""
-        return several or "It cannot be read yet: the rig has to say what its columns are.", "refused"
+        return several or "It cannot be read yet: the rig has to state what its columns are.", "refused"
     names = ", ".join(words(signal.name) for signal in found.signals)
-    held = f"It holds {number(found.duration, 's', 4)} of {names} at {number(found.rate, 'Hz', 6)}"
+    held = f"It contains {number(found.duration, 's', 4)} of {names} at {number(found.rate, 'Hz', 6)}"
     failed, warned = (
         ", ".join(words(check.name) for check in checks if check.status == status) for status in ("fail", "warn")
     )

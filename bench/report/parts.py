@@ -59,7 +59,7 @@ def recordings_table(
     following = [spread.predictive95 for spread in between.values()]
     rows.append(("the next one (95 %)", *(f"{number(low)} to {number(high)}" for low, high in following)))
     headings = (f"{words(name)} / {unit_text(parameters[name].unit)}>" for name in between)
-    return [table("Each recording alone", ("recording", *headings), rows)]
+    return [table("Each recording by itself", ("recording", *headings), rows)]
 
 
 def one_panel(title: str, alternative: str, x: tuple[str, str], y: tuple[str, str], drawn: Iterable[Series]) -> Chart:

@@ -151,5 +151,5 @@ def _graph(found: Servo) -> doc.TimeGraph:
         Plotted("position", unit, motion.time, motion.measured, left),
         Plotted("goal", unit, motion.time, motion.goal, name="goal"),
     )
-    alternative = "Measured position and free-running simulations over time, and what each leaves."
+    alternative = "Measured position and free-running simulations over time, with the residual of each."
     return time_graph("Motion.", alternative, motion.time, signals, (found.before, "the fitted servo"))

@@ -114,14 +114,17 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
     title, effort = f"{readable(model.name)} along {along}", effort_word(replayed.effort_unit)
     torque = _left(replayed.torque, replayed.torque_simulated)
     speed = _left(replayed.velocity, replayed.velocity_simulated)[1]
-    line, moves = f"The model leaves {share(torque[0])} of the {effort}", "The model holds no motion, only torque."
+    line, moves = (
+        f"The model does not explain {share(torque[0])} of the {effort}",
+        "The model contains no motion, only torque.",
+    )
     if math.isfinite(speed):
         off, noise = number(speed, replayed.speed_unit, 3), white_noise(replayed.velocity)
         line += f" and is off by {off} in simulated speed"
         like = "Yes" if speed <= NULL * noise else "Not wholly"
         moves = f"{like}: off by {off} RMS; the sensor's noise is {number(noise, digits=3)}."
     answers = {
-        f"How much {effort} is left?": f"{number(torque[1], replayed.effort_unit, 3)} RMS",
+        f"How large is the residual {effort}?": f"{number(torque[1], replayed.effort_unit, 3)} RMS",
         "Does it move like the axis?": moves,
         "Is it this axis?": " ".join(replayed.warnings) or "Nothing speaks against it.",
     }
@@ -130,7 +133,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         (effort, replayed.effort_unit): (replayed.torque, replayed.torque_simulated),
     }
     signals = [Plotted(*of, replayed.time, seen, [seen - made]) for of, (seen, made) in both.items()]
-    shown = f"Speed and {effort} of the recording as measured and as the model has them, and what is left of each."
+    shown = f"Speed and {effort} of the recording as measured and as the model predicts them, and the residual of each."
     graph = time_graph("Over time.", shown, replayed.time, signals)
     motion = doc.section("motion", "Measured and simulated", graph)
     return doc.Document(
@@ -174,7 +177,7 @@ def view(
     seconds = number(float(shown.time[-1] - shown.time[0]), "s", 3)
     answers = {
         "What moves?": shown.simulated_is,
-        "How far apart?": f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most",
+        "How large is the difference?": f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most",
         **({} if free is None else {"And free-running?": _after(free, kind)}),
     }
     both = {
@@ -218,7 +221,7 @@ def _let_free(free: FreeRun, kind: AxisKind) -> Iterator[doc.Chart]:
     every = max(free.time.size // DRAWN, 1)
     alternative = (
         f"RMS of simulated less measured over the time since the model was started: {free.windows} windows begin "
-        "with what the sensors say, the recorded effort drives the model, and nothing holds it."
+        "at the sensors' values, and then only the recorded effort drives the model."
     )
     for name, unit, off in (("position", kind.length_unit, free.position), ("speed", kind.speed_unit, free.velocity)):
         label = f"{name} off (RMS)"

@@ -31,7 +31,7 @@ SCHEMA = "bench.validate/1"
 SYMBOLS = {"inertia": "J", "viscous": "K_w", "coulomb": "K_0"}
 TERM_WORDS = {"inertia": "inertia", "viscous": "viscous friction", "coulomb": "Coulomb friction"}
 TITLES = {
-    "identify": "identify: how far off, and how often an interval holds the truth",
+    "identify": "identify: how far off, and how often an interval contains the truth",
     "diagnose": "diagnose: the same, after it added what it named",
 }
 NOTE = (
@@ -43,7 +43,7 @@ NOTE = (
 LEVEL = LEVELS[-1]
 #: Share that the chart's scale begins at, where no bound lies below it; fewer runs than tell as much are too few.
 FROM = 0.8
-NO_QUANTITY = "No run tells a quantity."
+NO_QUANTITY = "No run determines a quantity."
 FEW = " More runs narrow these bounds."
 #: Shares and counts of names as JSON has them, in its order.
 NAMING = {
@@ -61,8 +61,8 @@ NAMING = {
 SAID = ("verdict", "named", "false", "missed", "diagnose_reason")
 FILES = {
     "validation.json": "all of it, as data",
-    "runs.csv": "what each run was, and what was said of it",
-    "quantities.csv": "each quantity that a run tells, beside the truth",
+    "runs.csv": "what each run was, and what was found in it",
+    "quantities.csv": "each quantity that a run determines, with its true value",
 }
 
 
@@ -112,7 +112,7 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
         answers=dict(_answers(found, first)),
         sections=doc.sections(
             doc.section("axis", "This motion on this drive", *(_determined(found.runs) if own else ())),
-            doc.section("coverage", "How often an interval holds the truth", *coverage),
+            doc.section("coverage", "How often an interval contains the truth", *coverage),
             doc.section("numbers", "How far off numbers are", *numbers, note),
             doc.section("parts", "The same, by parts of these runs", *parts, detail=True),
             doc.section("names", "Whether names are right", *names),
@@ -137,7 +137,7 @@ def _enough(first: list[Coverage]) -> bool:
 
 def _verdict(first: list[Coverage], naming: Naming | None) -> str:
     if not first:
-        verdict = "No run tells a quantity"
+        verdict = "No run determines a quantity"
     else:
         shares = ", ".join(f"of {TERM_WORDS[one.quantity]} in {share(one.inside[-1].value)}" for one in first)
         runs, hidden = first[0].runs, "nothing" if first[0].group == "nulls" else first[0].group
@@ -190,7 +190,9 @@ def _pictures(found: Validation) -> Iterator[doc.Picture]:
     rows = [tuple(_chart(found, quantity, place) for place in range(len(LEVELS))) for quantity in SYMBOLS]
     estimated = tuple(row for row in rows if row[0].spans)
     nothing = doc.table("", ("",), [(NO_QUANTITY,)])
-    yield doc.Picture(name="coverage", title="How often an interval holds the truth", rows=estimated or ((nothing,),))
+    yield doc.Picture(
+        name="coverage", title="How often an interval contains the truth", rows=estimated or ((nothing,),)
+    )
     if found.naming is not None:
         matrix = confusion(found.naming.confusion)
         yield doc.Picture(name="confusion", title="Named, by what is hidden", rows=((matrix,),))
@@ -230,7 +232,7 @@ def _determined(runs: tuple[Run, ...]) -> tuple[doc.AnyPart, ...]:
         true = f"{scored[0].true:.4g} {unit_text(scored[0].parameter.unit)}" if scored else "–"
         rows.append((symbol, true, _of(sure), *map(_percent, (found.half_width, found.bias, found.typical))))
     headings = ("quantity", "true", "determined>", "± % (95 %)>", "bias %>", "RMS error %>")
-    note = "determined: runs, with nothing hidden, that tell the quantity by an interval which excludes zero."
+    note = "determined: runs, with nothing hidden, that determine the quantity by an interval which excludes zero."
     title = "How well this motion on this drive determines the axis"
     return doc.table(title, headings, rows), doc.Paragraph(text=note)
 
@@ -249,7 +251,7 @@ def _naming(found: Naming) -> Iterator[doc.AnyPart]:
         "nulls with a false name": found.nulls,
         **{f"  {name}": each for name, each in by_motion.items()},
         "runs with a false name": found.false,
-        "  and no remainder beside it": found.silent,
+        "  and no remainder in addition": found.silent,
         "runs named exactly": found.exact,
         "refused": found.refused,
     }
@@ -265,7 +267,7 @@ def _naming(found: Naming) -> Iterator[doc.AnyPart]:
     for hidden, counts in found.confusion.items():
         ordered = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
         rows.append((words(hidden), ", ".join(f"{words(name)} {number(count)}" for name, count in ordered)))
-    yield doc.table("What is said where one effect is hidden, or nothing", ("hidden", "said, and how often~"), rows)
+    yield doc.table("What is found where one effect is hidden, or none", ("hidden", "found, and how often~"), rows)
 
 
 def confusion(counts: Mapping[str, Mapping[str, int]]) -> doc.HeatMap:
@@ -273,8 +275,7 @@ def confusion(counts: Mapping[str, Mapping[str, int]]) -> doc.HeatMap:
     answers = [NOTHING_MISSING if name == NOTHING else name for name in counts]
     columns = [*answers, *sorted({name for said in counts.values() for name in said} - set(answers))]
     return doc.HeatMap(
-        caption="Hidden down, said across: how often, coloured by the share of what is said in a row; "
-        "the right answer is framed",
+        caption="Hidden down, found across: how often, coloured by the share in a row; the right answer is framed",
         corner="hidden",
         rows=tuple(map(words, counts)),
         columns=tuple(map(words, columns)),

@@ -159,11 +159,11 @@ def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]
     constant, unit = ("force_constant", "N/A") if linear else ("torque_constant", "N*m/A")
     lines = [
         f'# {"moving_mass" if linear else "rotor_inertia"} = "? {"kg" if linear else "kg*cm**2"}"'
-        "     # of the motor alone, datasheet: tells the load apart",
+        "     # of the motor without load, datasheet: gives the load's",
     ]
     if "current" in efforts:
         lines.append(f'# {constant} = "? {unit}"     # datasheet; without it results are in A instead of {unit[:-2]}')
-        lines.append('# current = "effective"     # where the datasheet tells its values for Arms')
+        lines.append('# current = "effective"     # where the datasheet gives its values for Arms')
     if any("%" in text or "permille" in text for text in units):
         lines.append('# rated_torque = "? N*m"     # what 100 % of the recorded torque means, datasheet')
     if not efforts & {"torque", "force", "current", "voltage"}:

@@ -309,7 +309,7 @@ class Rig(RigTable):
         require_plausible(trace)
         if trace.axis_kind != self.axis_kind and ("velocity" in trace or "position" in trace):
             found = f"found a {trace.axis_kind.name} axis"
-            raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as {self.source} says")
+            raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as in {self.source}")
         direct = self.axis_kind.effort
         if direct in trace:
             rated = self.motor.rated_torque or self.motor.rated_force  # what 100 % of a relative torque means
@@ -325,7 +325,7 @@ class Rig(RigTable):
         unread = [note for note in trace.notes if note.startswith(tuple(f"{kind} left out" for kind in kinds))]
         raise InputError(
             trace.origin,
-            "; ".join(["holds no current, torque, force or voltage", *unread]),
+            "; ".join(["contains no current, torque, force or voltage", *unread]),
             "identification needs one of them; `bench inspect` lists which column it may be: map that in the rig's "
             "[trace.columns]",
         )

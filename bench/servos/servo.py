@@ -148,10 +148,10 @@ def _require_goal(trace: Trace) -> Trace:
     name = "position_reference"
     if "position" not in trace:
         raise InputError(
-            trace.origin, "holds no position", 'allowed: a measured position, e.g. `position = "pos [rad]"`'
+            trace.origin, "contains no position", 'allowed: a measured position, e.g. `position = "pos [rad]"`'
         )
     if name not in trace:
-        found = f"holds no goal ({name}); its signals: {', '.join(trace.signals)}"
+        found = f"contains no goal ({name}); its signals: {', '.join(trace.signals)}"
         allowed = (
             "allowed: a log with the position that is sent to the servo; map its column in the rig: "
             f'`{name} = "goal [rad]"`'

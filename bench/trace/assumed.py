@@ -127,7 +127,7 @@ def _implausible(name: str, values: Array, si: str) -> str | None:
     known = values[np.isfinite(values)]
     top = float(np.abs(known).max(initial=0.0))
     if known.size < 2:
-        return "and holds no numbers"
+        return "and contains no numbers"
     if top > _COUNTS and (known == np.rint(known)).all():
         return f"and whole numbers up to {top:.6g} may be counts"
     largest = _PLAUSIBLE.get(name.removesuffix("_reference"), np.inf)

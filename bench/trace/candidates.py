@@ -169,7 +169,7 @@ def _reasons(channel: Channel, name: ColumnName, bare: bool) -> Reasons:
             continue
         found[signal] = [*_of_name(signal, channel, name, told, fits or bare), *_of_unit(signal, unit, fits)]
         if signal == "time" and channel.moments:
-            found[signal].append((4.0, "holds moments"))
+            found[signal].append((4.0, "contains moments"))
         if rises and found[signal]:
             found[signal].append((1.0, "rises steadily"))
     return found

@@ -214,7 +214,7 @@ class _Chosen:
         try:
             scale = scale_in(signal, unit, channel.place())
         except InputError as error:
-            raise InputError(error.where, error.found, f"{error.allowed}; {line} says which") from error
+            raise InputError(error.where, error.found, f"{error.allowed}; {line} selects it") from error
         return SignalColumn(channel, scale, self.sign, None if self.unit else usual)
 
 
@@ -256,7 +256,7 @@ def _column(
     own, stated = unit_of(channel.unit), unit_of(unit or channel.unit)
     scales = [scale_or_none(one or "", wanted_units(signal)) for one in (own, stated)]
     if named is not None and unit is not None and not channel.moments and own is not None and scales[0] != scales[1]:
-        notes.append(f"{signal} read in {unit}, as the rig says, where the file says {channel.unit}")
+        notes.append(f"{signal} read in {unit}, as in the rig, where the file has {channel.unit}")
     inverted = named is not None and str(given).strip().startswith("-")
     stated, usual = stated or (candidate.unit if candidate is not None else None), None
     if stated is None and not channel.moments:

@@ -150,7 +150,7 @@ def _known_samples(name: str, sampled: SampledSignal, channel: Channel, notes: l
     if known < 2:
         raise InputError(channel.place(), f"found {known} numbers", "allowed: at least two")
     if count > FEW * unknown.size:
-        notes.append(f"{name} stands in {known} of {unknown.size} rows; read as sampled there")
+        notes.append(f"{name} is given in {known} of {unknown.size} rows; read as sampled there")
         own = Clock(clock.time[~unknown], clock.recorded[~unknown], clock.tick, clock.place)
         return SampledSignal(own, sampled.values[~unknown])
     cells = "1 cell is" if count == 1 else f"{count} cells are"
@@ -218,7 +218,7 @@ def _agreeing(clock: Clock, period: float, time: Channel, notes: list[str]) -> C
     slack = float(steps.max(initial=0.0)) / max(steps.size, 1) if coarse else PERIOD * period
     typical = mean if coarse else float(np.median(steps)) if steps.size else period
     if abs(typical - period) > slack + PERIOD * period:
-        found = f"steps by {typical:.6g} s, where the rig's [trace] says sample_period = {period:.6g} s"
+        found = f"steps by {typical:.6g} s, where the rig's [trace] has sample_period = {period:.6g} s"
         raise InputError(
             time.place(),
             found,
@@ -226,6 +226,6 @@ def _agreeing(clock: Clock, period: float, time: Channel, notes: list[str]) -> C
         )
     if not coarse:
         return clock
-    notes.append(f"times are too coarse to tell samples apart; taken every {period:g} s, as the rig says")
+    notes.append(f"times are too coarse to distinguish samples; read as every {period:g} s, as in the rig")
     count = np.arange(clock.time.size, dtype=np.float64)
     return Clock(clock.time[0] + count * period, count, period, clock.place)

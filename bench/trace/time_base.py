@@ -132,7 +132,7 @@ def _without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Cloc
     if other.sum() > MOST_DUPLICATES * time.size:
         raise InputError(
             clock.place(int(np.argmax(other))),
-            f"{int(other.sum())} of {time.size} samples stand at a time already taken, with other values",
+            f"{int(other.sum())} of {time.size} samples repeat the time of another one, with other values",
             "allowed: at most 1 %; record with finer time stamps, or give sample_period in the rig's [trace]",
         )
     kept = {name: array[~again] for name, array in values.items()}
@@ -200,7 +200,9 @@ def _notes(base: _RegularTimes, clock: Clock) -> list[str]:
         longest = max(duration for _, duration in found.holes)
         notes.append(f"{counted(len(found.holes), 'hole')}, the longest {longest:.3g} s; nothing is placed inside")
     if found.duplicates:
-        notes.append(f"{counted(found.duplicates, 'sample')} dropped at times that stood already in the recording")
+        notes.append(
+            f"{counted(found.duplicates, 'sample')} dropped because the recording already has a sample at that time"
+        )
     if clock.time.size < 10:
         notes.append(f"only {clock.time.size} samples")
     return notes

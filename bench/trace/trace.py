@@ -155,7 +155,7 @@ class Trace(Shown):
         if isinstance(name, slice):
             return replace(self, time=self.time[name], signals={key: own[name] for key, own in self.signals.items()})
         if name not in self.signals:
-            raise InputError(self.origin, f"holds no {name}", f"found: {', '.join(self.signals) or 'no signal'}")
+            raise InputError(self.origin, f"contains no {name}", f"found: {', '.join(self.signals) or 'no signal'}")
         return self.signals[name]
 
     def __contains__(self, name: str) -> bool:
@@ -356,7 +356,7 @@ def join(traces: Sequence[Trace]) -> Trace:
         notes=(
             *(f"{trace.origin}: {note}" for trace in traces for note in trace.notes),
             *(f"{trace.origin} taken every {period:g} s, as others are" for trace in traces if _apart(trace, period)),
-            *([f"{', '.join(left_out)}: left out, not every recording holds it"] if left_out else []),
+            *([f"{', '.join(left_out)}: omitted, not every recording contains it"] if left_out else []),
         ),
         joined=tuple(zip(starts, (trace.origin for trace in traces), strict=True)),
     )

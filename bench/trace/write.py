@@ -51,7 +51,7 @@ def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None
     for name, unit in (units or {}).items():
         where = f"{path}: unit of {name}"
         if name not in labels:
-            raise InputError(where, "the trace holds no such signal", f"allowed: {', '.join(labels)}")
+            raise InputError(where, "the trace contains no such signal", f"allowed: {', '.join(labels)}")
         if scale_in(name, unit, where).unit != si[name]:
             raise InputError(where, f"found '{unit}'", f"allowed: a unit of {si[name]}")
         labels[name] = unit

@@ -254,7 +254,7 @@ def _named(name: str, text: str, wanted: tuple[str, ...]) -> UnitProduct:
     """What one name stands for."""
     if name in COUNTS or name.lower() in COUNTS:
         example = "turn/4096/s" if any("/s" in si for si in wanted) else "turn/4096"
-        found = f"found unit '{text}', counts of which the file does not tell what one is worth"
+        found = f"found unit '{text}', counts without a scale in the file"
         wanted_text = f"{allowed(wanted)}, e.g. '{example}' for an encoder of 4096 counts a turn, or '2.69 mA'"
         raise UnitError(found, wanted_text)
     if name.lower() in ELECTRICAL:

@@ -69,7 +69,7 @@ def parse(text: object, unit: str, where: object) -> float:
         raise InputError(where, f"found {short(repr(text))}", allowed)
     number, given = match.groups()
     if EFFECTIVE.search(given):
-        advice = 'say current = "effective" in the same table and write A'
+        advice = 'set current = "effective" in the same table and write A'
         raise InputError(where, f"found {text!r}, an effective current", f"allowed: A; {advice}")
     try:
         scale = scale_of(given, (unit,))

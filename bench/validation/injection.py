@@ -152,7 +152,7 @@ def injected(host: Host, effect: Effect) -> Trace:
             that is so strong that the axis cannot have moved as it did.
     """
     if unable := acts(effect, *MOVING):
-        raise InputError(effect.name, f"acts by {', '.join(unable)}", "allowed: what leaves the motion as it is")
+        raise InputError(effect.name, f"acts by {', '.join(unable)}", "allowed: effects that do not change the motion")
     if acts(effect, "measured", "filtered"):
         return _read_otherwise(host.trace, effect)
     seen = stand_in(host)

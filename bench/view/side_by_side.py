@@ -117,13 +117,13 @@ def along_profile(path: str | Path, rig: Rig, profile: str) -> SideBySide:
     stored, cascade = load_model(path), Cascade.from_rig(rig)
     kind = stored.model.parameters.kind
     if kind is not rig.axis_kind:
-        raise InputError(f"{path}: kind", f"found '{kind.name}'", f"allowed: '{rig.kind}', as {rig.source} says")
+        raise InputError(f"{path}: kind", f"found '{kind.name}'", f"allowed: '{rig.kind}', as in {rig.source}")
     asked = plan(profile, MotionLimits.from_rig(rig, stored.model.parameters, cascade.control_period))
     plant = Plant(stored.model, cascade, cascade.control_period)
     states = reported_states(plant.model, run(plant, asked))
     return SideBySide(
         kind=kind,
-        ghost_is="asked for",
+        ghost_is="demanded",
         simulated_is=f"The drive of {rig.name} makes the model follow {profile.replace('_', ' ')}.",
         time=asked.time,
         ghost=asked.position,

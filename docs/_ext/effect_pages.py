@@ -77,7 +77,7 @@ def page(effect: Effect, found: Signature | None) -> str:
         ("Equation", equations),
         ("Parameters", parameters(effect)),
         ("In MuJoCo", in_mujoco(effect, found)),
-        ("Rivals", rivals(effect, found)),
+        ("Alternatives", rivals(effect, found)),
         ("What motion shows it", "" if found is None else motions(effect, found)),
         ("Try it", "" if found is None else trial(found)),
         ("Source", source),
@@ -123,9 +123,10 @@ def picture(effect: Effect, found: Signature) -> str:
     values = ", ".join(f"{words(key)} {number(value, units[key], 3)}" for key, value in found.present.values)
     return (
         f"![The torque gap and the signals with {words(effect.name)}]({effect.name}.png)\n\n"
-        f"*{values}, on [one axis](../../axis.toml) along the motion `identification`. Above: what inertia, viscous "
-        "and Coulomb friction leave of the torque, over the coordinates that account for most of its variance. Below: "
-        "speed and current with the effect and without it, under the same drive, where they differ most.*"
+        f"*{values}, on [one axis](../../axis.toml) along the motion `identification`. Above: what torque that "
+        "inertia, viscous and Coulomb friction do not explain, over the coordinates that account for most of "
+        "its variance. Below: speed and current with the effect and without it, under the same drive, "
+        "where they differ most.*"
     )
 
 
@@ -154,9 +155,12 @@ def in_mujoco(effect: Effect, found: Signature | None) -> str:
     added = [] if found is None else mjcf(found.present)
     if added:
         shown = "```xml\n" + "\n".join(added) + "\n```"
-        rest = ["`bench export` puts it into your own MJCF. Beside the bare axis the picture's model has", shown]
+        rest = [
+            "`bench export` puts it into your own MJCF. In addition to the bare axis the picture's model has",
+            shown,
+        ]
     elif effect.of_measurement:
-        rest = ["It is none of the motion: a model that is exported leaves it out."]
+        rest = ["It does not belong to the motion: an exported model does not contain it."]
     else:
         rest = ["MuJoCo has no such part: `bench.Effects` makes it in [a loop of your own](../../export.md)."]
     return "\n\n".join(["\n".join(places), *rest])
@@ -184,7 +188,7 @@ def rivals(effect: Effect, found: Signature | None) -> str:
     pairs = [
         ("It is tried in the place of", replaced(effect)),
         ("In its place are tried", (name for name, other in others.items() if effect.name in replaced(other))),
-        ("A recording tells but one of it and", lags if isinstance(effect, Lag) else ()),
+        ("A recording determines only one of it and", lags if isinstance(effect, Lag) else ()),
     ]
     for sentence, names in pairs:
         linked = ", ".join(link(name) for name in sorted(names))
@@ -222,9 +226,9 @@ def ambiguous(effect: Effect, scope: Scope) -> Iterable[str]:
     """What recordings of some kinds cannot tell from it."""
     no_position = replace(scope, signals=scope.signals - {"position"}, source="velocity")
     kinds = (
-        ("No recording tells it from", scope),
-        ("Without a recorded position nothing tells it from", no_position),
-        ("In one direction of motion nothing tells it from", replace(scope, one_way=True)),
+        ("No recording distinguishes it from", scope),
+        ("Without a recorded position it cannot be distinguished from", no_position),
+        ("In one direction of motion it cannot be distinguished from", replace(scope, one_way=True)),
     )
     always: Sequence[str] = ()
     for sentence, such in kinds:

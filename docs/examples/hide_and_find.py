@@ -16,4 +16,4 @@ for effect in found.effects:
         print(f"{effect.name}, {name}: {quantity.value:.4g} ({low:.4g} to {high:.4g}) {quantity.unit}")
 before, after = found.torque.holdout
 floor = found.torque.noise_floor
-print(f"torque gap on the other recording: {before:.4f} N*m before, {after:.4f} after, noise alone {floor:.4f}")
+print(f"torque gap on the other recording: {before:.4f} N*m before, {after:.4f} after, noise floor {floor:.4f}")

@@ -36,4 +36,4 @@ memory = np.array(list(zip(1000 * count, 3 * count, 0.001 * count, strict=True))
 Path("run.dump").write_bytes(b"DUMP" + memory.tobytes())
 
 trace = assemble(DriveDump().read(open_source("run.dump")))
-print(f"{len(trace)} samples, {trace.sample_period:.4g} s apart, up to {trace['velocity'].max():.2f} rad/s")
+print(f"{len(trace)} samples, {trace.sample_period:.4g} s between samples, up to {trace['velocity'].max():.2f} rad/s")

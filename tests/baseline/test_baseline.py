@@ -22,7 +22,7 @@ def test_a_state_comes_back(tmp_path):
     assert read_baseline(tmp_path / "b.toml") == before
     text = (tmp_path / "b.toml").read_text(encoding="utf-8")
     assert 'value = "0.0613 N*m"' in text
-    assert text.count("not told by fewer than two recordings") == 7
+    assert text.count("not determined by fewer than two recordings") == 7
 
 
 SIZES = st.floats(LEAST, MOST)

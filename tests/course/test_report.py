@@ -356,7 +356,7 @@ def test_a_legend_covers_no_data(done):
 
 
 def test_the_advice_keeps_its_brackets_on_the_terminal():
-    reason = InputError("a.csv", "holds no velocity", 'write [trace.columns] velocity = "column [unit]"')
+    reason = InputError("a.csv", "contains no velocity", 'write [trace.columns] velocity = "column [unit]"')
     shown = rendered(course_table([TaskResult(key="6", title="Inertia", reason=reason)]), 80)
     assert '[trace.columns]velocity="column[unit]"' in "".join(shown.plain.split())
 

@@ -158,5 +158,5 @@ def test_the_policy_decides_whether_a_recording_suffices():
     """What counts as chance decides, too, whether effects would be visible in the noise of a recording."""
     trace = recorded(MOTION, noise=3.0)
     assert Recordings.of(trace, RIG, None, POLICY).rows.effort.size
-    with pytest.raises(UndeterminedError, match="would stand out of the noise"):
+    with pytest.raises(UndeterminedError, match="would exceed the noise"):
         diagnose(trace, RIG, policy=Policy(chance=1e5))

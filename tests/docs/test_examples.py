@@ -114,4 +114,4 @@ def test_effect_of_your_own(printed):
 
 
 def test_reader_of_your_own(printed):
-    assert printed("reader_of_your_own") == "1000 samples, 0.001 s apart, up to 313.85 rad/s\n"
+    assert printed("reader_of_your_own") == "1000 samples, 0.001 s between samples, up to 313.85 rad/s\n"

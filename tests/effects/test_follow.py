@@ -71,7 +71,7 @@ def test_any_reference_will_do(left_out, truths, rig):
 
 
 def test_no_reference_is_reported(truths, rig):
-    with pytest.raises(InputError, match="holds no references"):
+    with pytest.raises(InputError, match="contains no references"):
         follow_references(model(), recording(truths[()], "position_reference", "velocity_reference"), rig)
 
 

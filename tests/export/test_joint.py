@@ -275,7 +275,7 @@ def test_meshes_that_are_not_there_are_left_out_with_a_word(tmp_path):
     path.write_text(f"<mujoco><asset>{shell}</asset>{world}</mujoco>")
     text, lines = robot_with(path, {"elbow": (stored(), armature_of(stored()))}, tmp_path / "out.xml")
     assert mujoco.MjModel.from_xml_string(text).ngeom == 0
-    assert lines[0] == "meshes that are not there are left out of robot.xml: shell"
+    assert lines[0] == "meshes that do not exist are omitted from robot.xml: shell"
 
 
 def test_nothing_ends_the_comment():

@@ -222,7 +222,7 @@ def test_recordings_that_differ_are_reported_and_widen_the_interval():
     ("second", "rig", "words"),
     [
         (lambda one: one, RIG, ["found the same recording"]),
-        (lambda one: replace(one, signals={"velocity": one["velocity"]}), RIG, ["holds no current"]),
+        (lambda one: replace(one, signals={"velocity": one["velocity"]}), RIG, ["contains no current"]),
         (
             lambda one: replace(
                 one,

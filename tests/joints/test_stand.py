@@ -26,7 +26,7 @@ def test_a_floating_base_is_fixed_and_its_keyframes_are_left_out(folder):
     assert floating.inertia == pytest.approx(fixed.inertia, rel=1e-12)
     spec, notes = read_mjcf(folder / "floating.xml", stand=True)
     assert spec.compile().nkey == 0
-    assert notes == ("'trunk' is fixed as on a stand, keyframes are left out",)
+    assert notes == ("'trunk' is fixed as on a stand, keyframes are omitted",)
 
 
 def test_a_floating_base_is_refused_by_name_with_its_remedy(folder):
@@ -41,7 +41,7 @@ def test_a_robot_on_a_stand_is_identified_and_written(folder, tmp_path):
     text, lines = found.with_joints(tmp_path / "robot_id.xml")
     model = mujoco.MjModel.from_xml_string(text)
     assert (model.njnt, model.nkey) == (2, 0)
-    assert "'trunk' is fixed as on a stand, keyframes are left out" in lines
+    assert "'trunk' is fixed as on a stand, keyframes are omitted" in lines
 
 
 def test_the_mjcf_keeps_a_base_that_floats_without_a_stand(folder, tmp_path):
@@ -58,5 +58,5 @@ def test_a_mesh_that_is_not_there_matters_to_bodies_that_move_only(tmp_path):
     assert Robot.of(path, "elbow").inertia > 0.0
     assert "left out of robot.xml: shell" in read_mjcf(path)[1][0]
     path.write_text(text.format(base.format('<geom type="mesh" mesh="shell"/>')), encoding="utf-8")
-    with pytest.raises(InputError, match="the inertia of 'arm' is made of it"):
+    with pytest.raises(InputError, match="the inertia of 'arm' is computed from it"):
         Robot.of(path, "elbow")

@@ -117,5 +117,5 @@ def test_without_a_constant_the_effort_stays_in_its_own_unit(rig):
 def test_a_trace_of_the_other_kind_of_axis_is_noticed(rig):
     with pytest.raises(InputError, match="found a linear axis; allowed: a rotary one"):
         rig("").effort(trace({"velocity": "m/s"}, velocity=[0, 1, 2], current=[1, 2, 3]))
-    with pytest.raises(InputError, match="holds no current, torque, force or voltage"):
+    with pytest.raises(InputError, match="contains no current, torque, force or voltage"):
         rig("").effort(trace(velocity=[0, 1, 2]))

@@ -142,7 +142,7 @@ def moving(seconds=12.0, rate=100.0):
 def test_a_log_without_a_goal_is_bad_input():
     time, goal = moving()
     trace = Trace.from_arrays({"time": time, "position": goal}, {"time": "s", "position": "rad"})
-    with pytest.raises(InputError, match=r"holds no goal.*position_reference"):
+    with pytest.raises(InputError, match=r"contains no goal.*position_reference"):
         bench.servo(trace)
 
 
@@ -196,7 +196,7 @@ SQUARE = 3.0 * np.sign(np.sin(2.0 * np.pi * np.arange(1200) / 100.0 / 0.8))
 @pytest.mark.parametrize(
     ("goal", "position", "status", "reason", "record"),
     [
-        (None, SWUNG, 2, "holds no goal", "the position that is sent to the servo"),
+        (None, SWUNG, 2, "contains no goal", "the position that is sent to the servo"),
         (SWUNG, SWUNG, 1, "are equal in every sample", "the goal that is sent to the servo"),
         (0.0 * SWUNG + 0.3, SWUNG, 1, "the goal never moves", "steps and waves of the goal"),
         (SQUARE, motion(SOFT, SQUARE), 1, "at its limit", "smaller and slower motions"),
@@ -230,6 +230,6 @@ def test_bad_input_is_one_line_with_its_status(of_arm, monkeypatch):
     Path("bare.csv").write_text("time [s],elbow.position [rad]\n0,0\n0.01,0.1\n0.02,0.2\n", encoding="utf-8")
     done = command("servo", "bare.csv", "--mjcf", "robot.xml", "--joint", "elbow")
     assert (done.status, done.err.count("\n")) == (2, 1)
-    assert "holds no goal" in done.err
+    assert "contains no goal" in done.err
     done = command("servo", "log.csv", "--joint", "elbow")
     assert (done.status, done.err.count("\n")) == (2, 1)

@@ -166,7 +166,7 @@ def test_bam_recording():
 
 
 def test_frequency_response_is_refused():
-    with pytest.raises(InputError, match="frequency-response measurement, which holds no motion"):
+    with pytest.raises(InputError, match="frequency-response measurement, which contains no motion"):
         read(shared("formats", "freq_trace.XML"))
 
 

@@ -297,7 +297,7 @@ def test_degrees_without_a_unit_are_not_taken_for_radians(tmp_path):
     path = tmp_path / "arm.xml"
     path.write_text(MJCF.replace('name="shoulder"', 'name="shoulder" range="-100 100" limited="true"'))
     (tmp_path / "log").mkdir()
-    with pytest.raises(InputError, match=r"joint 'shoulder': stands at -3.*allowed: -1.745 to 1.745 rad"):
+    with pytest.raises(InputError, match=r"joint 'shoulder': is at -3.*allowed: -1.745 to 1.745 rad"):
         read(lerobot(tmp_path / "log", scale=np.rad2deg(1.0)), Robot.of(path, "elbow"))
 
 
@@ -339,14 +339,14 @@ def test_a_urdf_is_taken_without_the_meshes_that_are_not_there(tmp_path):
     robot = Robot.of(path, "shoulder")
     assert robot.inertia == pytest.approx(0.014 + 1.3 * 0.16**2, rel=1e-9)
     trace = read(write_log(tmp_path / "log.csv", COLUMNS), robot)
-    assert "meshes that are not there are left out of arm.urdf: upper" in trace.notes
+    assert "meshes that do not exist are omitted from arm.urdf: upper" in trace.notes
 
 
 def test_an_inertia_made_of_a_mesh_that_is_not_there_is_none(tmp_path):
     path = tmp_path / "arm.xml"
     body = '<body name="b"><joint name="j"/><geom type="mesh" mesh="m"/></body>'
     path.write_text(f'<mujoco><asset><mesh name="m" file="m.stl"/></asset><worldbody>{body}</worldbody></mujoco>')
-    with pytest.raises(InputError, match="mesh 'm' is not there, and the inertia of 'b' is made of it"):
+    with pytest.raises(InputError, match="mesh 'm' does not exist, and the inertia of 'b' is computed from it"):
         Robot.of(path, "j")
 
 

@@ -91,7 +91,7 @@ def test_a_unit_the_rig_states_against_the_file_is_reported(tmp_path):
     path.write_text("time [ms],velocity [rad/s]\n0,1\n1,2\n2,3\n")
     trace = read(path, {"velocity": "velocity [deg/s]"})
     np.testing.assert_allclose(trace["velocity"], np.deg2rad([1, 2, 3]))
-    assert any("as the rig says" in note for note in trace.notes)
+    assert any("as in the rig" in note for note in trace.notes)
 
 
 def test_a_rig_for_foreign_columns_still_reads_canonical_files(tmp_path):

@@ -86,7 +86,7 @@ def test_duplicates_are_dropped_and_counted():
     found = regular(one(time, values=np.repeat(np.arange(300.0), 2)[:400]))
     assert found.time_base.duplicates == 200
     assert np.array_equal(found.signals["velocity"], np.arange(200.0))
-    assert found.notes == ("200 samples dropped at times that stood already in the recording",)
+    assert found.notes == ("200 samples dropped because the recording already has a sample at that time",)
 
 
 def test_few_duplicates_with_other_values_keep_the_first():

@@ -105,7 +105,7 @@ def test_the_same_trace_gives_the_same_bytes(tmp_path):
         ("run.csv", {"velocity": "V"}, r"unit of velocity: found"),
         ("run.csv", {"velocity": "spam"}, r"'spam', which is not a unit"),
         ("run.csv", {"velocity": ""}, r"unit of velocity: found"),
-        ("run.csv", {"speed": "rad/s"}, r"unit of speed: the trace holds no such signal"),
+        ("run.csv", {"speed": "rad/s"}, r"unit of speed: the trace contains no such signal"),
         ("run.csv", {"velocity": "m/s"}, r"unit of velocity: found 'm/s'; allowed: a unit of rad/s"),
     ],
 )

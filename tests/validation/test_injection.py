@@ -242,7 +242,7 @@ def test_none_is_drawn_that_the_axis_cannot_have():
     [
         (VoltageLimit(12.0), "voltage_limit: acts by driven_current"),
         (LoadDependentFriction(1.2), "so strong"),
-        (VelocityFilterLag(2e-3), "holds no velocity"),
+        (VelocityFilterLag(2e-3), "contains no velocity"),
         (DirectionalLoadFriction(0.2, 2.0), "load torque: found none"),
     ],
 )

@@ -31,7 +31,7 @@ def test_a_recording_without_position_is_shown_with_a_warning(bench, diagnosed, 
     write(only(run_of(seed=2), "velocity", "current"), tmp_path / "blind.csv")
     status, _, err = bench("view", diagnosed / "found" / "model.toml", "blind.csv", "--rig", "rig.toml")
     assert status == 0
-    assert "warning: blind.csv holds no position: shown is the integral of its speed" in err
+    assert "warning: blind.csv contains no position: the page shows the integral of its speed" in err
 
 
 @pytest.mark.parametrize(

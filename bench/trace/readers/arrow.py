@@ -72,7 +72,7 @@ def parquet_table(content: bytes, path: str) -> pa.Table:
         whole = all(rows == one.num_values for rows, one in chunks if one.path_in_schema in plain)
         if not whole or sum(group.num_rows for group in groups) != meta.num_rows:  # no sum covers a description
             allowed = f"allowed: a complete {PARQUET.format} file"
-            raise InputError(path, f"found columns that do not hold the {meta.num_rows} rows it tells of", allowed)
+            raise InputError(path, f"found columns without the {meta.num_rows} rows that its metadata states", allowed)
         read = [one for _, one in chunks if any(f"{one.path_in_schema}.".startswith(f"{name}.") for name in wanted)]
         size = sum(max(one.num_values * WIDTH, one.total_uncompressed_size) for one in read)
         require_expansion(path, size, len(content))

@@ -182,7 +182,7 @@ def _read_text(source: Source) -> Recording:
 def _refuse(source: Source) -> NoReturn:
     raise InputError(
         source.path,
-        "found a Sinumerik frequency-response measurement, which holds no motion over time",
+        "found a Sinumerik frequency-response measurement, which contains no motion over time",
         "allowed: a recording of velocity or position and of current or torque over time",
     )
 

@@ -127,5 +127,5 @@ def unpack(packed: bytes, size: int) -> bytes:
     else:
         raise ValueError(f"a block is packed in an unknown way (0x{packed[:4].hex()})")
     if len(content) > size:
-        raise ValueError(f"a block holds more than the {size} bytes it declares")
+        raise ValueError(f"a block contains more than the {size} bytes it declares")
     return content

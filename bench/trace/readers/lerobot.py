@@ -43,7 +43,7 @@ def _root(source: Source) -> Path | None:
 
 def _read(source: Source) -> Recording:
     root = _root(source) or Path(source.path).parent.parent
-    info = parse_json(read_text(root / _INFO, "what a dataset holds"), root / _INFO)
+    info = parse_json(read_text(root / _INFO, "the description of a dataset"), root / _INFO)
     whole = not source.content.startswith(MAGIC)
     files = sorted(root.glob("data/**/*.parquet")) if whole else [Path(source.path)]
     if not files:
@@ -60,7 +60,7 @@ def _read(source: Source) -> Recording:
         allowed = "allowed: timestamp and episode_index, as a LeRobot dataset has them"
         raise InputError(root, f"found columns {', '.join(list(of)[:8])}", allowed)
     time, count = _one_after_another(of["timestamp"], of["episode_index"].values)
-    joined = f"{count} episodes stand one after another, a hole between each two"
+    joined = f"{count} episodes in sequence, a hole between each two"
     notes = ("times are those of LeRobot's frames, not of the sensors", *([joined] if count > 1 else []))
     kept = tuple(time if one.name == "timestamp" else one for one in channels)
     return Recording(kept, LEROBOT.format, str(root), notes=notes, usual_units={"time": "s"})

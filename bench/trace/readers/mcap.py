@@ -99,7 +99,7 @@ def _recording(
     if not channels:
         raise InputError(
             origin,
-            f"holds no message of numbers ({'; '.join(notes) or 'no messages'})",
+            f"contains no message of numbers ({'; '.join(notes) or 'no messages'})",
             "allowed: joint states or numbers, in ROS 2's encoding (cdr) or JSON",
         )
     return Recording(with_shared_times(channels), container, origin, notes=notes)

@@ -63,7 +63,7 @@ def _read_mdf(source: Source) -> Recording:
         channels.append(Channel(signal.name, signal.unit or None, values, source.path, time=time, axis=axis))
     notes = tuple(f"{name} left out: its conversion is a formula, which is not evaluated" for name in formulas)
     if not channels:
-        found = "; ".join(("holds no channel of numbers", *notes))
+        found = "; ".join(("contains no channel of numbers", *notes))
         raise InputError(source.path, found, "allowed: channels of samples")
     return Recording(with_shared_times(channels), MDF.format, source.path, notes=notes)
 
@@ -129,7 +129,7 @@ def _read_tdms(source: Source) -> Recording:
         if isinstance(values, np.ndarray) and values.dtype.kind in _NUMERIC and values.ndim == 1 and values.size > 1
     ]
     if not channels:
-        raise InputError(source.path, "holds no channel of numbers", "allowed: channels of samples")
+        raise InputError(source.path, "contains no channel of numbers", "allowed: channels of samples")
     return Recording(with_shared_times(channels), TDMS.format, source.path, metadata, notes=tuple(warnings))
 
 

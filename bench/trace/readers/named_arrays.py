@@ -94,7 +94,7 @@ def _recording(
     kind: FileFormat, source: Source, channels: list[Channel], metadata: dict[str, str], missing: str, allowed: str
 ) -> Recording:
     if not channels:
-        raise InputError(source.path, f"holds no {missing}", f"allowed: {allowed} of samples, one of them the time")
+        raise InputError(source.path, f"contains no {missing}", f"allowed: {allowed} of samples, one of them the time")
     return Recording(tuple(channels), kind.format, source.path, metadata)
 
 
@@ -200,7 +200,7 @@ def _read_mat(source: Source) -> Recording:
         elif np.isscalar(value) or (isinstance(value, np.ndarray) and value.size == 1):
             metadata[name] = str(value)
     if not channels and b"MCOS" in _plain_start(source.content):
-        found = "holds an object of MATLAB (table, timetable, timeseries, iddata), which only MATLAB opens"
+        found = "contains an object of MATLAB (table, timetable, timeseries, iddata), which only MATLAB opens"
         lines = "for a table T: writetable(T, 'run.csv'); for iddata d: s = get(d); save('run.mat', 's', '-v7')"
         raise InputError(source.path, found, f"allowed: numeric vectors; in MATLAB, {lines}")
     return _recording(MAT, source, channels, metadata, "numeric vector", "vectors")

@@ -115,7 +115,9 @@ def _channel(name: str, head: Mapping[str, str], time: Array, cells: Channel) ->
     defect = None
     if lonely.any():
         place = every.place(int(np.argmax(lonely)))
-        defect = InputError(place, "found a time or a value alone", "allowed: both; the file may be truncated")
+        defect = InputError(
+            place, "found a time without a value, or a value without a time", "allowed: both; the file may be truncated"
+        )
     clock = Channel("time", "ms", time[present], every.origin, line=line)
     return replace(every, values=every.values[present], line=line, time=clock, defect=defect)
 

@@ -54,7 +54,7 @@ def abstention(scores: Sequence[Score]) -> list[tuple[str, str]]:
         ("left unnamed with a remainder", ratio([score for score in scores if score.hidden])),
         ("a wrong name", ratio(scores, misnamed)),
         ("a wrong name, and no remainder", ratio(scores, lambda s: misnamed(s) and not remains(s))),
-        ("nothing said to be missing", ratio(scores, lambda s: s.outcome.verdict == "nothing_missing")),
+        ("no missing effect found", ratio(scores, lambda s: s.outcome.verdict == "nothing_missing")),
     ]
 
 
@@ -74,9 +74,9 @@ def naming(scores: Sequence[Score]) -> list[tuple[str, str]]:
         ("crowds with a wrong name", ratio(crowds, misnamed)),
         ("nulls with a name", ratio(groups["null"], lambda s: bool(s.outcome.named))),
         ("nulls with a remainder", ratio(groups["null"], lambda s: s.outcome.verdict == "unexplained_remainder")),
-        ("outside the catalogue, left unnamed with a remainder", ratio(groups["outside"])),
+        ("not in the catalogue, unnamed with a remainder", ratio(groups["outside"])),
         ("cases with something hidden and a wrong name", ratio([*known, *groups["outside"]], misnamed)),
-        ("singles and pairs with a remainder beside right names", ratio([s for s in known if s.right], remains)),
+        ("singles and pairs with a remainder next to right names", ratio([s for s in known if s.right], remains)),
         ("holdout torque gap closed, median", middle([s.closed for s in known], ".3f")),
         ("inertia error, median", middle([100.0 * abs(s.inertia_error) for s in known], ".4f") + " %"),
         ("quantities within their 95 % interval", f"{sum(quantities)}/{len(quantities)}"),
@@ -102,7 +102,7 @@ def sureness(scores: Sequence[Score], withheld: bool) -> list[tuple[str, str]]:
         ("mean probability of a true name", mean([*true, *[0.0] * missed])),
         ("expected calibration error of names", f"{calibration_error(pairs):.3f} of {len(pairs)}"),
         ("sets of 90 % that hold the truth", ratio(known, lambda s: holds(s, s in lacking))),
-        ("none of the catalogue above .5 where it is so", ratio(lacking, lambda s: s.outcome.none > 0.5)),
+        ("unknown effect above .5 where it is so", ratio(lacking, lambda s: s.outcome.none > 0.5)),
         ("a name above .5 in a null", ratio([s for s in known if s.group == "null"], lambda s: likeliest(s) > 0.5)),
     ]
 
@@ -172,7 +172,7 @@ def by_strength(scores: Sequence[Score]) -> str:
     totals.append(ratio([s for s in singles if s.truth["residual_ratio"] > VISIBLE]))
     rows.append(("**all**", *totals, "", ""))
     note = (
-        f"Above noise: those whose truth leaves more than {VISIBLE} times of what the sensors' noise alone would leave "
+        f"Above noise: those whose truth has a residual above {VISIBLE} times that of the sensors' noise "
         "in the torque balance of J, K_w, K_0. All cases count in the figures above."
     )
     heads = ("hidden", *STRENGTHS, "above noise", "J error %", "gap closed")

@@ -36,8 +36,8 @@ BINS = 10
 SETS = """Sets of seeds that nothing is judged by:
 `python -m tests.studies.blind --seed 1001 --singles 126 --pairs 30 --nulls 40 --outside 24 --crowds 48`, of which the
 even singles and the first 20 nulls, and `python -m tests.studies.injected --seed 1001 --write injected --cases 110`.
-What each weight is worth says the mean log loss of the right answer, here of the cases that reach it, after the others
-were fitted anew. A weight of an effect more and one of an event beside a remainder, fitted beside these, came to 0.4
+The value of each weight is the mean log loss of the right answer, here of the cases that reach it, after the others
+were fitted again. A weight of one more effect and one of an event with a remainder, fitted with these, came to 0.4
 and -0.6 and saved 0.006 of it; with both halves of the cases judged by weights of the other 0.009."""
 
 
@@ -168,10 +168,10 @@ def markdown(cases: Sequence[Known], found: Mapping[str, float], command: str) -
     lines += ["| from | names | mean probability | true |", "|---|---|---|---|", *rows]
     shown = [case.true(name) for case in cases for name in case.detected if "withheld" not in case.group]
     lines += ["", f"Of {len(shown)} names that the signals show directly {sum(shown)} are true."]
-    for stand, left in ((True, "twice as much is left"), (False, "less is")):
+    for stand, left in ((True, "the residual doubles"), (False, "it is less")):
         said, there = beside_outside(cases, shares, stand)
         figures = f"{said:.1f} by probability, {there:.0%} are true."
-        lines += [f"Of names beside an effect from outside the catalogue without which {left}, {figures}"]
+        lines += [f"Of names next to an unknown effect without which {left}, {figures}"]
     return "\n".join(lines) + "\n"
 
 

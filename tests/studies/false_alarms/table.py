@@ -9,7 +9,7 @@ from tests.studies.frame import table
 
 NOTE = f"""Recordings of the independent integrator, 4 s each, sensors drawn at random. Bounds are Clopper and Pearson's
 at 95 %. `refused`: no answer, as the recording determines too little. `allows it`: errors, spread and margin of the
-unchanged axis leave a chance of 95 % to find the change; of a new effect, that what J, K_w and K_0 leave of the torque
+unchanged axis leave a chance of 95 % to find the change; of a new effect, that the residual torque of J, K_w and K_0
 is {SHOWN} times the noise. `found`: what was changed is called changed, by its name."""
 HEADS = ("what", "checks", "refused", "same", "undecided", "changed", "changed, share", "allows it", "found", "share")
 

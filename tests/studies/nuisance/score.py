@@ -101,7 +101,7 @@ def shortcoming(nuisance: Nuisance, hidden: Sequence[str], identified: Answer, d
         return "" if nuisance.refusal_is_right else "refused"
     remainder, false = diagnosed.verdict == REMAINDER, false_names(nuisance, hidden, diagnosed.named)
     if false:
-        return f"false name {', '.join(false)} beside a remainder"
+        return f"false name {', '.join(false)} next to a remainder"
     own = [name for name in diagnosed.named if name not in nuisance.right_names or twins(name) in same(hidden)]
     if remainder and nuisance.remainder_is_right:
         return ""
