@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from bench.assets import asset
-from bench.cli import COMMANDS
+from bench.cli import COMMANDS, GROUPS
 from bench.report.document import table
 from bench.report.terminal import rendered, wrapped
 from bench.trace.write import write
@@ -23,10 +23,9 @@ RIG = 'name = "axis"\nkind = "rotary"\n[motor]\ntorque_constant = "0.8 N*m/A"\nr
 #: In an order in which each finds what those before it have written.
 LINES = (
     "demo --out demo",
-    "rigs",
-    "rigs emps",
-    "effects",
-    "effects stribeck_friction",
+    "list",
+    "list rigs emps",
+    "list effects stribeck_friction",
     "simulate lab.toml --out run1.csv.gz --profile fast_reversals",
     "inspect run1.csv.gz",
     "inspect foreign.csv",
@@ -34,14 +33,14 @@ LINES = (
     "diagnose own.csv.gz --rig rig.toml --out found",
     "diagnose own.csv.gz --rig nowhere/a_rig_of_a_long_name.toml",
     "replay found/model.toml own.csv.gz --rig rig.toml --out replayed.csv",
-    "view found/model.toml own.csv.gz --rig rig.toml --out view.html",
+    "replay found/model.toml own.csv.gz --rig rig.toml --page view.html",
     "export found/model.toml --snippet --out joint.xml",
     "check own.csv.gz --rig rig.toml --baseline axis.toml --update --without-names",
     "check other.csv.gz --rig rig.toml --baseline axis.toml",
     "friction run1.csv.gz --rig rig.toml",
     "validate --rigs 2 --workers 1",
     "fleet fleet.csv --out fleet --workers 1",
-    "compensate found/model.toml --rig lab.toml --out tables --profile fast_reversals",
+    "export found/model.toml --to drive --rig lab.toml --out tables --profile fast_reversals",
     "plan --rig lab.toml --out motion.csv",
     "lab --notebooks notebooks",
     "limits run1.csv.gz --rig lab.toml",
@@ -155,7 +154,7 @@ def words_of(text):
 
 
 def test_all_commands_are_among_them():
-    assert {line.split()[0] for line in LINES} == {command.__name__ for command in COMMANDS}
+    assert {line.split()[0] for line in LINES} == {*COMMANDS, "report"}
 
 
 @pytest.mark.parametrize("line", LINES)
@@ -183,8 +182,9 @@ def test_help_tells_every_command_whole(width, tmp_path):
     out = in_a_terminal([sys.executable, "-m", "bench", "--help"], tmp_path, width)
     assert "..." not in out.replace("[ARGS]...", "")
     printed = re.sub(r"\s+", "", out)
-    for command in COMMANDS:
-        assert f"{command.__name__}{command.__doc__}".replace(" ", "") in printed
+    for name, command in COMMANDS.items():
+        assert f"{name}{command.__doc__}".replace(" ", "") in printed
+    assert all(f"{heading}:".replace(" ", "") in printed for heading in GROUPS)
     assert max(map(len, out.splitlines())) <= width
 
 

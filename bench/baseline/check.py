@@ -330,7 +330,7 @@ class Allowed:
             return cls(kind)
         stated, source = rig.check or CheckTable(), f"{rig.source}: check"
         own = [*rig.axis_kind.base_parameters(), TORQUE_GAP, VELOCITY_GAP]
-        known = f"{', '.join(own)}, or EFFECT.QUANTITY as in bench effects"
+        known = f"{', '.join(own)}, or EFFECT.QUANTITY as in bench list effects"
         for table, names in (("margin", stated.margin), ("between", stated.between)):
             for name in (name for name in names if name not in own):
                 of_effects = [f"{effect.name}.{q.name}" for effect in catalogue().values() for q in effect.quantities]

@@ -27,16 +27,17 @@ from typer.exceptions import TyperException
 from bench import __version__
 from bench.cli.check import check
 from bench.cli.common import NOTES, guarded, say, warn
+from bench.cli.grouped import RENAMED, Grouped
 from bench.cli.lab import lab
-from bench.cli.model import compensate, export, replay, view
+from bench.cli.model import export, replay
 from bench.cli.recording import diagnose, fleet, friction, identify, inspect, limits, robot
 from bench.cli.servo import servo
-from bench.cli.without_recording import demo, effects, plan, report, rigs, simulate, validate
+from bench.cli.without_recording import demo, list_, plan, report, simulate, validate
 from bench.errors import BenchError, InputError
 from bench.names import short
 from bench.offered import COMMANDS_GROUP, at_fault, offered
 
-app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
+app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None, cls=Grouped)
 
 
 @app.callback(invoke_without_command=True)
@@ -51,31 +52,21 @@ def bench(
         typer.echo(context.get_help())
 
 
-COMMANDS = (
-    demo,
-    simulate,
-    effects,
-    inspect,
-    identify,
-    diagnose,
-    robot,
-    servo,
-    replay,
-    view,
-    friction,
-    check,
-    validate,
-    fleet,
-    export,
-    compensate,
-    plan,
-    lab,
-    limits,
-    rigs,
-    report,
-)
-for command in COMMANDS:
-    app.command(short_help=command.__doc__)(guarded(command))
+#: Commands by what they are for, in the order of `bench --help`.
+GROUPS = {
+    "Start": (demo, inspect, list_),
+    "Analyse": (identify, diagnose, friction, limits, validate),
+    "Simulate": (simulate, replay, plan),
+    "Watch": (check, fleet),
+    "Robots and drives": (robot, servo, export),
+    "Course": (lab,),
+}
+COMMANDS = {command.__name__.rstrip("_"): command for group in GROUPS.values() for command in group}
+for heading, group in GROUPS.items():
+    for command in group:
+        name = command.__name__.rstrip("_")
+        app.command(name, short_help=command.__doc__, rich_help_panel=heading)(guarded(command))
+app.command(hidden=True)(guarded(report))
 
 #: Errors of writing where nobody named a file.
 UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
@@ -131,9 +122,8 @@ def _leave_output() -> None:
 
 def _add_offered() -> None:
     """Add the commands of other packages; InputError if one is no function, or has the name of one of the bench."""
-    own = {command.__name__ for command in COMMANDS}
     for name, command in offered(COMMANDS_GROUP, FunctionType, "a function"):
-        if name in own:
+        if name in {*COMMANDS, *RENAMED, report.__name__}:
             raise InputError(f"{COMMANDS_GROUP}: {name}", "found a name of the bench", "allowed: a name of its own")
         if name not in {known.name for known in app.registered_commands}:
             app.command(name)(guarded(command))

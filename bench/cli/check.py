@@ -53,7 +53,7 @@ def check(
     joint: common.JointOption = None,
     at: common.AtOption = None,
 ) -> None:
-    """Has this axis, or this model of one, changed? Exit status 0: the same, 3: changed, 1: undecided."""
+    """Check whether an axis, or a model of one, has changed. Exit status 0: the same, 3: changed, 1: undecided."""
     given = traces or []
     selects_joint, no_rig = bool(mjcf or joint or at), rig is None and mjcf is None
     _require_consistent(given, simulated, selects_joint, no_rig, update, without_names, any((junit, json, report)))

@@ -11,7 +11,7 @@ import shlex
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from bench.view.side_by_side import RobotAlong
 
 #: Parameters of commands that name what is written, files or folders; every other path is read.
-WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "video"})
+WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "page", "video"})
 #: Those of them that name folders, which may be there.
 FOLDERS = frozenset({"out", "synthetic", "notebooks"})
 #: Notes on the recordings of this run, in order. Bad input is one line, without them.
@@ -106,13 +106,20 @@ STDOUT = Path("-")
 def _everywhere(
     *,
     max_size: Annotated[str | None, Option(help="Bytes a file may have or expand to, e.g. 8GB (preset: 2 GB).")] = None,
+    verbose: Annotated[bool, Option("--verbose", help="Print every section and every row.")] = False,
     debug: Annotated[bool, Option("--debug", help="Print the whole traceback of a failure.")] = False,
 ) -> None:
     """What every command takes."""
 
 
+def _in_full() -> AbstractContextManager[None]:
+    from bench.report.terminal import in_full  # rich: 0.1 s
+
+    return in_full()
+
+
 def guarded(verb: Callable[..., None]) -> Callable[..., None]:
-    """A command that takes `--debug` and `--max-size` too, and whose outputs replace none of its inputs.
+    """A command that takes `--verbose`, `--debug` and `--max-size` too, and whose outputs replace none of its inputs.
 
     InputError: before any work, where an output is an input or `--json` names a folder that is not there.
     """
@@ -120,8 +127,14 @@ def guarded(verb: Callable[..., None]) -> Callable[..., None]:
     taken = [one.replace(kind=one.KEYWORD_ONLY) for each in signatures for one in each.parameters.values()]
 
     @functools.wraps(verb)
-    def command(max_size: str | None, debug: bool, **given: object) -> None:  # `debug` is `bench.cli.main`'s
-        with bounded(max_size), keeping(path for _, path in _paths(given, read=True)):
+    def command(
+        max_size: str | None, verbose: bool, debug: bool, **given: object
+    ) -> None:  # `debug` is `bench.cli.main`'s
+        with (
+            bounded(max_size),
+            _in_full() if verbose else nullcontext(),
+            keeping(path for _, path in _paths(given, read=True)),
+        ):
             for name, path in _paths(given, read=False):
                 if path != STDOUT and not (name in FOLDERS and path.is_dir()):
                     require_writable(path)
@@ -160,12 +173,30 @@ def write_page(path: Path | None, document: Document) -> None:
         write_html(path, document)
 
 
-def write_picture(path: Path | None, picture: Picture) -> None:
-    """Write a picture to a file, where one is asked for; InputError for an ending that is no picture's."""
-    if path is not None:
-        from bench.report.figures import drawn, save  # matplotlib: 0.35 s
+def placed(out: Path, name: str) -> Path:
+    """The file to write for `--out`: `out`, or the file `name` in it if it is a folder, or has no ending."""
+    return out / name if _is_folder(out) else out
 
-        save(drawn(picture), path)
+
+def _is_folder(out: Path) -> bool:
+    return out.is_dir() or not (out.suffix or out.exists())
+
+
+def write_figure(out: Path | None, document: Document, picture: Callable[[], Picture]) -> list[Path]:
+    """Write a picture to a file, or page and picture into a folder, and return the paths.
+
+    InputError: an ending that is no picture's.
+    """
+    if out is None:
+        return []
+    if _is_folder(out):
+        from bench.report.publish import write_document
+
+        return write_document(out, document.model_copy(update={"pictures": (picture(),)}))
+    from bench.report.figures import drawn, save  # matplotlib: 0.35 s
+
+    save(drawn(picture()), out)
+    return [out]
 
 
 @contextmanager

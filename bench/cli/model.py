@@ -1,4 +1,4 @@
-"""`bench replay`, `view`, `export` and `compensate`: what is done with a model that `diagnose` wrote."""
+"""`bench replay` and `export`: use of a model that `diagnose` wrote."""
 
 from __future__ import annotations
 
@@ -11,7 +11,15 @@ from typer import Argument, Option
 
 import bench
 from bench.cli import common
-from bench.cli.common import AtOption, AxisOption, BesideRigOption, JointOption, MjcfOption, ReportOption, RigOption
+from bench.cli.common import (
+    AtOption,
+    AxisOption,
+    BesideRigOption,
+    JointOption,
+    MjcfOption,
+    OptionalRigOption,
+    ReportOption,
+)
 from bench.errors import InputError, SimulationError
 from bench.files import held, write_text
 from bench.names import readable
@@ -27,36 +35,71 @@ if TYPE_CHECKING:
 ModelArgument = Annotated[Path, Argument(help="model.toml that diagnose wrote.")]
 #: Name of a joint that no other is given for, as `load_models` has it.
 ALONE = "axis"
+#: Format of a drive's feed-forward tables.
+DRIVE = "drive"
+#: Endings of the files of simulators that take no XML.
+ENDINGS = {"bam": ".json", "isaaclab": ".py", "mjlab": ".py", "newton": ".py"}
 
 
 def replay(
     model: ModelArgument,
-    trace: Annotated[Path, Argument(help="Recording to run it along.")],
+    trace: Annotated[Path | None, Argument(help="Recording to run it along; without, it follows --profile.")] = None,
     out: Annotated[
-        Path,
-        Option(help="File to write: CSV, or joint states for Foxglove and Rerun where it is .mcap."),
-    ],
+        Path | None,
+        Option(help="Signals: a folder, a CSV file, or .mcap with joint states for Foxglove and Rerun."),
+    ] = None,
+    page: Annotated[Path | None, Option(help="Page of the motion to write, for any browser: .html.")] = None,
+    video: Annotated[Path | None, Option(help="Video of the motion to write: .mp4, rendered by MuJoCo.")] = None,
     rig: BesideRigOption = None,
+    profile: Annotated[str, common.profile_option("Without a recording:")] = DEFAULT,
+    start: Annotated[float | None, Option("--from", help="Of page and video: first instant, in s.")] = None,
+    stop: Annotated[float | None, Option("--to", help="Of page and video: last instant, in s.")] = None,
+    slowed: Annotated[float, Option(help="How many times slower the video plays.", min=1.0)] = 1.0,
     axis_name: AxisOption = None,
     report: ReportOption = None,
     mjcf: MjcfOption = None,
     joint: JointOption = None,
     at: AtOption = None,
 ) -> None:
-    """Run a diagnosed model along a recording; write measured and simulated signals."""
+    """Run a diagnosed model along a recording: signals as CSV, motion as a page (--page) or a video (--video)."""
+    shown = page is not None or video is not None
+    if not shown and out is None and report is None:
+        raise InputError("bench replay", "found no output", "allowed: --out FILE, --page FILE.html, --video FILE.mp4")
+    if trace is None and (rig is None or out is not None or report is not None):
+        allowed = "allowed: a recording; or --rig with [drive] and --page, for a profile that the model then follows"
+        raise InputError("TRACE", "missing", allowed)
+    if video is not None:
+        from bench.view.video import prepare  # before anything imports MuJoCo, which takes its renderer then
+
+        prepare(video)
     of = common.subject(rig, axis_name, mjcf, joint, at, trace)
-    replayed = bench.replay(model, of.read(trace), of.rig)
-    if out.suffix.lower() == ".mcap":
-        _joint_states(replayed, out, of.joint or ALONE)
-    else:
-        write_text(out, replayed.csv())
+    replayed = None if trace is None else bench.replay(model, of.read(trace), of.rig)
+    if replayed is not None and trace is not None:
+        out = _written(replayed, model, readable(trace.name), of.joint or ALONE, out, report)
+    if shown:
+        _show(model, trace, replayed, of, profile, (start, stop), slowed, page, video)
+    if replayed is not None and not (shown and out is None and report is None):
+        common.say(replayed.summary)
+    common.list_files([out, report, page, video])
+    if replayed is not None and not shown:
+        common.warn(replayed.warnings)
+
+
+def _written(
+    replayed: Replay, model: Path, name: str, joint: str, out: Path | None, report: Path | None
+) -> Path | None:
+    """Write signals and report of a replay; the file of signals."""
+    if out is not None:
+        out = common.placed(out, "replay.csv")
+        if out.suffix.lower() == ".mcap":
+            _joint_states(replayed, out, joint)
+        else:
+            write_text(out, replayed.csv())
     if report is not None:
         from bench.report.simulation import replay as document_of
 
-        common.write_page(report, document_of(replayed, model, readable(trace.name)))
-    common.say(replayed.summary)
-    common.list_files([out, report])
-    common.warn(replayed.warnings)
+        common.write_page(report, document_of(replayed, model, name))
+    return out
 
 
 def _joint_states(replayed: Replay, out: Path, joint: str) -> None:
@@ -72,33 +115,20 @@ def _joint_states(replayed: Replay, out: Path, joint: str) -> None:
     write_joint_states(out, joint, replayed.time, topics)
 
 
-def view(
-    model: ModelArgument,
-    trace: Annotated[Path | None, Argument(help="Recording to run it along; without, it follows a profile.")] = None,
-    out: Annotated[Path, Option(help="Page to write, for any browser: .html, all in one file.")] = Path("view.html"),
-    rig: BesideRigOption = None,
-    profile: Annotated[str, common.profile_option("Without a recording:")] = DEFAULT,
-    start: Annotated[float | None, Option("--from", help="Show it from this time on, in s.")] = None,
-    stop: Annotated[float | None, Option("--to", help="Show it up to this time, in s.")] = None,
-    video: Annotated[Path | None, Option(help="Video to write: .mp4, rendered by MuJoCo.")] = None,
-    slowed: Annotated[float, Option(help="How many times slower the video plays.", min=1.0)] = 1.0,
-    axis_name: AxisOption = None,
-    mjcf: MjcfOption = None,
-    joint: JointOption = None,
-    at: AtOption = None,
+def _show(
+    model: Path,
+    trace: Path | None,
+    replayed: Replay | None,
+    of: Subject,
+    profile: str,
+    between: tuple[float | None, float | None],
+    slowed: float,
+    page: Path | None,
+    video: Path | None,
 ) -> None:
-    """Show a diagnosed model moving, with the measured axis as a ghost: in a browser, or as a video."""
-    if trace is None and rig is None:
-        raise InputError(
-            "TRACE", "missing", "allowed: a recording, or --rig with [drive], whose profile it then follows"
-        )
-    if video is not None:
-        from bench.view.video import prepare  # before anything imports MuJoCo, which takes its renderer then
-
-        prepare(video)
-    of = common.subject(rig, axis_name, mjcf, joint, at, trace)
-    shown, free, warnings = _shown(model, trace, of, profile)
-    shown = shown.between(start, stop)
+    """Write a page and a video of a model in motion, with the measured axis as a ghost; then warn."""
+    shown, free, warnings = _shown(model, trace, replayed, of, profile)
+    shown = shown.between(*between)
     robot = None if of.along is None or trace is None else of.along(trace)
     if video is not None:
         from bench.report.terminal import progress
@@ -108,23 +138,24 @@ def view(
         scene = Scene.of(shown, of.rig.load) if robot is None else Scene.of_robot(robot)
         with progress(f"rendering {video.name}") as done:
             write_video(video, shown, scene, slowed, done)
-    from bench.report.simulation import view as document_of
+    if page is not None:
+        from bench.report.simulation import view as document_of
 
-    along = readable(profile if trace is None else trace.name)
-    common.write_page(out, document_of(shown, model, along, warnings, free, robot))
-    common.list_files([out, video])
+        along = readable(profile if trace is None else trace.name)
+        common.write_page(page, document_of(shown, model, along, warnings, free, robot))
     common.warn(warnings)
 
 
-def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[SideBySide, FreeRun | None, list[str]]:
+def _shown(
+    model: Path, trace: Path | None, replayed: Replay | None, of: Subject, profile: str
+) -> tuple[SideBySide, FreeRun | None, list[str]]:
     """Model and ghost, how far off the model runs by itself, and what the user should know before believing them."""
     from bench.view.free_running import BARE, free_run, restarted, without_effects
     from bench.view.side_by_side import along_profile, along_recording
 
-    if trace is None:
+    if trace is None or replayed is None:
         return along_profile(model, of.rig, profile), None, []
     recording = of.read(trace)
-    replayed = bench.replay(model, recording, of.rig)
     others, without = restarted(model, recording, of.rig), without_effects(model, recording, of.rig)
     others = others if without is None else {BARE: without, **others}
     shown, free, warnings = replace(along_recording(model, replayed), others=others), None, list(replayed.warnings)
@@ -141,11 +172,11 @@ def _shown(model: Path, trace: Path | None, of: Subject, profile: str) -> tuple[
 
 def export(
     model: ModelArgument,
-    out: Annotated[Path, Option(help="File to write.")],
+    out: Annotated[Path, Option(help="File to write, or a folder.")],
     mjcf: Annotated[Path | None, Option(help="MJCF or URDF of the robot that has the joint.")] = None,
     joint: Annotated[list[str] | None, Option(help="Joint that the model goes onto; of several, repeatable.")] = None,
     to: Annotated[
-        str | None, Option(help="Simulator it is for: mjcf, or without --mjcf mjlab, bam, isaaclab, newton.")
+        str | None, Option(help="Format: mjcf; or without --mjcf mjlab, bam, isaaclab, newton, or drive with --rig.")
     ] = None,
     actuator: Annotated[str | None, Option(help="With --to bam: BAM's name of the actuator.")] = None,
     snippet: Annotated[bool, Option("--snippet", help="A default class and a body with only this joint.")] = False,
@@ -156,14 +187,20 @@ def export(
     with_assets: Annotated[
         bool, Option("--with-assets", help="Copy meshes and textures into assets, next to the file.")
     ] = False,
+    rig: OptionalRigOption = None,
+    profile: Annotated[str, common.profile_option("With --to drive, the motion that tests the tables:")] = DEFAULT,
 ) -> None:
-    """Put a diagnosed model into a robot's MJCF, or write it as another simulator takes it, or ranges of its values."""
+    """Write a diagnosed model for a robot's MJCF, for another simulator or for a drive, or ranges of its values."""
     from bench.plant.model_file import load_models
 
+    if to == DRIVE or rig is not None:
+        _feedforward(model, rig if to == DRIVE else None, out, profile)
+        return
     alone = snippet or (to == "mjcf" and mjcf is None)  # without a robot, MJCF is the joint alone
     if [alone, mjcf is not None, ranges is not None, to not in (None, "mjcf")].count(True) != 1:
         found = "found none or several of --mjcf, --snippet, --ranges, --to"
         raise InputError("bench export", found, "allowed: one of them, e.g. `--snippet`")
+    out = common.placed(out, _file_name(to, mjcf, ranges))
     if with_assets and mjcf is None:
         raise InputError("--with-assets", "found without --mjcf", "allowed: with a robot's MJCF, `--mjcf ROBOT.xml`")
     models, lines = load_models(model, joint or ()), []
@@ -185,6 +222,13 @@ def export(
     for line in lines:
         common.say(line)
     common.list_files([out])
+
+
+def _file_name(to: str | None, mjcf: Path | None, ranges: Path | None) -> str:
+    """Name of the exported file in a folder."""
+    if mjcf is not None:
+        return f"{mjcf.stem}_id{mjcf.suffix}"
+    return f"joint{'.json' if ranges is not None else ENDINGS.get(to or '', '.xml')}"
 
 
 def _robot(
@@ -221,13 +265,11 @@ def _robot(
     return text, list(lines)
 
 
-def compensate(
-    model: ModelArgument,
-    rig: RigOption,
-    out: Annotated[Path, Option(help="Folder for the tables.")],
-    profile: Annotated[str, common.profile_option("Motion to track:")] = DEFAULT,
-) -> None:
-    """Make of a diagnosed model what its drive feeds forward; say how much better it tracks with it, by simulation."""
+def _feedforward(model: Path, rig: Path | None, out: Path, profile: str) -> None:
+    """Write what a drive feeds forward, as tables in a folder, and show how much better it tracks with them."""
+    if rig is None:
+        allowed = "allowed: both, for feed-forward tables: `--to drive --rig RIG --out FOLDER`"
+        raise InputError("--to drive and --rig", "found one of them", allowed)
     import numpy as np
 
     from bench.export.feedforward import DriveUnits, feedforward, tracking
@@ -255,5 +297,5 @@ def compensate(
             write_text(out / name, text)
     common.printed(tracking_table(f"{axis.name}: {profile}", before, after, kind))
     if found.left:
-        common.say(f"left to the drive's feedback: {', '.join(found.left)}")
+        common.say(f"without feed-forward, for the drive's feedback: {', '.join(found.left)}")
     common.list_files(out / name for name in files)

@@ -1,4 +1,4 @@
-"""`bench inspect`, `identify`, `diagnose`, `robot`, `friction`, `limits` and `fleet`: what recordings tell."""
+"""`bench inspect`, `identify`, `diagnose`, `robot`, `friction`, `limits` and `fleet`: results of recordings."""
 
 from __future__ import annotations
 
@@ -28,13 +28,15 @@ def inspect(
     file: Annotated[Path, Argument(metavar="TRACE", help="Recording of any known format.")],
     rig: common.OptionalRigOption = None,
     json: common.JsonOption = None,
-    out: Annotated[Path | None, Option(help="Picture of every signal: .png, .pdf or .svg.")] = None,
+    out: Annotated[
+        Path | None, Option(help="Picture of every signal: .png, .pdf or .svg; or a folder for page and picture.")
+    ] = None,
     draft: Annotated[Path | None, Option(help="Rig file to write, as far as the recording determines it.")] = None,
     motor: Annotated[str | None, Option(help="For --draft: a motor of the catalogue.")] = None,
     axis_name: common.AxisOption = None,
     report: common.ReportOption = None,
 ) -> None:
-    """Say what a recording holds: every column, what it is likely to be, rate, holes, signals with their range."""
+    """List every column of a recording with its likely signal, and the sampling rate, holes and ranges."""
     from bench.gate.gate import gate
     from bench.report.inspection import inspection, signals_picture
     from bench.report.serial import as_json
@@ -54,11 +56,10 @@ def inspect(
         from bench.rig.given import draft as drafted
 
         write_text(draft, drafted(found, motor, axis_name))
-    if out is not None:
-        common.write_picture(out, signals_picture(recording, how))
+    written = common.write_figure(out, document, lambda: signals_picture(recording, how))
     common.write_page(report, document)
     common.write_json(json, lambda: to_json(found, {"checks": as_json(checks)}))
-    common.tell(document, [out, draft, report], json)
+    common.tell(document, [*written, draft, report], json)
 
 
 def identify(
@@ -152,7 +153,7 @@ def diagnose(
     figures: common.FiguresOption = "png",
     draft: common.DraftOption = None,
 ) -> None:
-    """Find where model and recording disagree, name the missing effects, and show the gap shrink."""
+    """Find the effects that the model is missing, add them, and compare the gap before and after."""
     from bench.effects.present import named
     from bench.report.diagnosis import SCHEMA, diagnosis, diagnosis_json
     from bench.report.terminal import progress
@@ -189,7 +190,7 @@ def robot(
     stand: Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")] = False,
     json: common.JsonOption = None,
 ) -> None:
-    """Identify every joint of a robot from its logs, find what each is missing, and write its MJCF with all of it."""
+    """Identify every joint of a robot from its logs, find missing effects, and write its MJCF with all of them."""
     from bench.effects.present import named
     from bench.plant.robot import joint_units
     from bench.report.parts import provenance
@@ -257,12 +258,14 @@ def friction(
     traces: Annotated[list[Path], Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
     rig: common.BesideRigOption = None,
     json: common.JsonOption = None,
-    out: Annotated[Path | None, Option(help="Figure to write: .png, .pdf or .svg.")] = None,
+    out: Annotated[
+        Path | None, Option(help="Figure to write: .png, .pdf or .svg; or a folder for page and figure.")
+    ] = None,
     axis_name: common.AxisOption = None,
     report: common.ReportOption = None,
     draft: common.DraftOption = None,
 ) -> None:
-    """Tell friction over speed from recordings at one speed each, and name the effect that bends it."""
+    """Measure friction over speed from recordings at one steady speed each, and find the effect that curves it."""
     from bench.friction_map import friction_map
     from bench.report.friction import SCHEMA, friction_json
     from bench.report.friction import friction as document_of
@@ -272,16 +275,18 @@ def friction(
     with common.refusal_as_json(json, SCHEMA):
         found = friction_map([of.read(trace) for trace in traces], axis)
     document = document_of(found, axis.name)
-    common.write_picture(out, document.pictures[0])
+    written = common.write_figure(out, document, lambda: document.pictures[0])
     common.write_page(report, document)
     common.write_json(json, lambda: friction_json(found))
-    common.tell(document, [out, report, draft], json)
+    common.tell(document, [*written, report, draft], json)
 
 
 def limits(
     trace: Annotated[Path, Argument(help="Recording of any known format.")],
     rig: common.BesideRigOption = None,
-    out: Annotated[Path, Option(help="Diagram to write: .png, .pdf or .svg.")] = Path("limits.png"),
+    out: Annotated[Path, Option(help="Diagram to write: .png, .pdf or .svg; or a folder for page and diagram.")] = Path(
+        "limits.png"
+    ),
     axis_name: common.AxisOption = None,
     json: common.JsonOption = None,
     report: common.ReportOption = None,
@@ -299,10 +304,10 @@ def limits(
     else:
         ratio = axis.load.gear_ratio if axis.load is not None else 1.0
         document = envelope_document(envelope_of(recording, axis), readable(trace.name), axis.axis_kind, ratio)
-    common.write_picture(out, document.pictures[0])
+    written = common.write_figure(out, document, lambda: document.pictures[0])
     common.write_page(report, document)
     common.write_json(json, lambda: envelope_json(envelope_of(recording, axis), axis.axis_kind))
-    common.tell(document, [out, report, draft], json)
+    common.tell(document, [*written, report, draft], json)
 
 
 def fleet(

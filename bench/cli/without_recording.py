@@ -1,10 +1,10 @@
-"""`bench demo`, `simulate`, `plan`, `rigs`, `effects`, `report` and `validate`: commands that need no recording."""
+"""`bench demo`, `simulate`, `plan`, `list`, `report` and `validate`: commands that need no recording."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 from typer import Argument, Option
@@ -28,7 +28,7 @@ def demo(
     out: Annotated[Path, Option(help="Folder for trace, truth, model and page.")] = Path("bench_demo"),
     seed: Annotated[int, Option(help="Draws the effect that is hidden.", min=0)] = SHOWN,
 ) -> None:
-    """Hide an effect in a simulated axis, find it, add it to the model, and set truth beside what was found."""
+    """Hide an effect in a simulated axis, find it, add it to the model, and compare the result with the truth."""
     from bench.demo import demo as run_demo
     from bench.report.terminal import progress
 
@@ -40,13 +40,15 @@ def demo(
 
 def simulate(
     rig: RigArgument,
-    out: Annotated[Path, Option(help="Trace to write: .csv, .csv.gz, .parquet or .trace.")],
+    out: Annotated[Path, Option(help="Trace to write: .csv, .csv.gz, .parquet or .trace; or a folder.")],
     profile: Annotated[str, common.profile_option("Motion:")] = DEFAULT,
     seed: Annotated[int, Option(help="Seed of the sensors' noise.", min=0)] = 0,
-    effect: Annotated[list[str] | None, common.effect_option("NAME:key=value,... to add; see bench effects.")] = None,
+    effect: Annotated[
+        list[str] | None, common.effect_option("NAME:key=value,... to add; see bench list effects.")
+    ] = None,
     report: ReportOption = None,
 ) -> None:
-    """Simulate the axis of a rig in MuJoCo; write its trace and, beside it, the truth."""
+    """Simulate the axis of a rig in MuJoCo; write its trace and a file with the true values."""
     from bench.effects.present import parse_effect
     from bench.plant.simulate import write_truth
     from bench.report.terminal import progress
@@ -58,6 +60,7 @@ def simulate(
     with progress(f"simulating {axis.name}") as done:
         present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
         simulated = bench.simulate(axis, profile, seed, progress=done, effects=present)
+    out = common.placed(out, "trace.csv.gz")
     with held(out.parent):  # a trace and its own truth, not that of a run beside this one
         write(simulated.trace, out)
         truth = write_truth(out, simulated.truth)
@@ -71,14 +74,14 @@ def simulate(
 
 def plan(
     rig: RigOption,
-    out: Annotated[Path, Option(help="CSV of the motion, for a controller.")],
+    out: Annotated[Path, Option(help="CSV of the motion, for a controller; or a folder.")],
     wanted: Annotated[
-        str | None, Option("--for", help="NAME:key=value,... of an effect to determine; see bench effects.")
+        str | None, Option("--for", help="NAME:key=value,... of an effect to determine; see bench list effects.")
     ] = None,
     period: Annotated[float, Option(help="Between rows of the CSV in ms.", min=1e-3)] = 1.0,
     profile: Annotated[str | None, common.profile_option("This one, not the best:")] = None,
 ) -> None:
-    """Plan the motion to record inside the rig's limits: the one that tells best, and how well it will."""
+    """Plan the most informative motion within the rig's limits, and predict the intervals that it gives."""
     from bench.effects.present import parse_effect
     from bench.export.feedforward import DriveUnits
     from bench.export.plan import motions
@@ -94,27 +97,46 @@ def plan(
         found = motions(axis, effect, profile)
     best = found[0]
     counted = ((unit.text, unit.factor) for unit in (units.position, units.velocity))
+    out = common.placed(out, "motion.csv")
     write_text(out, best.motion.csv(period * 1e-3, *counted))
     common.printed(plan_table(best))
     common.say(others_line(found))
     common.list_files([out])
 
 
-def rigs(
-    name: Annotated[str | None, Argument(help="A shipped rig, or a rig file of your own; all without.")] = None,
-    out: Annotated[Path | None, Option(help="Copy of the rig file to write.")] = None,
+def list_(
+    what: Annotated[Literal["rigs", "effects"] | None, Argument(help="rigs, or effects; both without.")] = None,
+    name: Annotated[str | None, Argument(help="One of them, or a rig file of your own, to print in full.")] = None,
+    out: Annotated[Path | None, Option(help="Copy of the rig file to write, or a folder for it.")] = None,
 ) -> None:
-    """List the rigs that are shipped, copy one, or say which commands a rig suffices for and all that is missing."""
+    """List shipped rigs and physical effects, print one in full, or copy a rig file."""
+    from bench.report.effects import effect_page, effects_table
+
+    if out is not None and (what != "rigs" or name is None):
+        from bench.rig.rig import shipped
+
+        raise InputError("--out", "found without a rig", f"allowed: `bench list rigs NAME`, of {', '.join(shipped())}")
+    if what != "effects":
+        _rigs(name, out)
+    if what is None:
+        common.say("")
+    if what != "rigs" and name is None:
+        common.printed(effects_table())
+    elif what == "effects" and name is not None:
+        common.say(effect_page(name))
+
+
+def _rigs(name: str | None, out: Path | None) -> None:
+    """List shipped rigs, or print which commands a rig file suffices for and what it is missing, and copy it."""
     from bench.rig.rig import lacking, rig_file, shipped, without_constant
 
     if name is None:
-        if out is not None:
-            raise InputError("--out", "found without a rig", f"allowed: with one of {', '.join(shipped())}")
         for stem, path in shipped().items():
             common.say(f"{stem:12} {bench.load_rig(path).name}")
         return
     path = rig_file(name)
     if out is not None:
+        out = common.placed(out, path.name)
         write_text(out, read_text(path, "a rig file"))
         common.list_files([out])
     rig = bench.load_rig(path)
@@ -126,24 +148,12 @@ def rigs(
         common.say(f"note: {remark}")
 
 
-def effects(
-    name: Annotated[str | None, Argument(help="Effect whose page to print; all of them as a table without.")] = None,
-) -> None:
-    """List the physical effects the bench knows, or print the page of one: equation, quantities, source."""
-    from bench.report.effects import effect_page, effects_table
-
-    if name is None:
-        common.printed(effects_table())
-    else:
-        common.say(effect_page(name))
-
-
 def report(
     folders: Annotated[list[Path], Argument(metavar="DIR...", help="Folders that --out of a command wrote.")],
     script: Annotated[Path | None, Option(help="Script file to write that the pages share, for many of them.")] = None,
     opened: Annotated[bool, Option("--open", help="Open the pages in the browser.")] = False,
 ) -> None:
-    """Make report.html of folders anew, from the report.json that lies in each."""
+    """Write report.html of folders again, from the report.json in each."""
     from bench.report.publish import rebuild
 
     written = rebuild(folders, script)
@@ -171,7 +181,7 @@ def validate(
     json: JsonOption = None,
     out: Annotated[Path | None, Option(help="Folder for page, tables, figures and JSON.")] = None,
 ) -> None:
-    """How far off numbers are, how often intervals and names hold: by Monte Carlo, or of effects in your recording."""
+    """Measure errors, coverage of intervals and rates of detection by simulation, or in your own recording (--into)."""
     from bench.report.parts import provenance
     from bench.report.terminal import progress
     from bench.report.validation import validation, validation_json, write_validation

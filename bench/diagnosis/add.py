@@ -81,7 +81,7 @@ class Added:
         compared: whether the holdout is of this axis.
         closed_loop: velocity gap under the drive of the rig, without and with the effect that is visible only there -
             rad/s (m/s); None without such an effect.
-        refused: why a parameter is not determined beside the effects, by its name; the model is then the last that is.
+        refused: why a parameter is not determined with the effects, by its name; the model is then the last that is.
         unknown: the effect that remains, tabulated; None where none does, or held-out motion does not confirm it.
     """
 
@@ -112,7 +112,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
     """Try every effect, keep those that held-out motion confirms, and refine their model.
 
     Raises:
-        UndeterminedError: nothing is missing, and the recording does not determine the inertia, or the load's.
+        UndeterminedError: no missing effect was found, and the recording does not determine the inertia, or the load's.
     """
     found = suspects.fitted
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
@@ -176,7 +176,7 @@ def everywhere(balance: Balance, other: Rows | None) -> bool:
 
 
 def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError]:
-    """Why the inertia, and with it the load's, is not determined beside the effects of a fit, by name."""
+    """Why the inertia, and with it the load's, is not determined together with the effects of a fit, by name."""
     found, rig = recordings.base(uncertain(fitted)), recordings.rig
     masses = found | load_inertia(found, rig)
     return refused_masses(masses, rig, clipped(recordings.trace, rig))
@@ -186,7 +186,7 @@ def last_determined(recordings: Recordings, extension: Extension, policy: Policy
     """The last stage that determines the inertia; None where none does because of what is missing from the model.
 
     Raises:
-        UndeterminedError: nothing is missing, and a mass is not determined.
+        UndeterminedError: no missing effect was found, and a mass is not determined.
     """
     for stage in reversed(extension.stages):
         refused = refusals(recordings, stage.fitted)
@@ -200,7 +200,7 @@ def last_determined(recordings: Recordings, extension: Extension, policy: Policy
 
 
 def holding(extension: Extension, modelled: Extension | None, recordings: Recordings) -> VelocityGaps:
-    """Velocity gaps under a cascade that holds every model of an extension to the recording, `modelled` the last."""
+    """Velocity gaps under a cascade that keeps every model of an extension to the recording, `modelled` the last."""
     if modelled is None or modelled.model is None:
         return VelocityGaps(BANDWIDTH, extension.stages[0].fitted.base.inertia if modelled else None)
     top = float(np.abs(measured_velocity(recordings.trace)).max())
@@ -218,7 +218,7 @@ def rejection(
     """Index of the last effect that held-out motion contradicts, with the reason; None if it contradicts none.
 
     The torque gaps come first, as they cost no simulation. Where they contradict none, what is shown in the end is
-    simulated beside the judged model: side by side that costs hardly more.
+    simulated together with the judged model: side by side that costs hardly more.
     """
     judged, judge = replace(extension, recording=held_out.fitted), held_out.recorded
     floor = NULL * white_noise(measured_velocity(recordings.trace))
@@ -276,7 +276,7 @@ def closed_loop_gap(recordings: Recordings, extension: Extension) -> tuple[float
     makes good what the model lacks - but for what happens in the drive itself it is the only place to look: a voltage
     limit acts before the recorded current, with which the held model is fed.
 
-    None where there is no such effect, the rig describes no drive, the recording holds no references, or the simulation
+    None where there is no such effect, the rig describes no drive, the recording has no references, or the simulation
     diverges.
     """
     index = under_drive(extension)

@@ -49,7 +49,7 @@ from bench.trace.motion import measured_velocity
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
-#: File of a saved diagnosis that holds all of it.
+#: File of a saved diagnosis that contains all of it.
 PACKED = "diagnosis.npz"
 #: Speed gap of a model that matches: in noise floors, and as share of the RMS speed, which filters and the steps of the
 #: integration resolve.
@@ -127,14 +127,14 @@ class Diagnosis(Presented):
     Attributes:
         verdict, effects, parameters: as the contract has them.
         objections: the criteria by which the model is incomplete; () unless something remains.
-        probabilities: of sets of names, and that none of the catalogue's is right.
+        probabilities: of sets of names, and that that the effect is unknown.
         where: shares of the gap before any effect; unexplained_share, unexplained_where: of the residual.
         torque, velocity: gaps before and after.
         steps: the bare axis, then the model after each addition, the tables of an unknown effect last.
         holdout: whether it is of the same axis, and in what it differs.
-        next_experiment: that tells apart what this recording does not.
+        next_experiment: that distinguishes what this recording does not.
         rejected: names that held-out motion contradicts, or whose size is not determined, each with the reason.
-        refused: why a parameter is not determined beside the effects, by its name; the model is the last that has all.
+        refused: why a parameter is not determined with the effects, by its name; the model is the last that has all.
         stopped: what ended the search before it was done; None if nothing did.
         unknown_effect: what remains, as tables of the model; None where held-out motion confirms none.
         model, balance: with all effects; no model where MuJoCo cannot have them. Only the model has the tables.
@@ -143,7 +143,7 @@ class Diagnosis(Presented):
         recordings, between: J, K_w and K_0 of each of several recordings alone, and their spread; () and {} of one.
         warnings: what a user should know.
         checks: what the gate found before the fit.
-        dead_time: by how much torque and motion are apart, if that is more than a sample; None if it is not.
+        dead_time: by how much torque is later than motion, if that is more than a sample; None if it is not.
     """
 
     verdict: str
@@ -428,7 +428,7 @@ def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, 
 
 
 def against(effect: Effect, added: Added) -> Reason:
-    """Why an effect is not in the model: the first of these criteria that holds."""
+    """Why an effect is not in the model: the first of these criteria that applies."""
     suspects, rejected = added.suspects, dict(added.rejected)
     if effect.name not in suspects.excluded and effect.name in rejected:
         return rejected[effect.name]
@@ -442,7 +442,7 @@ def against(effect: Effect, added: Added) -> Reason:
 
 
 def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> list[str]:
-    """Warnings: less inertia than the rotor alone has, or a signal that stands at the end of its range."""
+    """Warnings: less inertia than the rotor alone has, or a signal that stays at the end of its range."""
     inertia, rotor = parameters.get("moment_of_inertia"), rig.motor.rotor_inertia
     if inertia is None or rotor is None or inertia.unit != "kg*m**2" or inertia.ci95[1] >= rotor:
         return clipped(trace, rig)
@@ -454,7 +454,7 @@ def suspicions(trace: Trace, rig: Rig, parameters: Mapping[str, Parameter]) -> l
 
 
 def delayed(late: DeadTime | None, fitted: Fit) -> Iterator[str]:
-    """That torque and motion are more than a sample apart, unless the model has it as the lag that it is."""
+    """That torque and motion differ by more than a sample, unless the model has it as the lag that it is."""
     if late is not None and fitted.hypothesis.shift:
         yield f"{late}; the model contains it"
     elif late is not None and late.kind != "first_order_lag":

@@ -38,9 +38,9 @@ from bench.trace.trace import Trace, less_known
 #: Bandwidth of the cascade by which a model tracks a recording - rad/s -, and the largest that a model may need
 #: (docs/diagnose.md).
 BANDWIDTH, MOST = 20.0, 100.0
-#: Phase from which on a wave of position out of phase leaves more torque than no wave, |exp(j*phase) - 1| > 1 - rad.
+#: Phase from which on a wave of position out of phase has a larger residual than no wave, |exp(j*phase) - 1| > 1 - rad.
 OUT_OF_PHASE = math.pi / 3.0
-#: What acts where the position says: waves, and parts that meet.
+#: What acts by position: waves, and parts that meet.
 Placed = Wave | Contact
 #: Number of speeds at which the slope of friction is evaluated, and the lowest as share of the top speed.
 SPEEDS, SLOWEST = 400, 1e-3
@@ -287,7 +287,7 @@ class HeldOut:
     """Motion by which additions are judged and that no judged fit uses: a holdout, or a third of the recording.
 
     Cut by time, a third may go one way where the rest goes the other: an axis may stand for half a recording. So the
-    moving rows are cut into blocks, each long beside the filter and what it correlates, and a block is held out if that
+    moving rows are cut into blocks, each longer than the filter and what it correlates, and a block is held out if that
     brings the part nearer to a third of each regime: in each direction of slow, middle and fast rows, and of those at
     low, middle and high positions (minimisation: S. J. Pocock, R. Simon, Biometrics 31, 1975, 103-115). Rows within the
     filter's reach of a border are in neither part. A part judges only what it determines.
@@ -326,7 +326,7 @@ class HeldOut:
 
     @classmethod
     def third(cls, recordings: Recordings, kept: NDArray[np.bool_] | bool = False) -> HeldOut:
-        """A third of every regime, in no block that holds one of the rows `kept` (m,), judges a fit to the rest."""
+        """A third of every regime, in no block with one of the rows `kept` (m,), judges a fit to the rest."""
         trace, rig, rows = recordings.trace, recordings.rig, recordings.rows
         smooth, count = rows.conditioning.filter, rows.effort.size
         shortest = REACHES * smooth.margin // smooth.stride
@@ -348,16 +348,16 @@ class HeldOut:
         return cls(apart(False), apart(True), recorded, seen)
 
     def lacks(self, whole: Fit, index: int) -> bool:
-        """Whether the fitted rows do not tell the strengths of a term of a fit to the recording."""
+        """Whether the fitted rows do not determine the strengths of a term of a fit to the recording."""
         own, columns = whole.owners == index, lay_out(self.fitted, whole.hypothesis, whole.found).columns
         return not _information(columns, own) > INDEPENDENT_SHARE * _information(whole.columns, own)
 
     def determines(self, judged: Fit, whole: Fit, index: int) -> bool:
-        """Whether fitted and judging rows both tell the strengths of a term that have a column.
+        """Whether fitted and judging rows both determine the strengths of a term that have a column.
 
         Args:
             judged: to the fitted rows.
-            whole: the same hypothesis fitted to the recording, beside which a part may be ten times as uncertain.
+            whole: the same hypothesis fitted to the recording; compared with it a part may be ten times as uncertain.
             index: of the term.
         """
         own = whole.owners == index
@@ -369,7 +369,7 @@ class HeldOut:
 
 
 def _information(columns: Array, own: NDArray[np.bool_]) -> float:
-    """Least information of columns (m, p) about a combination of some of them beside the others, in its noise power."""
+    """Least information of columns (m, p) about a combination of some of them given the others, in its noise power."""
     others = np.linalg.qr(columns[:, ~own])[0]
     left = columns[:, own] - others @ (others.T @ columns[:, own])
     return float(np.linalg.eigvalsh(left.T @ left)[0])

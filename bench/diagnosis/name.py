@@ -1,6 +1,6 @@
-"""Name what is missing: in the torque balance by search, elsewhere by what the recording says of drive and sensor.
+"""Name what is missing: in the torque balance by search, elsewhere by what the recording shows of drive and sensor.
 
-Events stand out of what a search leaves, whatever that is: no name for the rest is needed to see them.
+Events exceed the residual of a search, whatever that is: no name for the rest is needed to see them.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     """The likeliest names of those that a search finds and their neighbours, and what the signals show directly.
 
     An effect whose size the recording does not determine is not found: the search is repeated without it. It is
-    repeated where torque and speed are apart by a delay, too, which is then undone.
+    repeated where torque and speed differ by a delay, too, which is then undone.
     """
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     direct, unsized = frozenset(effect.name for effect in kept), dict[str, Reason]()
@@ -159,10 +159,10 @@ def tried(searched: Search, result: Fit) -> dict[str, Mapping[Effect, Any]]:
 
 
 def delay(fitted: Fit, policy: Policy) -> float:
-    """By how much torque and speed are surely apart beyond the bound of their shift - s -; else 0.
+    """By how much torque and speed surely differ beyond the bound of their shift - s -; else 0.
 
-    A lag is an effect, so effects are searched within the bound first. 0 beside a lag, too, and where more than noise
-    is left without the bound: what a model lacks may look like a delay.
+    A lag is an effect, so effects are searched within the bound first. 0 with a lag, too, and where more than noise
+    remains without the bound: what a model lacks may look like a delay.
     """
     if BASE.index(MISALIGNMENT) not in fitted.held or fitted.hypothesis.of_kind(Lag):
         return 0.0
@@ -190,7 +190,7 @@ def without_size(fitted: Fit, recordings: Recordings) -> dict[str, Reason]:
 
 
 def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:
-    """The fit with the events that stand out of its remainder, each beside a parabola of what is left around it."""
+    """The fit with the events that exceed its remainder, each with a parabola of the residual around it."""
     if not policy.remains(fitted):
         return fitted
     for effect in (each for each in effects if isinstance(each, Occasional)):
@@ -200,7 +200,7 @@ def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:
 
 
 def _with_event(fitted: Fit, effect: Occasional, apart: Standout, policy: Policy) -> Fit:
-    """With an event that saves more than chance does, and beside whose torque little is left around it."""
+    """With an event that saves more than chance does, with little residual around its torque."""
     term = Term(effect, apart.shape, around=apart.around)
     after = shaped(fitted, fitted.hypothesis.plus(term), len(fitted.terms))
     own = after.owners == len(fitted.terms)
@@ -216,7 +216,7 @@ def _with_event(fitted: Fit, effect: Occasional, apart: Standout, policy: Policy
 def named(
     recordings: Recordings, fitted: Fit, detected: Mapping[Effect, Detected], policy: Policy
 ) -> tuple[list[NamedEffect], dict[str, Parameter]]:
-    """Effects of a torque balance and outside of it with their quantities, and J, K_w, K_0 beside them."""
+    """Effects of a torque balance and outside of it with their quantities, together with J, K_w, K_0."""
     numbers, others = uncertain(fitted), recordings.within_tolerance(fitted)
     hinted, over_noise = hint(fitted, catalogue().values()) or fitted, unbiased(fitted)
     moved = {} if fitted.depends is None else fitted.depends.moved
@@ -266,7 +266,7 @@ def alike(fitted: Fit, index: int, policy: Policy) -> tuple[str, ...]:
 def _gain(effects: Sequence[NamedEffect], fitted: Fit) -> float:
     """Torque per reading at the end of the recording over that at its start, where effects change it.
 
-    The rig does not say at which moment its torque constant holds, so all torques may be by as much less.
+    The rig does not state when its torque constant is valid, so all torques may be by as much less.
     """
     inertia, viscous, coulomb = (fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB))
     axis, gain = Axis(inertia, inertia, viscous, coulomb, math.inf), 1.0

@@ -1,6 +1,6 @@
 """The motion that best distinguishes two explanations: both models are simulated along every profile of the rig.
 
-Two explanations remain if names are ambiguous, if a rival leaves hardly more of the torque than the named effect, or if
+Two explanations remain if names are ambiguous, if an alternative has hardly more residual than the named effect, or if
 motion in one direction does not separate dry friction from a constant torque. The criterion is the torque that one
 model would miss on the other's recording,
 
@@ -39,7 +39,7 @@ from bench.trace.motion import measured_velocity
 
 #: Least duration of a recording - s: a shorter profile is repeated.
 LONG_ENOUGH = 4.0
-#: Ratio of residuals, with a rival to with the named effect, below which both explanations remain.
+#: Ratio of residuals, with an alternative to with the named effect, below which both explanations remain.
 NEARLY = 1.1
 #: Least separation of an experiment, in noise floors.
 TELLS = 3.0
@@ -60,7 +60,7 @@ class NextExperiment:
         speed, acceleration: highest of it - rad/s, rad/s**2 (m/s, m/s**2).
         duration: of one run - s.
         repetitions: of it, one after the other.
-        tells_apart: the named effect and its rival.
+        tells_apart: the named effect and its alternative.
         separation: of the two, over the noise floor.
         reason: why it is needed.
         motion: with repetitions, at a coarse tick.

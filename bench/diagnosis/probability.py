@@ -1,20 +1,20 @@
-"""How likely each set of names is, and that none of the catalogue's is right.
+"""How likely each set of names is, and that of an unknown effect.
 
 A hypothesis about an axis is a set of effects with their shapes, some of them of no catalogue. It is held by what it
-leaves beyond noise, on the rows whose torque every hypothesis determines, or on all where these are fewer than half,
+residual beyond noise, on the rows whose torque every hypothesis determines, or on all where these are fewer than half,
 
     E = max(v - f**2, 0) + BESIDE_NOISE*f**2
 
-v - mean squared residual; f - noise floor, its colour that of the hypothesis that leaves least, as each one's own would
+v - mean squared residual; f - noise floor, its colour that of the hypothesis of least residual, as each one's own would
 turn a difference in colour into evidence. A holdout adds what a hypothesis, of the strengths that the recording
-gave, leaves of it beyond twice what the best one does. Then
+gave, has of it beyond twice what the best one does. Then
 
     ln P = -remaining*(max(U, LEAST) + B) - over*min(V, MUCH) - number*numbers + constant
 
 U, V - logarithm of E relative to the bare axis and relative to noise alone. V counts all rows for a hypothesis that
 determines all of them: without impacts it has to explain the rows next to impacts, too. B - logarithm of v/f**2 where
 that is negative and the residual of the bare axis exceeds noise, else 0: the true noise is then weaker than its
-estimate f. numbers - fitted numbers. A hypothesis with an effect from outside the catalogue has the weight `outside`;
+estimate f. numbers - fitted numbers. A hypothesis with an unknown effect has the weight `outside`;
 these hypotheses and a constant weight for those that were not tried make up the unknown effect. A name next to such an
 effect counts if the residual without it is at least twice as large, as an outside effect can replace smaller ones. The
 weights, of `bench.diagnosis.policy`, maximise the likelihood of recordings whose truth is known
@@ -51,7 +51,7 @@ UNSURE = 2.0
 RESCALED = 0.5
 #: Probability of a hypothesis with a decoy below which the effects next to the decoy are not counted.
 LITTLE = 0.01
-#: Least of U: what is left is no more than noise.
+#: Least of U: the residual is no more than noise.
 LEAST = -9.0
 #: Largest V that counts: real axes leave more than noise whatever is named.
 MUCH = 3.0
@@ -67,9 +67,9 @@ class Probabilities:
 
     Attributes:
         sets: probability of each set of names of the torque balance, likeliest first; the empty one: it lacks nothing.
-        none: probability that it lacks something and none of the catalogue is it.
+        none: probability that it lacks something and the effect is unknown.
         detected: names that the signals show directly.
-        with_unknown: probability that each name is there with an effect from outside the catalogue, a part of `none`.
+        with_unknown: probability that each name is there with an unknown effect, a part of `none`.
         fits: the best of each set, as long as they are searched; what is stored of them keeps none.
     """
 
@@ -101,7 +101,7 @@ class Probabilities:
 
     @property
     def nothing(self) -> float:
-        """Probability that nothing is missing."""
+        """Probability that no effect is missing."""
         return self.sets.get(frozenset(), 0.0) * (1.0 - DETECTED if self.detected else 1.0)
 
     @property
@@ -169,7 +169,7 @@ class Contender:
         over: the same over BESIDE_NOISE of the noise.
         below: logarithm of its residual power relative to the noise where that is less, else 0.
         numbers: fitted beyond those of the bare axis, and RESCALED for a scale of the torque.
-        outside: whether it has an effect that no catalogue holds.
+        outside: whether it has an unknown effect.
     """
 
     fitted: Fit
@@ -219,7 +219,7 @@ def weighed(visited: Sequence[Fit], holdout: Rows | None, policy: Policy) -> lis
         floor = np.maximum(floor, claimed)
     beyond = _on_holdout(physical, holdout, floor) if holdout is not None else 0.0
     excess, claimed = (np.maximum(of - floor, 0.0) + beyond for of in (power, claimed))
-    left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: what damps it leaves no less for that
+    left = np.log(excess + BESIDE_NOISE * floor[0])  # of one noise: damping it does not lower the residual
     over = np.log1p(claimed / (BESIDE_NOISE * floor))
     rescaled = [RESCALED * each.layout.rescaling.size for each in physical]
     numbers = [freedom(each) - freedom(visited[0]) + more for each, more in zip(physical, rescaled, strict=True)]
@@ -230,7 +230,7 @@ def weighed(visited: Sequence[Fit], holdout: Rows | None, policy: Policy) -> lis
 
 
 def _on_holdout(physical: Sequence[Fit], holdout: Rows, floor: Array) -> Array:
-    """What each hypothesis leaves of a holdout beyond the best one, by the strengths of the recording (h,).
+    """The residual of each hypothesis on a holdout beyond the best one, by the strengths of the recording (h,).
 
     In blocks that some hypothesis explains, as it may hold an event of its own; but who claims that what happens is an
     event has to explain those, too.
@@ -246,9 +246,9 @@ def _on_holdout(physical: Sequence[Fit], holdout: Rows, floor: Array) -> Array:
 
 
 def _blocks(fitted: Fit, holdout: Rows) -> Array:
-    """Mean squares left of a holdout in BLOCKS stretches, each event there or not as it leaves less (b,).
+    """Mean squared residual of a holdout in BLOCKS stretches, each event there or not, whichever is less (b,).
 
-    What the recording does not tell of an event, as when it began while the axis stood, is as leaves less, too.
+    What the recording does not determine of an event, as when it began at standstill, is as fits best, too.
     """
     balance = Balance.of(fitted).repeating(True)
     events = [
@@ -268,7 +268,7 @@ def _blocks(fitted: Fit, holdout: Rows) -> Array:
 
 
 def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy: Policy) -> Probabilities:
-    """Of hypotheses beside each other, the first of them the bare axis, and of names that the signals show directly."""
+    """Of hypotheses together, the first of them the bare axis, and of names that the signals show directly."""
     logs = [each.score(policy) for each in scored]
     weights = np.exp(np.array([*logs, policy.none]) - max(*logs, policy.none))
     shares = (weights / weights.sum()).tolist()
@@ -290,7 +290,7 @@ def probabilities(scored: Sequence[Contender], detected: frozenset[str], policy:
 
 
 def standing(fitted: Fit, policy: Policy) -> list[Effect]:
-    """Effects beside one from outside the catalogue that it cannot make up for."""
+    """Effects next to an unknown one that cannot replace them."""
     own = [(index, term.effect) for index, term in enumerate(fitted.terms) if not term.effect.decoy]
     less = (fit(fitted.rows, fitted.hypothesis.without(index), fitted) for index, _ in own)
     return [
@@ -299,6 +299,6 @@ def standing(fitted: Fit, policy: Policy) -> list[Effect]:
 
 
 def _called(effect: Effect, scope: Scope, called: dict[str, str]) -> str:
-    """The name under which an effect is counted: that of the likeliest one which the recording cannot tell from it."""
+    """The name under which an effect is counted: that of the likeliest one that is ambiguous with it."""
     name = next((called[other] for other in effect.ambiguous(scope) if other in called), effect.name)
     return called.setdefault(effect.name, name)

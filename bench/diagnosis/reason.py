@@ -1,4 +1,4 @@
-"""Why a diagnosis says what it says: a criterion with its figures, which `bench.report.verdict` puts into words."""
+"""The reasons of a diagnosis: a criterion with its figures, which `bench.report.verdict` puts into words."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ class Recordings:
         return (self.like(found.rows) for found in lower)
 
     def steady(self, found: Fit) -> tuple[Recordings, tuple[str, ...]]:
-        """The same at the cut-off at which J, K_w and K_0 stand still beside the effects of a fit, and what moved.
+        """The same at the cut-off at which J, K_w and K_0 no longer change with the effects of a fit, and what moved.
 
         Among the links of a robot: the noise and lags of other joints' speeds enter at high frequency, and the rotor's
         inertia is a small difference.
@@ -149,7 +149,7 @@ class Recordings:
 
 
 def fit_bare(rows: Rows) -> Fit:
-    """The fit of no effect, beside the hum of the mains: what it leaves is the gap."""
+    """The fit of no effect, with the mains interference: its residual is the gap."""
     return with_hum(fit(rows, plain(rows)))
 
 
@@ -161,7 +161,7 @@ def _corrected(trace: Trace, rig: Rig, effect: Lag, found: Detected) -> Trace:
 
 
 def _require_samples(trace: Trace) -> None:
-    """Refuse a recording of which even the narrowest filter leaves too few independent rows."""
+    """Refuse a recording of which even the narrowest filter keeps too few independent rows."""
     needed = math.ceil(INDEPENDENT * 2.0 * math.sqrt(math.pi) * LEAST_WIDTH)
     if len(trace) < needed:
         raise UndeterminedError(

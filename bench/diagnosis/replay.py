@@ -32,7 +32,7 @@ LEFT = 0.2
 
 @dataclass(frozen=True, repr=False)
 class Replay(Shown):
-    """Signals at every sample of a recording, all (n,); nan where the model says nothing.
+    """Signals at every sample of a recording, all (n,); nan where the model predicts nothing.
 
     Attributes:
         time: s.
@@ -59,7 +59,7 @@ class Replay(Shown):
 
     @property
     def summary(self) -> str:
-        """Both gaps in one line; without the one that the model says nothing about."""
+        """Both gaps in one line; without the one that the model does not predict."""
         torque, left = known_rms(self.torque), known_rms(self.torque_residuals)
         velocity, apart = known_rms(self.velocity), known_rms(self.velocity_residuals)
         of_torque = f"torque gap {left:.4g} of {torque:.4g} {self.effort_unit}"
@@ -91,7 +91,7 @@ class Replay(Shown):
         }
 
     def csv(self) -> str:
-        """The contract's CSV, empty cells where the model says nothing."""
+        """The contract's CSV, empty cells where the model predicts nothing."""
         speed, effort = self.speed_unit, self.effort_unit
         head = f"time [s],velocity [{speed}],velocity_simulated [{speed}],torque [{effort}],torque_simulated [{effort}]"
         both = self.velocity, self.velocity_simulated, self.torque, self.torque_simulated

@@ -92,8 +92,8 @@ def between_recordings(
     """The model with all effects, and its parameters, compared to it fitted to each of several recordings alone.
 
     Returns:
-        Its parameters, with intervals that count how recordings differ; J, K_w and K_0 of each recording alone, beside
-        the effects that were found, () of one; their spread, of what at least two tell; and warnings.
+        Its parameters, with intervals that count how recordings differ; J, K_w and K_0 of each recording, with
+        the effects that were found, () of one; their spread, of what at least two determine; and warnings.
     """
     found = dict(parameters)
     if not recordings.trace.joined:
@@ -114,7 +114,7 @@ def between_recordings(
 
 
 def widened(found: Parameter, differ: Excess, own: Sequence[Parameter]) -> Parameter:
-    """A joint value whose interval includes the spread between recordings, as far as averaging leaves it.
+    """A joint value whose interval includes the spread between recordings, as far as averaging does not reduce it.
 
     Args:
         found: with its interval from the recordings' own errors.

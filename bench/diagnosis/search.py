@@ -28,7 +28,7 @@ from bench.fit.fit import Fit, fit, shaped, together
 from bench.fit.hum import with_hum
 from bench.fit.hypothesis import Term, on_other_side, outer_loads
 
-#: Said of a search that its limit ended.
+#: Note on a search that its limit ended.
 LIMIT = "limit of effects reached"
 #: Terms of a set at most: more waves or events fit anything.
 MOST = 12
@@ -41,7 +41,7 @@ LOOKAHEAD = 2
 SCREEN = 4.0
 #: Score below the best one from which on a set is as good as impossible.
 NEGLIGIBLE = 30.0
-#: Most likely sets with an effect whose shape was bent to what was hidden, in which the shape is searched anew.
+#: Most likely sets with an effect whose shape was fitted to what was hidden, in which the shape is searched again.
 AGAIN = 2
 
 
@@ -84,7 +84,7 @@ class Search:
         """Visit sets around the most likely one until none is likelier."""
         best, waits = self.last, 0
         while True:
-            # the shape of what replaces others is bent to an effect that is still hidden: it is searched anew at once
+            # the shape of what replaces others is fitted to an effect that is still hidden: it is searched again
             replacing = any(term.effect.replaces for term in best.terms)
             following = (
                 self.next() if waits <= (LOOKAHEAD if self.policy.remains(best) and not replacing else 0) else None

@@ -34,7 +34,7 @@ from bench.plant.model_file import StoredModel
 from bench.plant.tracking import run_free
 from bench.trace.motion import measured_velocity, windows_of
 
-#: What stands for an unknown effect in the place of a name.
+#: Placeholder for the name of an unknown effect.
 UNKNOWN = "unknown_effect"
 #: Blocks that the motion is cut into, and parts that they are dealt to, each of which is predicted from the others.
 BLOCKS, PARTS = 24, 6

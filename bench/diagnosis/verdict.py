@@ -59,7 +59,7 @@ class Gap:
 
 
 def verdict(added: Added, likely: Probabilities, torque: Gap, velocity: Gap) -> tuple[str, tuple[Reason, ...]]:
-    """The verdict on the effects that were added, and the objections that it rests on, the gravest first.
+    """The verdict on the effects that were added, and the objections that it is based on, the gravest first.
 
     Args:
         added: the effects accepted.
@@ -119,7 +119,7 @@ def undetermined(added: Added, torque: Gap) -> Iterator[Reason]:
 
     One that is minor, as a share between dry and viscous friction, does not count. A phase is wide if it may be
     anywhere in its turn, an instant if it may be anywhere in the recording. Friction as wide counts where the torque
-    that it leaves undetermined is more than noise.
+    that it does not determine is more than noise.
     """
     time = added.recordings.trace.time
     for one in added.effects:

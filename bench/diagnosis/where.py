@@ -16,7 +16,7 @@ from bench.fit.rows import Rows
 
 #: Number of bins of a coordinate, and rows that a bin contains: fewer bins of a short recording.
 BINS, LEAST = 48, 12
-#: Bins of equal width that are drawn where these tell MOST of what the effects explain - of a wave of 24 periods a
+#: Bins of equal width that are drawn where these show MOST of what the effects explain - of a wave of 24 periods a
 #: turn their means keep 98 % -, rows that one has at least, and points of a curve for each bin.
 DRAWN, FEWEST, FINER, MOST = 192, 4, 4, 0.5
 #: Distance of rows in widths of the filter beyond which their noise is uncorrelated: the correlation is exp(-9).
@@ -61,7 +61,7 @@ def where(
     after: Sequence[Array] = (),
     sharp: Array | None = None,
 ) -> list[Where]:
-    """Shares of every coordinate of the gap that a fit leaves, largest first.
+    """Shares of every coordinate of the gap of a fit, largest first.
 
     Args:
         fitted: whose residual is the gap.

@@ -112,7 +112,7 @@ def simulator_file(target: str, models: Mapping[str, StoredModel], actuator: str
     `actuator` is BAM's that makes the torque. InputError: no such simulator, or it does not take such joints.
     """
     if target not in TARGETS:
-        raise InputError("--to", f"found '{target}'", f"allowed: mjcf, {', '.join(TARGETS)}")
+        raise InputError("--to", f"found '{target}'", f"allowed: mjcf, {', '.join(TARGETS)}, drive")
     if actuator is not None and target != "bam":
         raise InputError("--actuator", f"found with --to {target}", "allowed: with --to bam")
     return TARGETS[target]([SimulatedJoint(*each) for each in models.items()], actuator)

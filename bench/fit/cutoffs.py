@@ -108,7 +108,7 @@ class Tried:
     Attributes:
         cutoff: half-power frequency - Hz.
         theta, by_noise: values, and half widths of their intervals of 95 % as noise alone makes them (3,).
-        misfit: half widths from what stands above the noise (3,); asked only where they may decide, as they take long.
+        misfit: half widths from what exceeds the noise (3,); computed only where they may decide, as they take long.
     """
 
     cutoff: float

@@ -54,7 +54,7 @@ TURNS, SETTLED = 8, 0.01
 
 @dataclass(frozen=True)
 class DeadTime:
-    """By how much torque and motion are apart.
+    """By how much the torque is later than the motion.
 
     Attributes:
         delay: as a dead time - s; positive where the torque acts after it is recorded, or the motion is read late.

@@ -46,7 +46,7 @@ class Dependence:
 
 
 def dependence(rows: Rows, laid: Layout, theta: Array, offset: bool = False) -> Dependence | None:
-    """The clearest dependence of what a model leaves; `theta` of its columns, `offset`: whether it has a constant."""
+    """The clearest dependence of a model's residual; `theta` of its columns, `offset`: whether it has a constant."""
     modelled, speed = laid.columns @ theta[: laid.owners.size], rows.values(lambda s: s.velocity)
     load, fast = (values / max(float(np.abs(values).max()), 1e-300) for values in (modelled, speed))
     # each column, and by how much it moves with the noise of the modelled torque

@@ -115,7 +115,7 @@ def refused_masses(
 
     The interval of the inertia contains zero - which it may where the torque is measured behind the rotor, and links
     are light -, or one of them is surely negative. Without an inertia there is no load's;
-    and one that is less than the rotor's alone contradicts what the rig says, whichever of them is wrong.
+    and one that is less than the rotor's alone contradicts the rig, whichever of them is wrong.
     """
     refused: dict[str, UndeterminedError] = {}
     kind, behind_rotor = rig.axis_kind, rig.load is not None and rig.load.behind_rotor

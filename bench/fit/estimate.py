@@ -89,9 +89,9 @@ class Estimate(Presented, Mapping[str, Parameter]):
         warnings: what a user should know before relying on it.
         explained: share of the effort's variance that the model explains; nan if the estimator does not give it.
         checks: results of the gate.
-        recordings: the estimate by each alone, where several were fitted together.
+        recordings: the estimate by each recording, where several were fitted together.
         between: their spread, by name of a quantity that at least two of them determine alone.
-        dead_time: by how much torque and motion are apart, if that is more than a sample; None if it is not.
+        dead_time: by how much torque is later than motion, if that is more than a sample; None if it is not.
         command: how the torque follows its recorded command; None where it is in step, or not recorded.
         motor: constants of the motor, where a voltage is recorded.
         coupling: of motor and load, by name, where positions of both are recorded.
@@ -139,7 +139,7 @@ class Estimate(Presented, Mapping[str, Parameter]):
         """The estimate of a file that `save` wrote, as `bench identify --json` does, or of the folder of its `--out`.
 
         Raises:
-            InputError: no such file, or one that holds none.
+            InputError: no such file, or one without a result.
         """
         path = Path(path) / "identify.json" if Path(path).is_dir() else path
         table = parse_json(read_text(path, "an estimate"), path)

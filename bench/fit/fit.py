@@ -55,7 +55,7 @@ from bench.trace.filter import Column
 ROUNDS = 4
 #: Change of what copies of torque miss, as share of it, at which they are in line with what is found.
 IN_LINE = 0.01
-#: Share of the noise floor by which a row's torque may hang on what the recording does not tell, an impact's instant.
+#: Share of the noise floor by which a row's torque may depend on what is not determined, an impact's instant.
 OPEN_SHARE = 0.3
 #: Standard errors from which a strength is no longer chance: 3 of 1000 by a normal distribution.
 SURE = 3.0
@@ -78,9 +78,9 @@ class Fit:
     Attributes:
         rows: the recording.
         hypothesis, layout: what was fitted, and its columns.
-        theta: (p,): J, K_w, K_0, misalignment, last digit, sines and cosines of hum, then the effects' strengths.
+        theta: (p,): J, K_w, K_0, misalignment, last digit, sines and cosines of the mains, then the effects' strengths.
         held: places of strengths that are at a bound.
-        determined: (m,) rows whose torque the recording determines: not those that hang on the instant of an impact.
+        determined: (m,) rows whose torque the recording determines: not those that depend on the instant of an impact.
     """
 
     rows: Rows
@@ -113,7 +113,7 @@ class Fit:
 
     @cached_property
     def missing(self) -> dict[int, Array]:
-        """What of the reported torque its terms that copy it are not made of."""
+        """The part of the reported torque that its copying terms do not use."""
         return not_reaching(self.hypothesis, self.layout, self.theta)
 
     @cached_property
@@ -124,12 +124,12 @@ class Fit:
 
     @cached_property
     def noise(self) -> Floor:
-        """What noise alone leaves under this model."""
+        """The residual of noise under this model."""
         return Floor(self.rows, self.hypothesis, self.layout, self.theta, self.left)
 
     @property
     def floor(self) -> float:
-        """RMS that sensor noise alone leaves, its colour included - N*m (N)."""
+        """RMS residual of sensor noise, its colour included - N*m (N)."""
         return self.noise.coloured
 
     @property
@@ -270,7 +270,7 @@ class Fit:
         return found.tolist()
 
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
-        """Shapes of an effect with what each would take: by its columns, or fitted anew where it has none."""
+        """Shapes of an effect with what each would explain: by its columns, or fitted again where it has none."""
         if not isinstance(effect, Columns):
             tried = [fit(self.rows, self.hypothesis.plus(Term(effect, shape)), self) for shape in shapes]
             return [Proposal(shape, self.squares - one.squares) for shape, one in zip(shapes, tried, strict=True)]
@@ -315,7 +315,7 @@ class Fit:
 def fit(rows: Rows, hypothesis: Hypothesis, start: Fit | None = None) -> Fit:
     """Least squares of a hypothesis.
 
-    Columns that depend on the strengths of other terms, or on what their copies of torque miss, are made anew until
+    Columns that depend on the strengths of other terms, or on what their copies of torque miss, are made again until
     both are in line with what is found.
 
     Args:
@@ -356,7 +356,7 @@ def _misses_alike(now: Mapping[int, Array], before: Mapping[int, Array]) -> bool
 
 
 def _determined(fitted: Fit) -> NDArray[np.bool_]:
-    """Rows whose modelled torque would be the same within what the recording does not tell (m,)."""
+    """Rows whose modelled torque would be the same within what the recording does not determine (m,)."""
     determined = fitted.determined
     for index, term in enumerate(fitted.terms):
         if isinstance(term.effect, Contact):
@@ -368,7 +368,7 @@ def _determined(fitted: Fit) -> NDArray[np.bool_]:
 
 
 def _without_copies(layout: Layout, hypothesis: Hypothesis) -> dict[int, Array]:
-    """What is left of the torque without the effects that copy it, by the place of each (m,) - N*m (N)."""
+    """The torque that remains without the effects that copy it, by the place of each (m,) - N*m (N)."""
     copies = hypothesis.having(lambda effect: effect.copies_torque)
     if not copies:
         return {}
@@ -381,7 +381,7 @@ def _without_copies(layout: Layout, hypothesis: Hypothesis) -> dict[int, Array]:
 def _balanced(layout: Layout, determined: NDArray[np.bool_] | slice = slice(None)) -> tuple[Array, tuple[int, ...]]:
     """Least squares (p,) within bounds, and the places of what is held at one.
 
-    Torque and speed are not further apart in time than they were latched: a larger shift is a lag, which is an effect.
+    Torque and speed differ in time by no more than the time of latching: a larger shift is a lag, which is an effect.
     """
     columns, effort = layout.columns[determined], layout.effort[determined]
     return bounded(columns.T @ columns, columns.T @ effort, columns.shape[0] * layout.noise, layout.bounds)
@@ -426,7 +426,7 @@ def _taken(own: Array, products: Array, targets: Array) -> Array:
 
 
 def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
-    """The fit with the effect beside what is fitted that explains most, if that is more than chance does; else None.
+    """The fit with one more effect, the one that explains most, if that is more than chance does; else None.
 
     Of the effects those count that are linear in all their quantities, so that no search makes them fit. It is too weak
     to be named, and yet an estimate may be off by it: a torque constant that drifts by 1 % moves J by 0.8 %, a drag

@@ -1,4 +1,4 @@
-"""Mains pick-up: sharp lines at multiples of 50 or 60 Hz are the sensors' hum, not the axis'."""
+"""Mains pick-up: sharp lines at multiples of 50 or 60 Hz are interference of the sensors, not of the axis."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def with_hum(fitted: Fit) -> Fit:
 
 
 def mains(rows: Rows, residual: Array, known: tuple[float, ...] = ()) -> tuple[float, ...]:
-    """Lines of the mains that are known, and those that a residual (m,) of the used rows shows beside - Hz."""
+    """Lines of the mains that are known, and those that a residual (m,) of the used rows shows in addition - Hz."""
     width, duration, found = rows.conditioning.filter.width, rows.scope.duration, list(known)
     edges = np.searchsorted(rows.time, rows.starts[1:])
     pairs = zip(np.split(rows.time, edges), np.split(residual, edges), strict=True)
@@ -81,7 +81,7 @@ class _Turned:
 def _around(recordings: Sequence[_Turned], line: float) -> tuple[Array, Array]:
     """Offsets from a line within BAND - Hz - and the periodogram there, of rows at uneven times (m,) - s.
 
-    The line is turned to zero frequency, where few sums over steps of time are left to transform: a cost that grows
+    The line is turned to zero frequency, where few sums over steps of time are to be transformed: a cost that grows
     with the recording's length, not with its square.
     """
     count = max(int((one.time[-1] - one.time[0]) * RATE) + 1 for one in recordings)

@@ -1,4 +1,4 @@
-"""A hypothesis - which effects there are, of what shape, and what is in the recording beside them - and its columns.
+"""A hypothesis - which effects there are, of what shape, and what else is in the recording - and its columns.
 
 Dry frictions of one axis multiply: what scales the level scales all that other effects add to it.
 
@@ -6,13 +6,13 @@ Dry frictions of one axis multiply: what scales the level scales all that other 
 
 Linear in the strengths only with the other strengths held, as share of K_0. So it is where friction follows the torque
 of a load, which is a matter of other strengths. An outer load - drag, a spring, an unbalance, an event - on the motor
-stands in the balance as it is; on the load of a soft coupling it shakes the coupling first, and its strength also
+is in the balance as it is; on the load of a soft coupling it shakes the coupling first, and its strength also
 drives the load's motion. A fit brings all of these in line.
 
 Among the columns is the last digit of a current that is reported in coarse steps. A current that is rounded errs by up
-to half a step, evenly; one whose fraction is cut off stands half a step nearer to zero on average, which a balance of
+to half a step, evenly; one whose fraction is cut off is half a step nearer to zero on average, which a balance of
 torque takes for friction or saturation. So half a step at most, in the direction of the torque, is a nuisance of the
-recording wherever a step could be seen. What is left is noise (see `bench.fit.solution`).
+recording wherever a step could be seen. The rest is noise (see `bench.fit.solution`).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from bench.fit.rows import Rows, effort_of, known_of
 from bench.trace.filter import Column
 from bench.trace.motion import SIGN_REACH, Conditioning
 
-#: Name of a column: a term of the equation of motion, what a recording has beside, or the index of an effect's term.
+#: Name of a column: a term of the equation of motion, what else a recording has, or the index of an effect's term.
 Name = str | int
 #: Coefficients that a fit found, by the names of their columns.
 Found = Mapping[Name, Sequence[float]]
@@ -86,7 +86,7 @@ class Term:
 
     @property
     def key(self) -> tuple[str, tuple[float, ...]]:
-        """What tells its columns from those of other terms."""
+        """What distinguishes its columns from those of other terms."""
         return self.effect.name, self.shape
 
     def fitted(self, scope: Scope) -> list[int]:
@@ -122,9 +122,9 @@ class Hypothesis:
 
     Attributes:
         terms: in the order in which they were added.
-        hum: frequencies of the mains in this recording's sensors - Hz.
+        hum, mains interference: frequencies of the mains in this recording's sensors - Hz.
         step: between the values of the effort, if its last digit matters; else 0 - N*m (N).
-        shift: by which the torque is taken late, beside the small one that is fitted - s.
+        shift: by which the torque is taken late, in addition to the small one that is fitted - s.
     """
 
     terms: tuple[Term, ...] = ()
@@ -157,7 +157,7 @@ class Hypothesis:
         return replace(self, terms=tuple(terms))
 
     def admits(self, effect: Effect) -> bool:
-        """Whether an effect may come beside these: one coupling, one lag."""
+        """Whether an effect may be added to these: one coupling, one lag."""
         if any(term.effect is effect for term in self.terms) and not effect.repeatable:
             return False
         return not any(isinstance(effect, kind) and self.of_kind(kind) for kind in (Coupling, Lag))
@@ -191,11 +191,11 @@ class Layout:
     """A hypothesis in columns.
 
     Attributes:
-        columns: (m, p): J, K_w, K_0, misalignment, the effort's last digit where it matters, sines and cosines of hum,
+        columns: (m, p): J, K_w, K_0, misalignment, the effort's last digit where it matters, waves of the mains,
             then the effects' in order, each followed by what varies around it.
-        owners: (p,) index of the term a column belongs to, or one of the names of BASE, DIGIT, HUM or AROUND.
+        owners: (p,) index of the term a column belongs to, or one of the names of BASE, DIGIT, "hum" or AROUND.
         effort: (m,) what they are to explain - N*m (N).
-        noise: (p, p) covariance of what the sensors' noise makes of the columns in a row.
+        noise: (p, p) covariance of the columns due to the sensors' noise in a row.
         bounds: lowest and highest value of strengths that are not free, by their places.
         rescaling: places of strengths that rescale the reported torque.
     """
@@ -216,7 +216,7 @@ class Layout:
         return max(float(1.0 + theta[self.rescaling].sum()), 1e-9)
 
     def left(self, theta: Array) -> Array:
-        """Measured less modelled torque (m,), as it would be reported: a scale leaves no less by itself - N*m (N)."""
+        """Measured less modelled torque (m,), as it would be reported: a scale alone does not reduce it - N*m (N)."""
         return (self.effort - self.columns @ theta) / self.acting(theta)
 
 
@@ -236,7 +236,7 @@ def lay_out(
         rows: the recording.
         hypothesis: of it.
         found: coefficients of a fit before, on some of which columns depend: see `depended_on`.
-        missing: what each term that copies torque is not made of, see `not_reaching`.
+        missing: what each term that copies torque does not use, see `not_reaching`.
     """
     seen, late = seen_by(rows, hypothesis), effort_lag(hypothesis)
     moving, resting = delays(rows, hypothesis)
@@ -263,7 +263,7 @@ def lay_out(
     held_by = np.array(owners, dtype=object)
     effort = seen.kept(effort_of, lag=late)[:, 0] if late else seen.effort
     if (moving or late) and seen.stretches[0].signals.known:
-        # as the motion tells it, whose lag is undone; all of it of an effort that was made anew
+        # as the motion shows it, whose lag is undone; all of it of an effort that was made anew
         known = seen.kept(known_of, lag=moving)[:, 0]
         effort = effort - (known if late else known - seen.kept(known_of)[:, 0])
     rescaling = np.flatnonzero(np.isin(held_by, hypothesis.having(lambda effect: effect.rescales_torque)))
@@ -300,7 +300,7 @@ def _of_hum(signals: Signals, lines: tuple[float, ...], starts: tuple[float, ...
 
 
 def _around(seen: Rows, around: tuple[float, ...]) -> Array:
-    """A constant, a ramp and a parabola over a stretch of time and what the filter reaches beside it, else 0 (m, 3).
+    """A constant, a ramp and a parabola over a stretch of time and what the filter reaches next to it, else 0 (m, 3).
 
     Not filtered: what is smooth all the way passes the filter as such, and only its stretch has edges.
     """
@@ -340,7 +340,7 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, found: 
 
 
 def _seen_by_term(seen: Rows, hypothesis: Hypothesis, index: int, found: Found) -> Rows:
-    """The recording with what other terms make that one is made of: dry friction, or a load."""
+    """The recording with the terms from which that one is computed: dry friction, or a load."""
     effect = hypothesis.terms[index].effect
     if effect.scales_friction or isinstance(effect, Bristles):
         seen = _with_friction(seen, hypothesis, index, found)
@@ -388,7 +388,7 @@ def _acting(s: Signals, time: Array, reported: Array, lag: float) -> Array:
 
 
 def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], moving: float) -> Array:
-    """Covariance (p, p) of what the sensors' white noise makes of the columns."""
+    """Covariance (p, p) of the columns due to the sensors' white noise."""
     smooth, effort_noise = rows.conditioning.filter, rows.conditioning.effort_noise
     gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
     noise = np.zeros((owners.size, owners.size))
@@ -408,7 +408,7 @@ def _noise_of_motion(
     """That of acceleration, speed, of which a lag `moving` - s - is undone, and what follows them (2 + c, 2 + c).
 
     A smoothed signal and its derivative are uncorrelated, as G is even and omega*G odd; what follows the motion behind
-    a coupling is not uncorrelated with the motor's acceleration: its transfer says how much of that noise it has.
+    a coupling is not uncorrelated with the motor's acceleration: its transfer determines how much of that noise it has.
     """
     smooth = conditioning.filter
     omega = frequencies(couplings, REACH / smooth.width, FREQUENCIES)
@@ -512,10 +512,10 @@ def _with_load(seen: Rows, hypothesis: Hypothesis, found: Found) -> Rows:
 
 
 def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, found: Found) -> Rows:
-    """The recording as one term more would see it, by what is left (m,) - N*m (N) - and the fit's coefficients.
+    """The recording as one term more would see it, by the residual (m,) - N*m (N) - and the fit's coefficients.
 
-    It sees the modelled torque in the place of the measured. Columns made of the measured torque would hold what a
-    model leaves of it, and so explain it by itself: errors in the variables, for which the modelled torque is the
+    It sees the modelled torque in the place of the measured. Columns computed from the measured torque contain what a
+    model does not explain and explain it by itself: errors in the variables, for which the modelled torque is the
     instrument (W. A. Fuller, Measurement Error Models, 1987, 1.4).
     """
     lag = delays(rows, hypothesis)[1]
@@ -526,7 +526,7 @@ def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, found: Found) -
 
 
 def not_reaching(hypothesis: Hypothesis, layout: Layout, theta: Array) -> dict[int, Array]:
-    """By the place of each term that copies torque: what of the reported one it is not made of (m,) - N*m (N).
+    """By the place of each term that copies torque: the part of the reported one that it does not use (m,) - N*m (N).
 
     That is what no term explains, and what those take that the torque passes before: gains of reading, constant and
     position multiply, and dry friction is caused by the torque that comes of it.

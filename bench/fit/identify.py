@@ -1,6 +1,6 @@
 """The default estimator: least squares of the torque balance without effects, of a recording or of several together.
 
-A recording's first part that moves clearly decides on filter (`bench.fit.cutoffs`) and hum; all parts are summed up,
+A recording's first part that moves clearly decides on filter (`bench.fit.cutoffs`) and mains lines; all are summed up,
 and one without clear motion contributes no rows.
 
 Of several, what one does not determine another may:
@@ -9,7 +9,7 @@ Of several, what one does not determine another may:
 
 theta - J, K_w, K_0 and offset, common to all recordings; theta_k - their estimate from recording k alone; A_k - its
 information: the matrix of its normal equations, scaled to its covariance, with its own shift of torque against speed
-and its own hum eliminated; D - variances between recordings beyond their own errors (`bench.comparison.spread`). With
+and mains lines eliminated; D - variances between recordings beyond their own errors (`bench.comparison.spread`). With
 D = 0 it is the least-squares fit to all recordings (D. Jackson, I. R. White, S. G. Thompson, Statistics in Medicine
 29(12), 2010, 1282-1297). A_k may be singular: a run in one direction determines only the sum of K_0 and offset. Each
 recording keeps its own filter, noise, sample period and source of speed. The interval covers the recordings' own errors
@@ -141,7 +141,7 @@ class Gathered:
         warnings: about the cut-off.
         checks: of all parts.
         first: of its parts that moves clearly.
-        late: by how much torque and motion are apart, if that is more than a sample.
+        late: by how much torque is later than motion, if that is more than a sample.
     """
 
     solution: Solution
@@ -209,7 +209,7 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
 
 
 def _late(found: Solution) -> DeadTime | None:
-    """By how much torque and motion of a solution are apart, if that is more than a sample."""
+    """By how much the torque of a solution is later than its motion, if that is more than a sample."""
     shift = found.hypothesis.shift
     if shift or found.delayed:
         return dead_time(found.rows, replace(found.hypothesis, shift=0.0), shift + found.shift[0])
@@ -255,7 +255,7 @@ def _in_parallel(work: Callable[[Trace], Summed], parts: Iterable[Trace]) -> Ite
 def _measured(equations: NormalEquations, rows: Rows | None) -> tuple[float, float]:
     """Sum of the squares of the measured effort, and its sum; `rows`: all that there are, if they are in memory.
 
-    Beside a robot that is what its motor gave, not the small part that its own inertia and friction are to explain.
+    Within a robot that is what its motor gave, not the small part that its own inertia and friction are to explain.
     """
     if rows is not None and rows.stretches[0].signals.known:
         effort = rows.kept(effort_of)[:, 0]
@@ -395,9 +395,9 @@ class Member:
     Attributes:
         gathered: it summed up.
         terms: that all recordings share: J, K_w, K_0 and, where it is fitted, offset (s,).
-        solution: its own fit, with these columns and its own shift and hum.
+        solution: its own fit, with these columns and its own shift and mains interference.
         theta: coefficients of these in it (s,).
-        matrix: of the normal equations of these, its own shift and hum eliminated (s, s).
+        matrix: of the normal equations of these, its own shift and mains interference eliminated (s, s).
         covariances: of these, in standard errors and in half widths of intervals of 95 % (s, s) each.
         alone: its estimate alone.
         own: the same without the rig's tolerances, which are common to all recordings.

@@ -25,7 +25,7 @@ LEAST_SPEED = 20.0
 
 
 def backward_difference(values: Array, sample_period: float) -> Array:
-    """u'[k] = (u[k] - u[k-1])/T of samples (n,) - any unit - a period T - s - apart, first value 0 - unit per second.
+    """u'[k] = (u[k] - u[k-1])/T of samples (n,) - any unit - with the period T - s, first value 0 - unit per second.
 
     Raises:
         InputError: T is not positive.

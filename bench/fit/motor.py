@@ -58,7 +58,7 @@ ALIKE = "current and motion change in the same way"
 def motor_constants(
     trace: Trace, rig: Rig, found: Estimate, identified: Callable[[Trace, Rig], Estimate]
 ) -> MotorConstants | None:
-    """Of a recording and its estimate; None where it holds no voltage.
+    """Of a recording and its estimate; None where it has no voltage.
 
     `identified`: inertia and friction of another recording of the axis, by its rig.
     """

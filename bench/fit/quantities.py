@@ -110,12 +110,12 @@ def uncertain(fitted: Fit) -> Uncertain:
 
 
 def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) -> tuple[Array, float]:
-    """Covariance (p + s, p + s) from the residual, what stands above noise included, and the reach of intervals."""
+    """Covariance (p + s, p + s) from the residual, what exceeds noise included, and the reach of intervals."""
     conditioning, jacobian = fitted.rows.conditioning, _jacobian(fitted.rows, fitted, slots)
     acting = fitted.layout.acting(fitted.theta)
     left, floor = acting * fitted.left, acting * fitted.floor
     weight = np.ones(left.size)
-    if not fitted.determined.all():  # a row that leaves more than noise counts less and less
+    if not fitted.determined.all():  # a row with a residual above noise counts less and less
         weight = 1.0 / (1.0 + (left / (SCALE * floor)) ** 2)
     noise = np.pad(fitted.layout.noise, (0, len(slots)))
     numbers = np.concatenate([fitted.theta, np.zeros(len(slots))])
@@ -129,7 +129,7 @@ def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) 
     inverse[both] = solved(((jacobian.T * weight) @ jacobian)[both], numbers[shown], count.sum() * noise[both])[1]
     covariance, reach = estimated(scores, inverse, conditioning.effort_noise**2 / conditioning.filter.stride)
     heavy = np.sqrt(weight)
-    # beside a name from the floor on: what is too weak for one leaves 1.05 to 1.2 and bends the values
+    # with a name from the floor on: what is too weak for one has 1.05 to 1.2 and bends the values
     least = floor / NOISE_ALONE if fitted.terms else floor
     reaches = misfit(jacobian[:, shown] * heavy[:, None], left * heavy, least)
     covariance[both] += np.diag((reaches / reach) ** 2)
@@ -151,7 +151,7 @@ def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
     """Standard errors of the shapes (s,) that no noise shows, as of an instant between two rows that are determined.
 
     An instant that within its own changes the torque by less than noise does is known by it alone, as no row moves with
-    it. What it is of another shape, the tick of a lag or the drift of a position, comes beside what noise makes of it.
+    it. What it is of another shape, the tick of a lag or the drift of a position, is added to its noise.
     """
     sure = fitted.time[fitted.determined]
     errors = [term.effect.shape_errors(term.shape, fitted.scope, sure) for term in fitted.terms]
@@ -206,7 +206,7 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
 def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
     """Change of strengths and shapes were noise twice as strong, by one step of Gauss and Newton.
 
-    The column of a coupling is made of the noisy motion, so noise biases it; that of the noise itself is as large.
+    The column of a coupling is made from noisy motion, so noise biases it; that of the noise itself is as large.
     J. R. Cook, L. A. Stefanski, Journal of the American Statistical Association 89, 1994, 1314-1328.
     """
     if not any(term.effect.filters_motion for term in fitted.terms) or not fitted.determined.all():

@@ -35,7 +35,7 @@ class Refinement:
         fitted: gap over the whole recording, before and after.
         held_out: gap on motion that neither regression nor refinement used, before and after.
         accepted: whether the refined parameters were kept: only if the held-out gap did not grow.
-        bandwidth: of the cascade that holds the model to the recording - rad/s.
+        bandwidth: of the cascade that keeps the model near the recording - rad/s.
     """
 
     fitted: tuple[float, float]

@@ -50,7 +50,7 @@ class Memory:
         self._bytes = 0
 
     def get(self, made_of: Hashable, make: Callable[[], Made]) -> Made:
-        """Columns, filtered or raw, by what they are made of - a function and its values -; not to be written to."""
+        """Columns, filtered or raw, by what they are made from - a function and values -; not to be written to."""
         if made_of in self._kept:
             self._kept.move_to_end(made_of)
             return self._kept[made_of][0]
@@ -107,7 +107,7 @@ class Rows:
         conditioning: source, noises and filter.
         origin: of the recording.
         scope: what it is able to show.
-        made_by, motion: what tells its signals, and its motion alone, from those reported; () as reported.
+        made_by, motion: what distinguishes its signals, and only its motion, from those reported; () as reported.
         memory: columns made before.
         near: whether rows as near to reversals as the filter allows are used, as effects there need.
         still: whether what follows the motion behind a coupling is kept while the motion is corrected a little.
@@ -145,10 +145,10 @@ class Rows:
             conditioning: instead of the one read from the recording: that of its first part.
             cutoff: half-power frequency of the filter instead of the one chosen from the recording - Hz.
             width: of the filter instead of the one chosen from the recording - s.
-            every: whether a row stands for every sample, which a replay wants.
+            every: whether there is a row for every sample, which a replay wants.
             begins: the recording, if this is a later part of it - s.
             near: as of the rows.
-            peak_effort: where the rig tells none, that of the recording in which a model was found - N*m (N).
+            peak_effort: where the rig has none, that of the recording in which a model was found - N*m (N).
 
         Raises:
             InputError: a signal is missing, or rig and recording do not fit together.
@@ -193,7 +193,7 @@ class Rows:
         return replace(rows, scope=rows._shown())
 
     def _shown(self) -> Scope:
-        """What the stretches that the filter leaves are able to show."""
+        """What the stretches that the filter keeps are able to show."""
         signals = [part.signals for part in self.stretches]
         ends = {s.began: float(s.time[-1]) for s in signals}
         starts = {s.began: float(s.time[0]) for s in reversed(signals)}
@@ -219,7 +219,7 @@ class Rows:
         return self._places.size / self.correlation
 
     def with_signals(self, change: Callable[[Signals], Signals], made_by: Hashable = None) -> Rows:
-        """The same rows over changed signals; columns of them are kept if `made_by` tells this change from others."""
+        """The same rows over changed signals; columns of them are kept if `made_by` distinguishes this change."""
         stretches = tuple(replace(p, signals=change(p.signals)) for p in self.stretches)
         pairs = [(new.signals, old.signals) for new, old in zip(stretches, self.stretches, strict=True)]
         moved = any(new.position is not old.position or new.velocity is not old.velocity for new, old in pairs)
@@ -315,7 +315,7 @@ class Rows:
 
     @cached_property
     def joined(self) -> Signals:
-        """All stretches as one, for columns that are made of each sample alone; without torque known to act beside."""
+        """All stretches as one, for columns that depend on each sample only; without other known torque."""
         samples = {name: self.laid(attrgetter(name)) for name in SAMPLES}
         return replace(self.stretches[0].signals, **samples, known=())
 
@@ -341,7 +341,7 @@ class Rows:
         return products
 
     def kept(self, columns: Callable[..., Sequence[Column]], *values: Hashable, lag: Lag = 0.0) -> Array:
-        """The same of columns that a function makes of a stretch's raw signals and some values, made once."""
+        """The same of columns that a function computes from a stretch's raw signals and some values, made once."""
         key = columns, values, lag, self.made_by
         return self.memory.get(key, lambda: self.table(lambda signals: columns(signals, *values), lag))
 
@@ -350,7 +350,7 @@ def sign_reach(smooth: GaussianFilter, near: bool = False) -> float:
     """How long the speed keeps its sign before and after a row - s.
 
     As far as the filter spreads a reversal, and a lag of the torque: one of some filter widths, or, `near` reversals, a
-    short time, as a wider filter makes no drive later. A width more leaves 4e-5 of a reversal.
+    short time, as a wider filter makes no drive later. One more width reduces it to 4e-5 of a reversal.
     """
     late = max(LATE, LATE_SAMPLES * smooth.sample_period, smooth.width)
     return min(SIGN_WIDTHS * smooth.width, SIGN_REACH * smooth.width + (late if near else np.inf))

@@ -1,21 +1,21 @@
 """From named columns to numbers with intervals: normal equations, their solution, the noise floor, honest errors.
 
 Normal equations are gathered block by block in time, in one pass over a recording of any length. Scores of the blocks
-give a covariance that counts correlated residuals; what stands above the noise floor widens the intervals.
+give a covariance that counts correlated residuals; what exceeds the noise floor widens the intervals.
 
-The floor is what the sensors' noise leaves in the residual. White noise of effort and speed passes filter and model
+The floor is the part of the residual due to the sensors' noise. White noise of effort and speed passes filter and model
 with a known spectrum. Real noise need not be white: below the frequencies at which its level was read it may stand
-higher. The residual tells by how much where it is quietest - noise is there at every moment and every frequency, what a
+higher. The residual shows by how much where it is quietest - noise is there at every moment and every frequency, what a
 model lacks comes and goes with the motion - so the lowest tenth over windows of time is taken at each frequency, and a
 first-order spectrum is laid through.
 
     S(omega) = S_white(omega)*(1 + c/(1 + (omega/omega_c)**2))
 
-Beside it stands what the last digit of a current in coarse steps leaves: white where noise of the sensor moves the
+Added to it is the residual of the last digit of a current in coarse steps: white where noise of the sensor moves the
 signal over the steps; where it does not, the error follows the signal's slow way through them and passes the filter: it
 is then read off the modelled torque, rounded in the same steps.
 
-    e = q*round(M/q) - M, of which noise of a deviation s leaves exp(-2*(pi*s/q)**2)
+    e = q*round(M/q) - M, which noise of a deviation s reduces to exp(-2*(pi*s/q)**2)
 
 q - step; M - modelled torque - N*m (N).
 Source: B. Widrow, I. Kollar, Quantization Noise, 2008 (characteristic function of a dithered quantiser).
@@ -39,7 +39,7 @@ from bench.effects.effect import Columns, Coupling
 from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, frequencies, lay_out
 from bench.fit.rows import ONE_WAY, Rows
 
-#: Blocks of time in filter widths: neighbouring blocks then share little beside the residual's own correlation.
+#: Blocks of time in filter widths: neighbouring blocks then share little except the residual's own correlation.
 BLOCK_WIDTHS = 8.0
 #: Blocks that a covariance needs at most, of a recording and of each of its parts.
 BLOCKS = 512
@@ -55,7 +55,7 @@ SHORT = 24
 INDEPENDENT_SHARE = 0.01
 #: Standard errors by which a shift of torque against speed must exceed a tick to be one: below, it is held at a tick.
 SURE = 3.0
-#: Share of what stands above the noise that a delay has to explain to be reported: what a model lacks may look like one
+#: Share of what exceeds the noise that a delay has to explain to be reported: what a model lacks may look like one
 #: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
 A_DELAY = 0.25
 #: Andrews' bandwidth minimises the error of the covariance, not of an interval's coverage: on 400 recordings of 6 s
@@ -63,12 +63,12 @@ A_DELAY = 0.25
 #: again as wide, .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/fit/test_coverage.py).
 WIDENED = 1.5
 #: Columns of the plain axis, which take as many degrees of freedom. What effects add is not counted: where residuals
-#: are correlated so long that their number matters, a remainder is left, and the interval says nothing of the effect's
+#: are correlated so long that their number matters, a remainder exists, and the interval does not describe the effect's
 #: columns (a servo's pendulum with four effects and ten independent blocks: one degree, an interval of 12.7 errors).
 PLAIN = 4
 #: Parts of equally many rows by acceleration or speed, and by time.
 LEVELS, QUARTERS = 8, 4
-#: Residual in noise floors above which something else than noise is left; on 100 recordings of axes that lack nothing
+#: Residual in noise floors above which the residual is more than noise; on 100 recordings of axes that lack nothing
 #: 97 lay below.
 NOISE_ALONE = 1.12
 #: Share of a column's power that one part of the rows may hold at most.
@@ -79,7 +79,7 @@ LENGTHS, ENOUGH = (128, 64), 24
 LOWEST, HEARD = 3, 0.03
 #: Power of a line in Hann's window, at its bin and the next.
 HANN = np.array([1.0, 4.0, 1.0]) / 6.0
-#: Quantile over windows that counts as quiet. Of noise every quantile tells the same level; of a lag's residual at
+#: Quantile over windows that counts as quiet. Of noise every quantile gives the same level; of a lag's residual at
 #: 4 ms a bin of the lower quartile still held 600 times the noise, of the lowest tenth 6 to 12 times.
 QUIET = 0.1
 #: Excess at low frequency that chance makes in a white recording, and that is therefore not called colour.
@@ -328,7 +328,7 @@ class Solution:
 
     @cached_property
     def floor(self) -> Floor:
-        """What the sensors' noise leaves in the residual."""
+        """The residual due to the sensors' noise."""
         return Floor(self.rows, self.hypothesis, self.laid, self.theta[: self.laid.owners.size], self.residual)
 
     @cached_property
@@ -346,7 +346,7 @@ class Solution:
 
     @property
     def delayed(self) -> bool:
-        """Whether torque and speed are surely more than a sample apart, which explains what no shift leaves."""
+        """Whether torque and speed surely differ by more than a sample, which explains the residual without a shift."""
         shift, error = self.shift
         return abs(shift) > max(self.rows.scope.sample_period, SURE * error) and self.shift_explains > A_DELAY
 
@@ -430,9 +430,9 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
 
 
 def misfit(columns: Array, residual: Array, floor: float) -> Array:
-    """How far intervals of 95 % have to reach (p,) because of what stands above the noise; 0 where nothing does.
+    """How far intervals of 95 % have to reach (p,) because of what exceeds the noise; 0 where nothing does.
 
-    Columns (m, p) are in order of time, acceleration and speed first; the floor is the RMS that the noise leaves.
+    Columns (m, p) are in order of time, acceleration and speed first; the floor is the RMS of the noise.
     """
     above = 1.0 - (NOISE_ALONE * floor) ** 2 / max(float(np.mean(residual**2)), 1e-300)
     return np.sqrt(above) * left_out(columns, residual) if above > 0.0 else np.zeros(columns.shape[1])
@@ -572,7 +572,7 @@ class Floor:
         return frequencies(self.hypothesis.couplings, highest, 2048)
 
     def _rms(self, spectrum: Array) -> float:
-        """Of a spectrum (k,) over all frequencies, and of what rounding of the effort leaves beside."""
+        """Of a spectrum (k,) over all frequencies, and of of the rounding of the effort."""
         period = self.rows.conditioning.filter.sample_period
         return math.hypot(float(np.sqrt(period / np.pi * np.trapezoid(spectrum, self._omega))), self._rounded)
 
@@ -582,7 +582,7 @@ class Floor:
         return rounding(self.rows, self.hypothesis.step, self.layout.effort - self.residual, cut)
 
     def _densities(self, omega: Array) -> Array:
-        """Density at angular frequencies (k,) of white noise, and of it with the lines that rounding leaves (2, k)."""
+        """Density at angular frequencies (k,) of white noise, and of it with the lines of rounding (2, k)."""
         conditioning = self.rows.conditioning
         white = np.full(omega.size, conditioning.source_noise**2)
         power = self.power(omega, np.stack([white, conditioning.source_power(omega)]))
@@ -594,7 +594,7 @@ class Floor:
         s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2 + s_p**2*|s*(1 + lag*s)|**2
 
         and twice what the known momentum p has of the speed's own noise: the joint's inertia where the arm is, less
-        that where the MJCF stands.
+        that in the configuration of the MJCF.
 
         Args:
             omega: angular frequencies - rad/s (k,).
@@ -621,7 +621,7 @@ class Floor:
     def _colour(self) -> tuple[float, float]:
         """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white.
 
-        Lines that rounding leaves come and go with the speed, and stay with a steady one: neither is colour.
+        Lines of rounding come and go with the speed, and stay with a steady one: neither is colour.
         """
         windows, smooth = self._windows(), self.rows.conditioning.filter
         count, length = windows.shape
@@ -686,7 +686,7 @@ def cut_beforehand(step: float) -> tuple[float, float]:
 
 
 def rounding(rows: Rows, step: float, modelled: Array, cut: float) -> float:
-    """RMS of what the last digit of an effort leaves in a residual, through the filter - N*m (N).
+    """RMS residual of the last digit of an effort, through the filter - N*m (N).
 
     Args:
         rows: the recording.

@@ -15,7 +15,7 @@ from bench.fit.fit import ROUNDS, Fit
 from bench.fit.hypothesis import AROUND, HUM, Hypothesis, Layout, Term, depended_on, lay_out, not_reaching
 from bench.fit.rows import Rows
 
-#: Stands for a recording where an event comes at the same time of every one.
+#: Placeholder for a recording where an event comes at the same time of every one.
 EVERY = "every recording"
 
 
@@ -37,7 +37,7 @@ class Balance:
 
     @classmethod
     def of(cls, fitted: Fit) -> Balance:
-        """Balance of a fit; without hum where it is of several recordings, as each had its own phase of it."""
+        """Balance of a fit; without mains lines where it is of several recordings, as each had its own phase of it."""
         width, origin = fitted.rows.conditioning.filter.width, fitted.rows.origin
         if len(fitted.rows.starts) == 1:
             return cls(fitted.hypothesis, fitted.theta, width, origin)
@@ -93,7 +93,7 @@ class Balance:
 
         Raises:
             KeyError, TypeError, ValueError: it is none.
-            InputError: it names an effect that there is not; `where` it stands.
+            InputError: it names an effect that there is not; `where` it is.
         """
         terms = tuple(
             Term(

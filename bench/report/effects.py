@@ -36,7 +36,7 @@ def effect_page(name: str) -> str:
     Raises:
         InputError: no such effect.
     """
-    effect = named(name, "bench effects")
+    effect = named(name, "bench list effects")
     module = inspect.getmodule(type(effect))
     lines = [effect.name, "=" * len(effect.name), inspect.getdoc(module) or effect.summary, "", "Quantities"]
     lines += [f"    {q.name} ({q.symbol}) [{unit_of(q)}], {bounds(q)}" for q in effect.quantities]

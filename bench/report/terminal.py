@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from itertools import zip_longest
 
 from rich.cells import cell_len
@@ -21,6 +22,9 @@ WIDTH = 110
 LAYOUTS = ((3, WIDTH), (2, WIDTH), (2, 16), (1, 16))
 #: Columns that a sentence wants, and those between a question and its answer.
 LEAST_PROSE, APART = 30, 2
+#: Rows of a table on one screen.
+ROWS = 24
+_VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
 #: Spaces at which no line ends: before a per cent sign, and beside an interval's.
 KEPT = re.compile(r"(?<=\d) (?=[%±])|(?<=±) ")
 #: Below the headings of a table, and how a headline looks by its tone.
@@ -47,8 +51,18 @@ def writable(text: str) -> str:
     return plain(text)
 
 
+@contextmanager
+def in_full() -> Iterator[None]:
+    """Print every section and every row of a table within the block."""
+    token = _VERBOSE.set(True)
+    try:
+        yield
+    finally:
+        _VERBOSE.reset(token)
+
+
 def show(document: Document) -> None:
-    """Print what a document comes to, its verdict first, and the sections of it that are no detail."""
+    """Print the verdict of a document, its answers, and its sections; the detailed ones only `in_full`."""
     width = console().width
     say(document.verdict, TONES[document.tone])
     say(f"{document.subject}\n")
@@ -60,7 +74,8 @@ def show(document: Document) -> None:
             first, *more = wrapped(writable(answer), width - beside)
             printed(Text("\n".join([_set(question, beside) + first, *(" " * beside + line for line in more)])))
     for section in document.sections:
-        parts = () if section.detail else tuple(filter(None, (rendered(part, width) for part in section.blocks)))
+        hidden = section.detail and not _VERBOSE.get()
+        parts = () if hidden else tuple(filter(None, (rendered(part, width) for part in section.blocks)))
         if parts:
             say(f"\n{section.heading}", "bold")
             printed(Text("\n\n").join(parts))
@@ -110,6 +125,11 @@ def _table(table: Table, width: int) -> Text:
     """A table side by side where numbers and names have room, with less space between them at need; else stacked."""
     headings = [writable(column.heading) for column in table.columns]
     rows = [list(map(writable, row)) for row in table.rows]
+    hidden = 0 if _VERBOSE.get() else len(rows) - ROWS
+    if hidden > 1:
+        kept = table.model_copy(update={"rows": table.rows[:ROWS], "links": (), "sketches": ()})
+        more = Text(f"\n{hidden} more rows: add --verbose")
+        return _table(kept, width).append_text(more)
     found = Text("\n".join([*wrapped(writable(table.caption), width), ""]) if table.caption else "")
     for gap, least in LAYOUTS:
         widths = _widths(table, headings, rows, width - gap * (len(headings) - 1), least)

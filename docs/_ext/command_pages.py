@@ -11,9 +11,9 @@ from bench.cli import app
 
 
 def commands() -> dict[str, Any]:
-    """Every command by its name, as the command line knows it."""
+    """Every command of `bench --help` by its name."""
     group: Any = typer.main.get_command(app)
-    return dict(group.commands)
+    return {name: one for name, one in group.commands.items() if not one.hidden}
 
 
 def page(name: str, command: Any) -> str:  # noqa: ANN401 - a class that typer keeps to itself

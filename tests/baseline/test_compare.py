@@ -326,7 +326,7 @@ def test_effects_outside_the_torque_balance_come_and_go_without_an_alarm():
     now = state(None, [lag], "explained")
     found = checked(state(), now, observed=GivenObserved(now))
     assert found.result == "undecided"
-    assert "shown by its signals alone" in headline(found)
+    assert "found in its signals only" in headline(found)
     back = checked(now, state(), observed=GivenObserved(state()))
     assert back.result == "undecided"
     assert "its strength is not known" in headline(back)

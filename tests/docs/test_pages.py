@@ -167,7 +167,7 @@ def test_the_picture_is_of_the_recording_that_the_pages_commands_make(tmp_path, 
 
 def test_the_page_of_a_command_has_all_its_options():
     found = command_pages.commands()
-    assert {"identify", "diagnose", "export", "effects"} <= set(found)
+    assert {"identify", "diagnose", "export", "list"} <= set(found)
     for name, command in found.items():
         text = command_pages.page(name, command)
         assert text.startswith(f"# bench {name}\n")

@@ -199,7 +199,7 @@ def test_masses_are_known_or_said_to_be_invented():
     known = mujoco.MjModel.from_xml_string(model_xml(stored(load_mass=0.9)))
     assert known.body("load").mass[0] == 0.9
     np.testing.assert_allclose(known.body("load").inertia, [9e-4, 4.5e-4, 4.5e-4], rtol=2e-4)
-    assert "the load's either; 1e-06 kg stands in" in model_xml(stored())
+    assert "the load's either; 1e-06 kg is used for what is not known" in model_xml(stored())
     assert "motor's side of a gear of 7" in model_xml(stored(gear_ratio=7.0))
     assert "gear" not in model_xml(stored()).partition("<mujoco")[0]
 
@@ -222,7 +222,7 @@ def test_the_snippet_has_its_values_in_a_class():
     assert model.dof_armature[0] == pytest.approx(4e-4)
     np.testing.assert_allclose(model.body("load").inertia, [3.6e-3, 1.8e-3, 1.8e-3], rtol=2e-4)
     assert model.body("load").mass[0] == 0.9
-    assert "stands in for one that is not known" in joint_alone(stored(), "axis")[0]
+    assert "as a placeholder: give the body its own" in joint_alone(stored(), "axis")[0]
 
 
 @pytest.mark.parametrize("known", [{"motor_inertia": 1e-4}, {"motor_inertia": 0.0}, {"link_inertia": 0.02}], ids=str)

@@ -99,7 +99,7 @@ def test_a_robots_file_is_written_as_its_ending_says(folder, line, says):
 @pytest.mark.parametrize(
     ("line", "says"),
     [
-        ("--mjcf arm.xml --joint elbow --out id.urdf", "id.urdf: found a URDF to be made of arm.xml, an MJCF"),
+        ("--mjcf arm.xml --joint elbow --out id.urdf", "id.urdf: found a URDF to be written from arm.xml, an MJCF"),
         ("--mjcf arm.urdf --joint elbo --out id.urdf", "found no 'elbo'; allowed: elbow"),
         ("--to bam --joint elbow --out id.json --with-assets", "--with-assets: found without --mjcf"),
     ],

@@ -93,6 +93,6 @@ CASES = [
     "bench inspect beaten.csv --rig rig.toml --json -",
     "bench inspect beaten_weight.csv --rig rig.toml --json -",
     "bench identify pushed.csv --rig rig.toml",
-    "bench effects coging_torque",
-    "bench rigs sh30701",
+    "bench list effects coging_torque",
+    "bench list rigs sh30701",
 ]

@@ -61,7 +61,7 @@ def checked(folder, shoulder, more=OWN["nothing"], arm=MJCF):
 def test_a_joint_that_moved_is_asked_about(tmp_path, shoulder):
     found = checked(tmp_path, shoulder)
     assert found.status == "warn"
-    assert "beside shoulder at 0.3 rad, as stated" in found.found
+    assert "next to shoulder at 0.3 rad, as stated" in found.found
     assert "one of these moved, or something else pushed" in found.advice
 
 

@@ -70,7 +70,7 @@ def test_what_differs_beside_the_axis_is_reported():
     assert any("are those of the baseline" in one.text for one in blocks(same, Paragraph))
     assert any("duration" in item for one in blocks(other, Points) for item in one.items)
     assert any("torque_constant" in item for one in blocks(rig, Points) for item in one.items)
-    assert list(rig.answers.values())[-1].startswith("Make the baseline anew")
+    assert list(rig.answers.values())[-1].startswith("Make a new baseline")
 
 
 def test_text_of_a_baseline_is_text():
@@ -99,5 +99,5 @@ def test_models_are_reported_without_recordings():
     model = replace(found.now, gaps={}, conditions={}, source="model")
     page = check_document(replace(found, baseline=model, now=model, false_alarm_rate=0.0), "x")
     assert [section.key for section in page.sections] == ["comparisons", "conditions"]
-    assert any("neither rests on a recording" in one.text for one in blocks(page, Paragraph))
+    assert any("neither is fitted to a recording" in one.text for one in blocks(page, Paragraph))
     assert "without noise" in list(page.answers.values())[2]

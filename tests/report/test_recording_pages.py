@@ -53,7 +53,7 @@ def inspected(tmp_path):
 
 def test_an_inspection_shows_every_signal_as_it_is_read(inspected):
     page, trace = inspected
-    assert page.verdict.startswith("It holds 1.999")
+    assert page.verdict.startswith("It contains 1.999")
     assert page.tone == "sure"
     curves = {curve.name: curve for panel in graph_of(page).panels for curve in panel.curves}
     assert set(curves) == set(trace.signals)

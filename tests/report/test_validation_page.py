@@ -84,9 +84,9 @@ def test_the_chart_has_each_quantity_with_its_bounds_by_group():
 
 def test_what_is_reported_in_the_place_of_a_name_is_reported_most_frequent_first():
     page = page_of([], named(1, 9, {"backlash": {"refused": 1, "backlash": 8}, "nothing": {"nothing missing": 5}}))
-    confusion = next(table for table in blocks(page, Table) if "nothing" in table.caption)
+    confusion = next(table for table in blocks(page, Table) if "is hidden, or none" in table.caption)
     assert confusion.rows == (("backlash", "backlash 8, refused 1"), ("nothing", "nothing missing 5"))
-    assert page.verdict.startswith("No run tells a quantity; 1 of 9")
+    assert page.verdict.startswith("No run determines a quantity; 1 of 9")
 
 
 def test_names_given_are_a_matrix_whose_right_answers_lie_on_its_diagonal():

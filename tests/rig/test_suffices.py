@@ -53,7 +53,7 @@ def test_an_effective_current_and_its_constant_are_converted():
 def test_an_effective_unit_in_a_rig_is_asked_about(tmp_path):
     path = tmp_path / "rig.toml"
     path.write_text('name = "a"\nkind = "rotary"\n[motor]\ntorque_constant = "1 N*m/Arms"\n')
-    with pytest.raises(InputError, match=r'an effective current; allowed: A; say current = "effective"'):
+    with pytest.raises(InputError, match=r'an effective current; allowed: A; set current = "effective"'):
         load_rig(path)
 
 

@@ -77,7 +77,7 @@ TEXT = {
     ),
     "duplicate times": (
         HEAD + "".join(f"{k // 2},{10 * k},{k}\n" for k in range(60)),
-        r"line 3, column 'time \[ms\]': 30 of 60 samples stand at a time already taken",
+        r"line 3, column 'time \[ms\]': 30 of 60 samples repeat the time of another one",
     ),
     "all at one time": (HEAD + "5,1,1\n" * 50, r"found 1 different times"),
     "cut in the last line": (_rows().rstrip().rpartition(",")[0], r"line 61: found 2 cells"),

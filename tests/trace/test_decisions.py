@@ -123,14 +123,14 @@ def test_a_signal_in_fewer_than_19_of_20_rows_is_sampled_there(lost, holes):
     values[10 : 10 + lost] = np.nan
     trace = assemble(recording(time__s=COUNT, velocity__rad_s=COUNT, current__A=values))
     assert any("a hole each" in note for note in trace.notes) == holes
-    assert any("stands in 37 of 40 rows" in note for note in trace.notes) != holes
+    assert any("is given in 37 of 40 rows" in note for note in trace.notes) != holes
 
 
 @pytest.mark.parametrize(("step", "refused"), [(1.019e-3, False), (1.022e-3, True), (0.978e-3, True)])
 def test_the_rigs_sample_period_and_the_files_times_agree_within_2_percent(step, refused):
     columns = recording(time__s=step * COUNT, velocity__rad_s=COUNT)
     if refused:
-        with pytest.raises(InputError, match=r"rig's .trace. says sample_period = 0\.001 s"):
+        with pytest.raises(InputError, match=r"rig's .trace. has sample_period = 0\.001 s"):
             assemble(columns, GivenOptions(sample_period=1e-3))
     else:
         assert assemble(columns, GivenOptions(sample_period=1e-3)).sample_period == pytest.approx(step)
@@ -143,7 +143,7 @@ def test_one_sample_in_a_hundred_may_repeat_a_time_with_another_value(others, re
     time = np.sort(time)
     columns = recording(time__s=time, velocity__rad_s=np.arange(100.0))
     if refused:
-        with pytest.raises(InputError, match="2 of 100 samples stand at a time already taken"):
+        with pytest.raises(InputError, match="2 of 100 samples repeat the time of another one"):
             assemble(columns)
     else:
         assert assemble(columns).time_base.duplicates == 1  # type: ignore[union-attr]

@@ -167,11 +167,11 @@ def test_clocks_and_calendars(tmp_path, style, start):
 def test_a_clock_of_whole_seconds_asks_for_the_sample_period_and_takes_it(tmp_path):
     rows = lines(",", time=[clock(45_296.0 + 2.0 * t, "{h:02d}:{m:02d}:{s:02d}") for t in TIME])
     path = written(tmp_path / "run.csv", ["time,velocity [rpm],current [A]"], rows)
-    with pytest.raises(InputError, match=r"time already taken.*sample_period"):
+    with pytest.raises(InputError, match=r"the time of another one.*sample_period"):
         read(path)
     trace = read(path, GivenOptions(sample_period=2e-3))
     np.testing.assert_allclose(trace.time - trace.time[0], 2.0 * TIME, atol=1e-9)
-    with pytest.raises(InputError, match=r"steps by 0\.00.* where the rig's \[trace\] says sample_period = 0\.02 s"):
+    with pytest.raises(InputError, match=r"steps by 0\.00.* where the rig's \[trace\] has sample_period = 0\.02 s"):
         read(path, GivenOptions(sample_period=20e-3))
 
 
@@ -227,7 +227,7 @@ def test_a_column_of_which_most_cells_are_empty_was_sampled_more_slowly(tmp_path
     rows = [f"{row},{k / 10 if k % 10 == 0 else ''}" for k, row in enumerate(lines())]
     trace = read(written(tmp_path / "run.csv", [",".join((*NAMES, "position [rad]"))], rows))
     np.testing.assert_allclose(trace["position"], np.arange(trace.time.size) / 10, atol=1e-9)
-    assert any("position stands in 60 of 600 rows" in note for note in trace.notes)
+    assert any("position is given in 60 of 600 rows" in note for note in trace.notes)
 
 
 def test_what_is_not_needed_stops_nothing_and_is_reported(tmp_path):

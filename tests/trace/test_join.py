@@ -61,7 +61,7 @@ def test_the_longest_sample_period_is_taken():
 def test_a_signal_that_one_recording_lacks_is_left_out_and_reported():
     joined = join([run_of(1, position=True), run_of(2)])
     assert "position" not in joined
-    assert any("position: left out" in note for note in joined.notes)
+    assert any("position: omitted" in note for note in joined.notes)
 
 
 @pytest.mark.parametrize(

@@ -217,5 +217,5 @@ def test_an_object_of_matlab_is_refused_with_what_to_run_there(tmp_path, packed)
         body = struct.pack("<II", 15, len(zlib.compress(body))) + zlib.compress(body)
     header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
     (tmp_path / "run.mat").write_bytes(header + body)
-    with pytest.raises(InputError, match=r"holds an object of MATLAB .* writetable\(T, 'run.csv'\)"):
+    with pytest.raises(InputError, match=r"contains an object of MATLAB .* writetable\(T, 'run.csv'\)"):
         read(tmp_path / "run.mat")

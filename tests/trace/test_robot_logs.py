@@ -419,6 +419,6 @@ def test_a_column_of_two_states_in_turn_is_no_joint(tmp_path):
 
 def test_between_two_episodes_lie_ten_sample_periods(tmp_path, elbow):
     trace = read(lerobot(tmp_path / "log"), elbow)
-    assert any("2 episodes stand one after another" in note for note in trace.notes)
+    assert any("2 episodes in sequence" in note for note in trace.notes)
     time, first = trace.time, np.array_split(np.arange(TIME.size), 2)[0].size
     assert np.diff(time)[first - 1] == pytest.approx(10 * 2e-3, rel=1e-3)

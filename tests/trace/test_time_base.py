@@ -97,7 +97,7 @@ def test_few_duplicates_with_other_values_keep_the_first():
 
 
 def test_many_duplicates_with_other_values_are_refused():
-    with pytest.raises(InputError, match=r"sample 1: 50 of 100 samples stand at a time already taken"):
+    with pytest.raises(InputError, match=r"sample 1: 50 of 100 samples repeat the time of another one"):
         regular(one(np.repeat(np.arange(50), 2) * 1e-3))
 
 
