@@ -6,7 +6,7 @@ from typing import Any
 
 from typer.core import TyperGroup
 
-from bench.cli.common import say
+from bench.cli.common import NOTES
 
 #: Words that replace an earlier name of a command. Of `view`, `--out` is `--page`, with a default.
 RENAMED = {
@@ -20,7 +20,7 @@ OTHERS = "Other packages"
 
 
 def renamed(words: list[str]) -> list[str]:
-    """Words of a command line with the present name of its command, after a note on it."""
+    """Words of a command line with the present name of its command, with a note on it, printed at the end."""
     first, *rest = words
     if first not in RENAMED:
         return words
@@ -28,7 +28,7 @@ def renamed(words: list[str]) -> list[str]:
         rest = [f"--page{word[5:]}" if word.split("=")[0] == "--out" else word for word in rest]
         rest += [] if any(word.split("=")[0] == "--page" for word in rest) else ["--page", "view.html"]
     option = " --page" if first == "view" else ""
-    say(f"note: `bench {first}` is now `bench {' '.join(RENAMED[first])}{option}`", err=True)
+    NOTES[f"`bench {first}` is now `bench {' '.join(RENAMED[first])}{option}`"] = None
     return [*RENAMED[first], *rest]
 
 

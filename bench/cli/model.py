@@ -205,9 +205,8 @@ def export(
         raise InputError("--with-assets", "found without --mjcf", "allowed: with a robot's MJCF, `--mjcf ROBOT.xml`")
     models, lines = load_models(model, joint or ()), []
     if (alone or ranges is not None) and len(models) > 1:
-        raise InputError(
-            model, "found several joints", f"pick one: `--joint {next(iter(models))}`; the file has {', '.join(models)}"
-        )
+        one = f"pick one: `--joint {next(iter(models))}`; the file has {', '.join(models)}"
+        raise InputError(model, "found several joints", one)
     if ranges is not None:
         from bench.export.mjcf import ranges_json
 
@@ -219,9 +218,8 @@ def export(
     else:
         text, lines = _robot(models, out, mjcf, joint, armature, with_assets)
     write_text(out, text)
-    for line in lines:
+    for line in (*lines, f"wrote {readable(out)}"):
         common.say(line)
-    common.list_files([out])
 
 
 def _file_name(to: str | None, mjcf: Path | None, ranges: Path | None) -> str:

@@ -22,12 +22,9 @@ STAGES = {
 
 
 def effects_table() -> Table:
-    """Every effect with its quantities, and where it acts."""
-    rows = []
-    for name, effect in sorted(catalogue().items()):
-        quantities = ", ".join(f"{quantity.name} [{unit_of(quantity)}]" for quantity in effect.quantities)
-        rows.append((name, effect.summary, quantities, simulated(effect)))
-    return table("", ("effect", "what it is~", "quantities~", "simulated"), rows)
+    """Every effect with what it is, a line each."""
+    rows = ((name, effect.summary) for name, effect in sorted(catalogue().items()))
+    return table("", ("effect", "what it is"), rows)
 
 
 def effect_page(name: str) -> str:
@@ -45,20 +42,6 @@ def effect_page(name: str) -> str:
         text = inspect.getdoc(getattr(effect, method)) or ""
         lines.append(f"    {place}: {text.splitlines()[0]}")
     return "\n".join(lines)
-
-
-def simulated(effect: Effect) -> str:
-    """What simulates it, in a word."""
-    if is_native(effect):
-        return "MuJoCo model"
-    if effect.of_measurement:
-        return "sensor"
-    return "every step" if effect.stage >= Stage.COMMUTATION else "electronics"
-
-
-def is_native(effect: Effect) -> bool:
-    """Whether MuJoCo simulates it by itself, at some of its values at least."""
-    return type(effect).add is not Effect.add
 
 
 def acting(effect: Effect) -> dict[str, str]:

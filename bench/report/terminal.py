@@ -22,8 +22,8 @@ WIDTH = 110
 LAYOUTS = ((3, WIDTH), (2, WIDTH), (2, 16), (1, 16))
 #: Columns that a sentence wants, and those between a question and its answer.
 LEAST_PROSE, APART = 30, 2
-#: Rows of a table on one screen.
-ROWS = 24
+#: Rows of a table on one screen, which the list of all effects fits.
+ROWS = 32
 _VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
 #: Spaces at which no line ends: before a per cent sign, and beside an interval's.
 KEPT = re.compile(r"(?<=\d) (?=[%±])|(?<=±) ")

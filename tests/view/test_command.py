@@ -19,28 +19,30 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def test_a_page_is_written_and_said(bench, diagnosed, tmp_path):
     model, trace = diagnosed / "found" / "model.toml", diagnosed / "run2.csv"
-    status, out, err = bench("view", model, trace, "--rig", "rig.toml")
+    status, out, err = bench("replay", model, trace, "--rig", "rig.toml", "--page", "view.html")
     assert (status, out, err) == (0, "wrote view.html\n", "")
     page = (tmp_path / "view.html").read_text(encoding="utf-8")
     assert "The simulated axis stays within" in page
     assert "And free-running?" in page
-    assert "5 windows begin with what the sensors say" in page
+    assert "5 windows begin at the sensors' values" in page
 
 
 def test_a_recording_without_position_is_shown_with_a_warning(bench, diagnosed, tmp_path):
     write(only(run_of(seed=2), "velocity", "current"), tmp_path / "blind.csv")
-    status, _, err = bench("view", diagnosed / "found" / "model.toml", "blind.csv", "--rig", "rig.toml")
+    status, _, err = bench(
+        "replay", diagnosed / "found" / "model.toml", "blind.csv", "--rig", "rig.toml", "--page", "view.html"
+    )
     assert status == 0
-    assert "warning: blind.csv contains no position: the page shows the integral of its speed" in err
+    assert "warning: blind.csv contains no position; the page shows the integral of its speed" in err
 
 
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ((), "TRACE: missing; allowed: a recording, or --rig with [drive]"),
+        ((), "TRACE: missing; allowed: a recording; or --rig with [drive]"),
         (("--rig", "rig.toml"), "drive: missing"),
         (("run2.csv", "--rig", "rig.toml", "--from", "9"), "--from, --to: found 9 s to 3.999 s; allowed: a part of"),
-        (("run2.csv", "--rig", "rig.toml", "--out", "view.txt"), "view.txt: found the ending '.txt'; allowed: .html"),
+        (("run2.csv", "--rig", "rig.toml", "--page", "view.txt"), "view.txt: found the ending '.txt'; allowed: .html"),
         (("run2.csv", "--rig", "rig.toml", "--video", "view.gif"), "view.gif: found the ending '.gif'; allowed: .mp4"),
         (("run2.csv", "--rig", "rig.toml", "--video", "v.mp4", "--slowed", "1e4"), "allowed: up to 18000"),
         (("run2.csv", "--rig", "rig.toml", "--video", "v.mp4", "--slowed", "inf"), "inf frames; allowed: up to"),
@@ -59,7 +61,7 @@ def test_what_is_wrong_is_one_line(bench, diagnosed, tmp_path, arguments, says):
 
 def run_alone(folder, arguments, **environment):
     """The command in a process of its own: MuJoCo decides how it renders when it is imported."""
-    command = [sys.executable, "-m", "bench", "view", *map(str, arguments)]
+    command = [sys.executable, "-m", "bench", "replay", *map(str, arguments)]
     variables = {name: value for name, value in os.environ.items() if name not in ("MUJOCO_GL", "DISPLAY")}
     variables |= {"PYTHONPATH": str(ROOT), **environment}
     return subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True, check=False)
