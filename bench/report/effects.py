@@ -44,6 +44,11 @@ def effect_page(name: str) -> str:
     return "\n".join(lines)
 
 
+def is_native(effect: Effect) -> bool:
+    """Whether MuJoCo simulates it by itself, at some of its values at least."""
+    return type(effect).add is not Effect.add
+
+
 def acting(effect: Effect) -> dict[str, str]:
     """Methods through which an effect is simulated, and where each acts, in words."""
     found = {"add": "in the MuJoCo model"} if is_native(effect) else {}
