@@ -46,9 +46,9 @@ LEAST = 1e-3
 #: Factor on these standard deviations for recordings of different motion or sampling. For two recordings at 95 % it
 #: gives what `bench.diagnosis.same_axis` allows (1 % of inertia, 30 % of viscous and 10 % of Coulomb friction).
 OTHER_MOTION = 5.0
-#: What a model leaves, and the torque of an effect, go at most with this power of the largest factor by which two
+#: The residual of a model, and the torque of an effect, go at most with this power of the largest factor by which two
 #: motions differ: drag with the second, saturation with the third. Beyond COMPARABLE, which 30 % less is within, nobody
-#: knows: the one motion may show what the other does not come to.
+#: covers: the one motion may show what the other does not come to.
 POWER, COMPARABLE = 3.0, 1.45
 #: The quantity of a motion that a parameter's torque is proportional to.
 _MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}
@@ -73,7 +73,7 @@ def check(
         units: of columns by their names, which replace those of the file or data frame.
 
     Raises:
-        UndeterminedError: the recording does not determine what the baseline holds.
+        UndeterminedError: the recording does not determine what the baseline contains.
         InputError: rig and recording do not fit together, or the baseline is that of a model.
     """
     rig, traces = recordings_of(trace, rig, units)

@@ -143,7 +143,7 @@ def balance(trace: Trace, rig: Rig, hypothesis: Hypothesis) -> Fit:
 
 
 def _quantities(found: Estimate | Diagnosis, fitted: Fit, rig: Rig, unit: str) -> dict[str, Measured]:
-    """J, K_w and K_0 with how recordings differ in them, and what the torque balance leaves."""
+    """J, K_w and K_0 with how recordings differ in them, and the residual of the torque balance."""
     names = [name for name in rig.axis_kind.base_parameters() if name in found.parameters]
     alone = {name: [one.parameters[name] for one in found.recordings if name in one.parameters] for name in names}
     known = {name: Measured.of(found.parameters[name], alone[name]) for name in names}
@@ -175,7 +175,7 @@ def _torque(fitted: Fit, index: int, unit: str) -> Measured:
     """RMS torque of a term that the rest of the model cannot explain.
 
     Its square is the reduction of the mean squared residual by the term; its error is that of one amplitude fitted to
-    the rows, of which the filter leaves only some independent.
+    the rows, of which only some are independent after the filter.
     """
     less = fit(fitted.rows, fitted.hypothesis.without(index), fitted)
     saved = max(less.squares - fitted.squares, 0.0) / fitted.count

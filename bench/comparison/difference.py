@@ -114,7 +114,7 @@ class Difference:
 
     @classmethod
     def relative(cls, baseline: Parameter, now: Parameter) -> Difference:
-        """now/baseline - 1 with the error that both pass on to it; what recordings differ by is left to the range.
+        """now/baseline - 1 with the error that both pass on to it; the range includes how recordings differ.
 
         The baseline is above zero.
         """

@@ -40,7 +40,7 @@ class Excess:
         return float(scipy.special.stdtrit(self.degrees, 0.975)) if self.degrees else 0.0
 
     def of_joint(self, own: Sequence[Parameter]) -> float:
-        """Standard error that the spread adds to a joint value, as far as averaging leaves it - the quantity's unit.
+        """Standard error that the spread adds to a joint value, after averaging - the quantity's unit.
 
         Args:
             own: estimate by each recording alone; the joint value weights them by 1/(s_k**2 + tau**2).

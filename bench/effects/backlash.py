@@ -94,7 +94,7 @@ class Backlash(Contact):
         return spread(fitted, shape, int(fitted.places(lambda effect: effect is self)[0]))
 
     def defaults(self, axis: Axis) -> Mapping[str, Number]:
-        """A contact that resonates at CONTACT_FREQUENCY; recordings of an axis hardly tell it."""
+        """A contact that resonates at CONTACT_FREQUENCY; recordings of an axis hardly determine it."""
         motor = np.asarray(axis.motor_inertia)
         reduced = float(motor * (axis.inertia - motor) / axis.inertia)
         return {

@@ -4,8 +4,8 @@
 
 T - time constant - s; M - torque that acts, M_reported = k_T*I of the reported current - N*m (N). The drive has the
 current without the filter, which is the recorder's. In the balance 1 + T*s on the reported torque undoes it exactly.
-It is the opposite of a lag of the torque or of the speed, and two such lags at once show as their difference: beside
-another one it is not sought, and where no position tells a lag of the speed the names stand for that difference.
+It is the opposite of a lag of the torque or of the speed, and two such lags at once show as their difference: with
+another one it is not sought, and where no position determines a lag of the speed the names denote that difference.
 Source: W. Leonhard, Control of Electrical Drives (filtered current feedback).
 """
 
@@ -27,7 +27,7 @@ class CurrentFilterLag(Lag):
         return [Proposal((late / float(beyond @ beyond),), gain)] if gain > 0.0 and late > 0.0 else []
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
-        """Lags of torque and speed, of which it may be the greater, unless position tells that of the speed."""
+        """Lags of torque and speed, of which it may be the greater, unless position determines that of the speed."""
         return () if "position" in scope.signals else ("current_loop_lag", "velocity_filter_lag")
 
 

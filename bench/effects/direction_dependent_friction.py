@@ -45,7 +45,7 @@ class DirectionDependentFriction(Friction):
         return values["viscous_difference"] == 0.0 and not friction_varies
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
-        """Half of what is left of the two levels as friction of the joint, half of their difference as torque."""
+        """Half of the remainder of the two levels as friction of the joint, half of their difference as torque."""
         level, half = float(axis.coulomb), 0.5 * values["coulomb_difference"]
         forward, backward = max(level + half, 0.0), max(level - half, 0.0)
         spec.joint(AXIS).frictionloss = 0.5 * (forward + backward)

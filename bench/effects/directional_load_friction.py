@@ -5,8 +5,8 @@
 K_m, K_e - coefficients on the motor's side and on the load's; M_motor - motor torque, M_load - resisting torque of the
 load without its inertia (gravity, a spring) - N*m (N). With K_e = 0 it is load-dependent friction. A gear that drives
 its load up passes (1 - K_m) of the motor's torque on and needs (1 + K_e) of the load's; let down, the load gives back
-(1 - K_e) of its own: so without a torque of the load nothing tells K_e, and it is tried only in the place of
-load-dependent friction, beside a load that is named.
+(1 - K_e) of its own: so without a torque of the load K_e is not determined, and it is tried only in the place of
+load-dependent friction, with a load that is named.
 Source: M. Duclusaud, G. Passault, V. Padois, O. Ly, Extended friction models for the physics simulation of servo
 actuators, 2024, arXiv 2410.08650 (model M5; M6 adds squares to its rise at low speed).
 """
@@ -42,7 +42,7 @@ class DirectionalLoadFriction(Friction):
         return values["motor_coefficient"] * abs(at.effort + values["load_ratio"] * at.load)
 
     def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
-        """The best ratio beside a load, or none without one."""
+        """The best ratio with a load, or none without one."""
         if not fitted.places(lambda effect: effect.transmitted).size:
             return None
         best = max(fitted.tried(self, grid_of(self.shapes, fitted.scope)), key=lambda tried: tried.gain).shape[0]

@@ -1,4 +1,4 @@
-"""What an effect may be: one piece of physics, or one fault of the measurement, with all that the bench knows of it.
+"""What an effect may be: one piece of physics, or one fault of the measurement, with its whole description.
 
     motor torque = J*alpha + K_w*omega + K_0*sgn(omega) + sum over effects of strength_k * column_k(signals, shape)
 
@@ -136,7 +136,7 @@ class Effect(ABC):
         repeatable: an axis may have several, each of another shape (harmonics, events).
         replaces: names of effects that it is tried instead of, once no other addition explains more; see `in_place_of`.
         decoy: physics that no catalogue lists: it competes with the names of a search and never gets one.
-        copies_torque: its columns are made of the torque that reaches it, and of the noise of that, see
+        copies_torque: its columns are computed from the torque that reaches it, and of the noise of that, see
             `bench.fit.hypothesis.not_reaching`; each value from its own sample only: those of a recording with
             holes are made at once.
         rescales_torque: its one strength is what the torque that acts has more than the reported one, as share of that.
@@ -322,7 +322,8 @@ Load = tuple[Columns, tuple[float, ...], tuple[float, ...]]
 
 
 class Coupling(Columns):
-    """Motor and load are joined softly; an axis has at most one. The column's first strength is the load's inertia.
+    """Motor and load are joined by a spring; an axis has at most one. The column's first strength is the load's
+    inertia.
 
     Its columns are accelerations, which a lag of the reported speed delays as it does that of J.
     """
@@ -353,11 +354,12 @@ class Coupling(Columns):
 
 
 class Contact(Coupling):
-    """Parts that meet and part: what their impacts leave comes in bursts, and the instant of one hangs on the last."""
+    """Parts that meet and part: the residuals of their impacts come in bursts, and the instant of one depends on the
+    last."""
 
     @abstractmethod
     def wave_number(self, shape: Sequence[float]) -> float:
-        """A turn over the width in which they are apart: its product with an error of position is one of phase."""
+        """A turn over the width in which they are separate: its product with an error of position is one of phase."""
 
     @abstractmethod
     def period(self, shape: Sequence[float]) -> float:
@@ -404,7 +406,7 @@ class EncoderFault(Distortion):
 
 
 class Lag(Distortion):
-    """A first-order lag, T*dy/dt + y = u; two at once show as their difference, so a recording tells but one.
+    """A first-order lag, T*dy/dt + y = u; two at once show as their difference, so a recording determines only one.
 
     Attributes:
         signal: that lags: `velocity` or `current` between the drive and the recording, or the `torque` that acts behind
@@ -436,7 +438,7 @@ class Lag(Distortion):
     def delays(self, shape: Sequence[float], source: str) -> tuple[float, float, float]:
         """Lags to undo in columns of motion, in others, and in the effort, if speed comes from `source` - s."""
         lag = shape[0]
-        if self.signal == "velocity":  # what is made of the reported speed
+        if self.signal == "velocity":  # what is computed from the reported speed
             return (lag if source == "velocity" else 0.0), 0.0, 0.0
         return (lag, lag, 0.0) if self.signal == "torque" else (0.0, 0.0, lag)
 

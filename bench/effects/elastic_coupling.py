@@ -100,7 +100,7 @@ def _column(signals: Signals, antiresonance: float, damping: float, loads: Seque
     """Terms of one coupling.
 
     What acts on the load is brought in line with its motion turn by turn. Half of its steepest damping is counted to
-    the coupling's, so that a turn leaves less of an error than it found.
+    the coupling's, so that a turn reduces the error.
     """
     loss, spring, step = 2.0 * damping * antiresonance, antiresonance**2, signals.sample_period
     damped = 0.5 * _steepest(signals, loads) if loads else 0.0

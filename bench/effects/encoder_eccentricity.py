@@ -19,7 +19,7 @@ from bench.effects.waves import PHASE, Wave, amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
 
-#: Amplitudes that are tried where the bare axis tells no inertia - rad.
+#: Amplitudes that are tried where the bare axis determines no inertia - rad.
 AMPLITUDES = (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3)
 #: Newton steps that turn a measured into a true angle at most: the error after k of them is below e**(2**k). A step
 #: below the least is the last - rad.
@@ -38,7 +38,7 @@ class EncoderEccentricity(Wave, EncoderFault):
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """To first order, where the balance is linear in both shapes: it lacks J times the acceleration's error.
 
-        J is that beside both. Where another effect takes it, so that no amplitude that there may be follows, a range
+        J is that with both. Where another effect takes it, so that no amplitude that there may be follows, a range
         of amplitudes is tried.
         """
 

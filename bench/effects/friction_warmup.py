@@ -43,7 +43,7 @@ class FrictionWarmup(Friction):
         return {"relative_amplitude": amplitude, "time_constant": shape[0], "viscous_share": share}
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
-        """Dry friction decays; how viscous friction does tells little where that is small."""
+        """Dry friction decays; how viscous friction does matters little where that is small."""
         return base.coulomb > 0.0 and strengths[0] > 0.0
 
 

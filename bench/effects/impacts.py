@@ -20,7 +20,7 @@ from bench.effects.effect import Fitted
 from bench.effects.shape import FREQUENCY, extended
 from bench.effects.signals import Scope
 
-#: Factors of gap, frequency and damping within which a recording does not tell a contact from another.
+#: Factors of gap, frequency and damping within which a recording does not distinguish two contacts.
 INDISTINCT = (1.01, 1.1, 1.1)
 #: Gaps in travel of the motor at the recording's RMS speed over one filter width, wide ones closer, as impacts shift by
 #: more widths of the filter the wider the gap is; contacts - rad/s; damping ratio.

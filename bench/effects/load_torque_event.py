@@ -4,8 +4,8 @@
 
 M_e - N*m (N); t - time since the recording's start (that of the first, of several that are joined) - s.
 
-A short one differs from what else a model leaves by its edges: that runs as a parabola through the event and as long
-beside it. Where one takes many times what any other stretch of time does, it is no part of what comes again and again
+A short one differs from the rest of a residual by its edges: that runs as a parabola through the event and as long
+next to it. Where one takes many times what any other stretch of time does, it is no part of what comes again and again
 (level shifts and outliers of a series: R. S. Tsay, Journal of Forecasting 7, 1988, 1-20).
 """
 
@@ -36,11 +36,11 @@ ALIKE = 1.0 - 1e-9
 RESOLVED = 2.355
 #: Lengths of short events that are tried: from so many widths of the filter to a time - s -, each by a factor longer.
 SHORT, LONG, LONGER = 10.0, 0.15, 1.1
-#: What an event takes over what any other stretch does from which on it stands out: 5.3 at most without an event.
+#: What an event takes over what any other stretch does from which on it is significant: 5.3 at most without an event.
 STANDS_OUT = 9.0
 #: Short events at most: more are no occasions.
 FEW = 4
-#: Instants that are tried while the axis stands.
+#: Instants that are tried at standstill.
 PLACES = 5
 
 
@@ -64,7 +64,7 @@ class LoadTorqueEvent(Occasional, Torque):
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """The best window of time, all of them compared through cumulative sums.
 
-        Where the axis stands or creeps, friction takes what it is given, up to its static level: nothing below that
+        Where the axis is at rest or creeps, friction balances the torque, up to its static level: nothing below that
         speaks for an event there, nor do the impacts of what meets and parts.
         """
         weight = (_telling(fitted) & fitted.determined).astype(np.float64)
@@ -111,7 +111,7 @@ class LoadTorqueEvent(Occasional, Torque):
         return (np.diff(_rows_around(shape, time))[:, 0] / NORMAL95).tolist()
 
     def indistinct(self, shape: Sequence[float], time: Array, scope: Scope) -> list[tuple[float, ...]]:
-        """An edge where the axis stands may be anywhere between the rows before and after."""
+        """An edge at standstill may be anywhere between the rows before and after."""
         places = [[edge] for edge in shape]
         for place, (before, after) in zip(places, _rows_around(shape, time), strict=True):
             if after - before > RESOLVED * scope.width:
@@ -126,7 +126,7 @@ def _rows_around(shape: Sequence[float], time: Array) -> Array:
 
 
 def _telling(fitted: Fitted) -> NDArray[np.bool_]:
-    """Rows (m,) where the axis neither stands nor creeps, or that ask for more than static friction holds.
+    """Rows (m,) where the axis neither is at rest nor creeps, or that demand more than static friction.
 
     By the Coulomb friction of the rows that move.
     """
@@ -139,9 +139,9 @@ def _telling(fitted: Fitted) -> NDArray[np.bool_]:
 
 
 def _short(fitted: Fitted) -> tuple[Array, Array]:
-    """Squares that short events take beside a parabola, times their share there (s,) - (N*m)**2; when (s, 4) - s.
+    """Squares that short events take next to a parabola, times their share there (s,) - (N*m)**2; when (s, 4) - s.
 
-    That is when its stretch begins, it begins and ends, and its stretch ends. What lies beside an event takes much,
+    That is when its stretch begins, it begins and ends, and its stretch ends. What lies next to an event takes much,
     too, but a small share of what is there; nothing where one that lasts takes more.
     """
     time, residual, width = fitted.time, fitted.residual, fitted.scope.width

@@ -4,7 +4,7 @@
 
 so between reversals f = sigma*z/K_0 approaches g*sgn(omega) as exp(-sigma*|x|/(g*K_0)) over the displacement x.
 sigma, sigma_1 - bristle stiffness - N*m/rad (N/m) - and damping - N*m*s/rad (N*s/m); K_0 - Coulomb friction - N*m (N);
-g - level of sliding friction over K_0: 1, or what other effects make of it (Stribeck's rise, a direction, warmth).
+g - level of sliding friction over K_0: 1, or as changed by other effects (Stribeck's rise, a direction, warmth).
 Source: P. R. Dahl, AIAA Journal 14(12), 1976, 1675-1682; C. Canudas de Wit et al., IEEE TAC 40(3), 1995, eqs. 1-4.
 """
 
@@ -93,7 +93,7 @@ def bristles(position: Array, sign: Array, level: Array, rate: float) -> Array:
 
     Args:
         position: (n,) - rad (m).
-        sign: (n,) of speed, 0 where unknown: the last known one holds.
+        sign: (n,) of speed, 0 where unknown: the last known one is used.
         level: (n,) of sliding, as share of K_0.
         rate: sigma/K_0 - 1/rad (1/m).
     """

@@ -17,7 +17,7 @@ from bench.effects.signals import Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
-#: What the torque of a wave may hang on, with the derivative that makes it of the signal.
+#: What the torque of a wave may depend on, with the derivative that gives it from the signal.
 FACTORS: Mapping[str, tuple[Callable[[Signals], Array], int]] = {
     "nothing": (lambda s: np.ones_like(s.position), 0),
     "speed squared": (lambda s: s.velocity**2, 0),
@@ -142,7 +142,7 @@ class VaryingGain(Columns):
 
 
 class OtherWave(Columns):
-    """A wave of position of one number, times what a torque may hang on: one of FACTORS, or all of them.
+    """A wave of position of one number, times what a torque may depend on: one of FACTORS, or all of them.
 
     Where a wave sits right and is not what it is called, or is called by several names, this takes its place.
     """

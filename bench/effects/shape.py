@@ -42,7 +42,7 @@ class Shape:
         reach: how far a search goes from there, as factor e**reach, or as distance where `additive`; 0 if it does not.
         additive: whether steps are added rather than multiplied (an instant, an angle).
         step: of a numerical derivative, as share of the value; 0 of what is no free number of the fit.
-        measure: that the quantity goes with; None where the grid holds for every recording.
+        measure: that the quantity goes with; None where the grid is valid for every recording.
     """
 
     quantity: Quantity
@@ -86,10 +86,10 @@ def is_pitch(shape: Shape, scope: Scope) -> bool:
 
 
 def places(shape: Shape, scope: Scope) -> tuple[float, ...]:
-    """Where a shape is sought first: where its grid says, and beyond that where the recording's own measure says.
+    """Where a shape is sought first: on its grid, and beyond that by the recording's own measure.
 
     A motor and the joint behind its gear, a stage and a gantry differ by orders of magnitude. On a linear axis a grid
-    of angles says nothing, so there the measure alone does.
+    of angles is arbitrary, so there only the measure counts.
     """
     if is_pitch(shape, scope):
         return tuple((scope.spacing * np.arange(2.0 * COARSEST, 2.0 * FINEST + 1.0)).tolist())

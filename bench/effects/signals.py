@@ -34,14 +34,14 @@ class Signals:
         sign: sgn(omega), 0 where noise may have made it.
         effort: motor torque as reported - N*m (N).
         torque: motor torque as it acts, which a lag of the current loop delays - N*m (N).
-        friction: level of dry friction with its sign, as share of K_0: sgn(omega), or what a named effect makes of it;
+        friction: level of dry friction with its sign, as share of K_0: sgn(omega), or as changed by a named effect;
             effects that scale dry friction multiply it.
-        peak_effort: effort at the motor's peak current - N*m (N); the recording's largest where the rig tells none.
+        peak_effort: effort at the motor's peak current - N*m (N); the recording's largest where the rig has none.
         sample_period: s.
         source: signal that speed and acceleration are taken from, `velocity` or `position`.
         load: torque of the load as named effects make it - N*m (N).
         began: the recording, since the start of the first of several that are joined - s.
-        known: torque that is known to act beside - N*m (N) -, as a column; () where none is.
+        known: other known torque - N*m (N) -, as a column; () where none is.
         of_motion: what the motion takes from the effort before it is `effort` - N*m (N) -: induced voltage, a known
             weight. A shift of the effort's signal against the motion does not move it.
     """
@@ -106,7 +106,7 @@ class Scope:
         travel: from the lowest to the highest position - rad (m).
         top_speed, rms_speed: rad/s (m/s).
         peak_effort: as `Signals` has it - N*m (N).
-        rotor_inertia: of the motor alone, 0 where the rig does not tell - kg*m**2 (kg).
+        rotor_inertia: of the motor without load, 0 where the rig has none - kg*m**2 (kg).
     """
 
     kind: AxisKind
@@ -126,7 +126,7 @@ class Scope:
 
     @property
     def spacing(self) -> float:
-        """Distance of wave numbers that the travel just tells apart: half a cycle over it - 1 (rad/m)."""
+        """Distance of wave numbers that the travel just distinguishes: half a cycle over it - 1 (rad/m)."""
         return math.pi / self.travel
 
 

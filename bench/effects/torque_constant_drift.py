@@ -4,8 +4,8 @@
 
 r - relative rate - 1/s; t - time since the recording's start - s; M - torque that acts, M_reported = k_T*I by the rig's
 torque constant - N*m (N). Magnets that warm lose about 0.1 % of it a kelvin, ferrites twice that; the gain of a warming
-current sensor drifts alike, and a recording of motion cannot tell the two apart: it is the reading that no longer
-stands for the torque.
+current sensor drifts alike, and a recording of motion cannot distinguish the two: it is the reading that no longer
+represents the torque.
 Source: T. Sebastian, Temperature effects on torque production and efficiency of PM motors using NdFeB magnets, IEEE
 Transactions on Industry Applications 31(2), 1995.
 """

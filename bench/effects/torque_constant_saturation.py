@@ -1,4 +1,4 @@
-"""Saturation of the torque constant: torque per ampere falls at high current, beyond what the rig knows of it.
+"""Saturation of the torque constant: torque per ampere falls at high current, beyond what the rig states.
 
     M = kT*I*(1 - d*(I/I_peak)**2)
 

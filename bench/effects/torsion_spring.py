@@ -3,8 +3,8 @@
     M = c*(q - q_0)
 
 c - stiffness - N*m/rad (N/m), not negative; q - position - rad (m); q_0 - position at rest - rad (m). A constant torque
-moves the rest position: no recording distinguishes a spring with an offset from one that rests elsewhere. So beside a
-spring no `torque_offset` is needed, and both numbers of the spring are counted as fitted.
+moves the rest position: no recording distinguishes a spring with an offset from one with another rest position. So
+with a spring no `torque_offset` is needed, and both numbers of the spring are counted as fitted.
 """
 
 from collections.abc import Mapping, Sequence

@@ -26,7 +26,7 @@ class Unbalance(Wave, Torque):
         return self.wave(values, at.position)
 
     def add(self, spec: Spec, name: str, values: Mapping[str, float], axis: Axis) -> None:
-        """A torque of one period a revolution: an eccentric body would add inertia that J holds already."""
+        """A torque of one period a revolution: an eccentric body would add inertia that J contains already."""
         passive_motor(spec, name, cogging=(-values["amplitude"], 1.0, values["phase"]))
 
 

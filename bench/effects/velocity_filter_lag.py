@@ -22,10 +22,10 @@ from bench.trace.trace import Trace
 #: sample period where what is recorded as speed is the difference of the recorded positions.
 LEAST_SHARE = 0.6
 #: Distance from the lag of a mean over the sample, of whose ticks the middle is late by (sample period - tick)/2, below
-#: which a lag is that of a recorder that averages, beside its error - share of the sample period: 0.001 at most of
-#: means, 0.02 at least of lags.
+#: which a lag is that of a recorder that averages, in addition to its error - share of the sample period: 0.001 at
+#: most of means, 0.02 at least of lags.
 AVERAGED = 0.005
-#: Share of the noise of differences of position that they leave of a speed which is made of them.
+#: Share of the noise of differences of position that remains in a speed which is computed from them.
 OF_POSITION = 0.5
 #: Disagreement of speed and position above what their noise makes, and the share of it that a lag must explain.
 DISAGREE, EXPLAINED = 1.5, 0.7
@@ -40,11 +40,12 @@ class VelocityFilterLag(Lag):
     signal = "velocity"
 
     def sought(self, scope: Scope) -> bool:
-        """Where speed alone is recorded; beside it, position tells the lag by itself."""
+        """Where only speed is recorded; a recorded position determines the lag by itself."""
         return scope.source == "velocity" and "position" not in scope.signals
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
-        """A lag of the torque, unless position tells that; and, as only the difference shows, one of the current."""
+        """A lag of the torque, unless position determines that; and, as only the difference shows, one of the
+        current."""
         return () if "position" in scope.signals else ("current_loop_lag", "current_filter_lag")
 
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:
@@ -78,7 +79,7 @@ class VelocityFilterLag(Lag):
 
 
 def _of_position(trace: Trace) -> bool:
-    """Whether speed is made of the recorded positions: their noise is in it, too."""
+    """Whether speed is computed from the recorded positions: their noise is in it, too."""
     parts = [part for part in trace.segments if part.stop - part.start > 1]
     differences = [np.diff(trace["position"][part]) / trace.sample_period for part in parts]
     left = [trace["velocity"][part][1:] - made for part, made in zip(parts, differences, strict=True)]

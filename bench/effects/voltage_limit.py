@@ -30,7 +30,7 @@ TOP, STANDING, SAMPLES = 0.045, 0.5, 20
 #: Samples above the top that are not behind, over those behind: 0.10 at most where the voltage ends, else 0.18 at least
 #: (`python -m tests.studies.blind.margins`).
 BEYOND = 0.13
-#: Share of the top speed below which an axis rests.
+#: Share of the top speed below which an axis is at rest.
 RESTING = 0.02
 #: Share of the limit above which the voltage counts as all that there is, and samples in a row that it must.
 NEARLY, STEADY = 0.97, 5
@@ -47,7 +47,7 @@ class VoltageLimit(DriveLimit):
         """The top of U = R*I + K_e*omega + L*dI/dt at which speed falls behind its reference.
 
         None where speed never falls behind, does so at less voltage than it keeps up with or where it is the current
-        that stands at its top; nor where the rig lacks the winding or the recording the reference.
+        that stays at its top; nor where the rig lacks the winding or the recording the reference.
         """
         motor = rig.motor
         known = motor.resistance is not None and motor.back_emf_constant is not None
@@ -91,7 +91,7 @@ class VoltageLimit(DriveLimit):
     def flowing(
         self, values: Values, axis: Axis, velocity: Number, demand: Number, before: Number, step: float
     ) -> tuple[Number, Number]:
-        """Full voltage until the current is what is demanded, then what holds it there, if the limit allows."""
+        """Full voltage until the current is what is demanded, then what keeps it there, if the limit allows."""
         winding, xp = axis.winding, namespace(demand)
         if winding is None:
             raise InputError(

@@ -121,7 +121,7 @@ class Balanced:
         sums: of the stretches.
         length: samples a window.
         by_motion, by_position: share of the effort's variance that motion explains, and motion with position.
-        inertia, coulomb: J - kg*m**2 (kg), or what the effort's unit makes of it - and K_0 of the motion with position.
+        inertia, coulomb: J - kg*m**2 (kg), or in the effort's unit - and K_0 of the motion with position.
         columns, effort: (windows, 7) and means over each window (windows,).
         starts: first sample of each window (windows,).
     """
@@ -262,9 +262,9 @@ class Seen:
         return [Sums.of(self.trace, self.speed(part), effort, part) for part in self.stretches(3 * min(LENGTHS))]
 
 
-#: A recording as it was meant, beside the result of a check that could put right what it found.
+#: A recording as it was meant, with the result of a check that could put right what it found.
 Repaired = tuple[Check, Trace]
-#: What each check is: a question to a recording; None where it is not asked of such a one.
+#: What each check is: a test of a recording; None where it does not apply.
 Look = Callable[[Seen], Check | Repaired | None]
 
 

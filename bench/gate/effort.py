@@ -35,7 +35,7 @@ ALLOWED_CONSTANTS = "kT is Ke, 3/2 or sqrt(3) of it, as Ke is meant, within thei
 def has_sign(seen: Seen) -> Check:
     """Whether the effort has lost its sign: it is never below zero (or above), yet at zero while the axis moves.
 
-    What holds a load up is of one sign, too: then inertia, friction and position explain it.
+    The torque that carries a load is of one sign, too: then inertia, friction and position explain it.
     """
     parts, fitted = seen.stretches(LEAST), seen.balance()
     if seen.effort is None or fitted is None or not parts:
@@ -70,7 +70,7 @@ def follows_motion(seen: Seen) -> Check:
 
 
 def judged(fitted: Balanced, name: str) -> Check:
-    """What a balance of the effort of a name says."""
+    """The result of a balance of the effort of a name."""
     by_motion, by_position = max(fitted.by_motion, 0.0), max(fitted.by_position, 0.0)
     explained = f"motion explains {by_motion:.0%} of {name}, with position {by_position:.0%}"
     if by_position < WARNED and fitted.effort_over_noise < ABOVE_NOISE:

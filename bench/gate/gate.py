@@ -34,7 +34,7 @@ CHECKS: tuple[Look, ...] = (
 UNSTEADY: tuple[Look, ...] = (signals.moves, repairs.none_lost, timing.rate, signals.resolution)
 UNSTEADY += (effort.has_sign, throughout.holds, effort.follows_motion)
 STEADY = tuple(look for look in CHECKS if look not in UNSTEADY)
-#: Checks of a later part of a recording: what can go wrong there, without what holds for all of it.
+#: Checks of a later part of a recording: what can go wrong there, without what is the same in all of it.
 WHOLE = (timing.rate, signals.resolution, effort.has_sign, effort.follows_motion, effort.constants, plausible.agrees)
 WHOLE += (plausible.units, neighbours.stand)
 PARTS = tuple(look for look in CHECKS if look not in WHOLE)

@@ -1,8 +1,8 @@
-"""Do the joints stand that were stated to stand? What the torque of a joint beside them leaves may say that one moved.
+"""Did the joints stand still that were stated to? The residual torque of another joint may show that one moved.
 
-What a joint that moves asks of another follows a path that is not in the log: to the other it is a torque that changes
-over time and not with its own motion. So it is what the joint's own terms leave and a spline in time explains.
-What else pushes over time looks the same; which of the two it was, the log of one joint does not tell.
+The torque that a moving joint causes in another follows a path that is not in the log: to the other it is a torque
+that changes over time and not with its own motion. So it is what the joint's own terms leave and a spline in time
+explains. What else pushes over time looks the same; which of the two it was, the log of one joint does not show.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ NAME = "neighbours_stand"
 CUTOFF = 3.0
 #: A spline has a knot every so often - s -, at most so many, and so many rows for each at least.
 EVERY, MOST, ROWS = 0.25, 200, 3
-#: Share that it leaves, at most, of the power that the joint's own terms leave: 0.06 at most beside a joint that moved
-#: by 0.4 rad and more, and 0.2 at least beside effects of the joint's own (`tests/gate/test_neighbours.py`).
+#: Largest share of the power of the joint's own residual that it leaves out: 0.06 at most next to a joint that moved
+#: by 0.4 rad and more, and 0.2 at least with effects of the joint's own (`tests/gate/test_neighbours.py`).
 LEFT = 0.1
 
 ALLOWED = "torque that goes with the joint's own motion, where others are stated to stand still"
 
 
 def stand(seen: Seen) -> Check | None:
-    """Whether what is left of the effort goes with time, as it does beside a joint that moves and is not in the log.
+    """Whether the residual effort depends on time, as it does next to a joint that moves and is not in the log.
 
     None where no other joint is stated to stand.
     """
@@ -44,7 +44,8 @@ def stand(seen: Seen) -> Check | None:
 
 
 def _over_time(seen: Seen) -> float:
-    """RMS of what the effort has with time beside its own motion, in its unit; 0 where that is not most of the rest."""
+    """RMS of the effort that depends on time, not on its own motion, in its unit; 0 where that is not most of the
+    rest."""
     if seen.effort is None or not seen.tells_motion:
         return 0.0
     trace, (effort, _) = seen.trace, seen.effort
@@ -74,13 +75,13 @@ def _table(smooth: GaussianFilter, part: slice, place: Array, effort: Array, w: 
 
 
 def _left(table: Array, torque: Array) -> Array:
-    """Of a torque (m,) beside columns (m, k)."""
+    """Of a torque (m,) together with columns (m, k)."""
     return torque - table @ np.linalg.lstsq(table, torque, rcond=1e-10)[0]
 
 
 def _splines(time: Array) -> list[Array]:
     """Cubic splines that together are any smooth course over times - s - (n,) each."""
-    from scipy.interpolate import BSpline  # 0.1 s, which only a joint beside others has to pay
+    from scipy.interpolate import BSpline  # 0.1 s, which only a joint among others has to pay
 
     first, last = float(time[0]), float(time[-1])
     inner = np.linspace(first, last, min(round((last - first) / EVERY), MOST - 3) + 1)

@@ -12,9 +12,9 @@ from bench.gate.check import Check, Seen, absent
 from bench.trace.trace import ASSUMED_UNITS
 
 NAME, UNITS = "agrees_with_rig", "units"
-#: Factor between what is found and what the rig says that is reported, and that is refused.
+#: Factor between what is found and the rig's value that is reported, and that is refused.
 WARNED, REFUSED = 1.2, 3.0
-#: Share of the effort that motion explains from which on the coarse balance tells an inertia.
+#: Share of the effort that motion explains from which on the coarse balance determines an inertia.
 EXPLAINED = 0.8
 #: Share of the samples that lie below what counts as the largest: spikes are no motion - %.
 MOST = 99.5
@@ -41,7 +41,7 @@ def units(seen: Seen) -> Check | None:
 
 
 def _compared(seen: Seen) -> Iterator[tuple[float, str]]:
-    """Ratio of found to said, and in words; what is only a limit counts where it is exceeded."""
+    """Ratio of found to stated, and in words; what is only a limit counts where it is exceeded."""
     rig, trace = seen.rig, seen.trace
     if rig is None:
         return
@@ -59,7 +59,7 @@ def _compared(seen: Seen) -> Iterator[tuple[float, str]]:
 
 
 def _inertia(seen: Seen) -> float | None:
-    """Inertia (mass) by the rig, on the motor's side; None where it does not say all of it."""
+    """Inertia (mass) by the rig, on the motor's side; None where it does not state all of it."""
     rig = seen.rig
     if rig is None or rig.load is None or rig.load.link_inertia is not None or not rig.motor.inertia:
         return None

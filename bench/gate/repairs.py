@@ -2,10 +2,10 @@
 
 Samples that a recorder lost, or wrote twice, and numbered on as if nothing had happened.
 
-Each loss is a jump in position that speed knows nothing of: with n samples lost between two, the axis has gone n*v*T
+Each loss is a jump in position that speed does not show: with n samples lost between two, the axis has gone n*v*T
 further than the integral of its speed over one period T. A sample that repeats the one before is n = -1, and the next
-n = +1 if its time was right. What a lag, an offset or noise of the speed leaves of this difference changes slowly, and
-is taken off by its running median. Where no speed is recorded, the running median of the steps stands for it.
+n = +1 if its time was right. The part of this difference due to a lag, an offset or noise of the speed changes slowly,
+and is taken off by its running median. Where no speed is recorded, the running median of the steps replaces it.
 
 Found samples are put right: stamps get the periods that are missing, and a recording with right stamps goes the way of
 any other, a single missing sample interpolated, a longer loss a hole.
@@ -27,9 +27,9 @@ from bench.trace.wraps import Wraps, jumps, period_of
 NAME = "lost_samples"
 #: Samples of the running median, and of the shortest stretch that is looked at.
 WINDOW, SHORTEST = 9, 32
-#: A jump stands out this many times above what all but one in twenty steps show, and above the position's resolution.
+#: A jump is this many times above what all but one in twenty steps show, and above the position's resolution.
 STANDS_OUT, STEPS = 6.0, 3.0
-#: Without speed, it also stands out this many times above its neighbours: a jerk is no single jump.
+#: Without speed, it is also this many times above its neighbours: a jerk is no single jump.
 ALONE = 4.0
 #: Distance of a jump, in steps of the motion, from a whole number of them.
 WHOLE = 0.3
@@ -60,7 +60,7 @@ def none_lost(seen: Seen) -> Check | Repaired:
     most = (MOST if "velocity" in trace else MOST_BLIND) * len(trace)
     for _ in range(PASSES):
         missing, again = damage_of(right)
-        in_time = (missing[:-1] < 0) & (missing[1:] > 0)  # a repeated sample stands for the one that is missing
+        in_time = (missing[:-1] < 0) & (missing[1:] > 0)  # a repeated sample replaces the one that is missing
         found_lost, found_stale = int(np.maximum(missing, 0).sum() - in_time.sum()), int(again.sum())
         lost, stale = lost + found_lost, stale + found_stale
         if lost + stale > most or not (found_lost or found_stale):
@@ -75,8 +75,8 @@ def none_lost(seen: Seen) -> Check | Repaired:
 
 
 def damage_of(trace: Trace) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """Samples lost in each step, -1 where the next sample repeats this one (n - 1,); and which samples say again what
-    the one before said, in their position or in every signal (n,).
+    """Samples lost in each step, -1 where the next sample repeats this one (n - 1,); and which samples repeat what
+    the one before has, in their position or in every signal (n,).
     """
     missing = np.zeros(len(trace) - 1, dtype=np.int64)
     parts = [part for part in trace.segments if part.stop - part.start >= SHORTEST] if "position" in trace else []
@@ -122,7 +122,7 @@ def _whole_steps(jump: Array, step: Array, limit: float, least: float) -> NDArra
 
 
 def _alone(jump: Array) -> NDArray[np.bool_]:
-    """Where a jump stands out of its neighbours; a repeated sample's two stand beside each other."""
+    """Where a jump exceeds its neighbours; a repeated sample's two are adjacent."""
     size = np.pad(np.abs(jump), (4, 2))
     return np.abs(jump) > ALONE * np.maximum.reduce([size[:-6], size[1:-5], size[2:-4], size[6:]])
 

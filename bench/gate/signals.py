@@ -17,7 +17,7 @@ MOTION = ("position", "velocity")
 IN_A_ROW, NOISY = 50, 1.0
 #: Second difference of a signal's changes over these, in the middle, below which it has no noise; white noise has 3.
 SMOOTH = 0.05
-#: Steps of a position, and share of all its travel, that its speed says it must have gone meanwhile.
+#: Steps of a position, and share of all its travel, that it must have gone by its speed meanwhile.
 TRAVELLED, OF_ALL = 20.0, 0.02
 #: Share of all samples that stand still to be refused.
 FROZEN = 0.005
@@ -39,7 +39,7 @@ DROPPED = 0.3
 SHORT = (4, 16)
 #: Steps within a signal's spread that are reported, and refused.
 FINE, COARSE = 8.0, 1.0
-#: Samples from which a spread says something.
+#: Samples from which a spread is meaningful.
 LEAST = 64
 
 ALLOWED_MOVES = "motion and effort that change, and no sensor that stands still meanwhile"
@@ -59,7 +59,7 @@ def moves(seen: Seen) -> Check:
         noise = " but noise" * any(np.ptp(trace[name]) > 0.0 for names in still for name in names)
         found = f"{' and '.join(' and '.join(names) for names in still)} without any change{noise}"
         advice = "record while the axis moves, and the signal that the motor's torque follows"
-        # at one speed an effort may be one number; what that leaves open, the fit says better
+        # at one speed an effort may be one number; the fit judges that better
         status = "warn" if efforts in still and _steady(seen) else "fail"
         return Check(MOVES, status, found, ALLOWED_MOVES, advice, unanswerable=True)
     frozen = {name: count for name in (*motion, *efforts) if (count := _frozen(trace, name))}
@@ -121,7 +121,7 @@ def _runs(standing: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.int
 
 
 def clips(seen: Seen) -> Check:
-    """Whether a signal stands at the end of its range."""
+    """Whether a signal stays at the end of its range."""
     names = [name for name in ("current", "torque", "force", "velocity") if name in seen.trace]
     if not names:
         return absent(CLIPS, "no speed or effort is recorded", ALLOWED_CLIPS)
@@ -151,7 +151,7 @@ def _stands(seen: Seen, name: str, side: float) -> Check | None:
 def _standing(
     trace: Trace, rig: Rig | None, name: str, side: float
 ) -> tuple[str, NDArray[np.bool_], tuple[int, int]] | None:
-    """Where a signal stands at an end of its range, as of `_stands`; None where hardly, or at the drive's own limit.
+    """Where a signal stays at an end of its range, as of `_stands`; None where hardly, or at the drive's own limit.
 
     In words, the samples at which it does (n,), and the first and the last in long rows of them.
     """
@@ -171,14 +171,14 @@ def _standing(
 
 
 def clipped(trace: Trace, rig: Rig) -> list[str]:
-    """A warning of each end of its range at which a signal of the effort stands."""
+    """A warning of each end of its range at which a signal of the effort stays."""
     names = [name for name in ("current", "torque", "force") if name in trace]
     ends = (_standing(trace, rig, name, side) for name in names for side in (1.0, -1.0))
     return [f"{end[0]}: the end of its range? What lies beyond is lost" for end in ends if end is not None]
 
 
 def _more_demanded(seen: Seen, name: str, standing: NDArray[np.bool_], side: float) -> bool:
-    """Whether the motion, by what the other windows say of the axis, takes more effort than stands there, or other."""
+    """Whether the motion, by the axis' values in the other windows, takes more effort than is recorded, or other."""
     fitted = seen.balance(SHORT) if seen.effort is not None and seen.effort[1] == name else None
     if fitted is None:
         return False

@@ -3,7 +3,8 @@
     gain of a block = (demand . effort)/(demand . demand),  demand = the balance of all blocks along the block's motion
 
 A block is a stretch of time. Physics changes the gain by tens of percent; a sign that turns makes it -1, a sensor that
-drops out 0, another unit a thousand. A delay is recognised by how much less the balance leaves with the effort shifted.
+drops out 0, another unit a thousand. A delay is recognised by how much smaller the residual of the balance is with the
+effort shifted.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from bench.trace.trace import Trace
 NAME = "balance_holds_throughout"
 #: Blocks of a recording, and windows that one has at least.
 BLOCKS, WINDOWS = 32, 6
-#: Share of the effort that the balance explains, with the gains' signs taken out, from which on they say something.
+#: Share of the effort that the balance explains, with the gains' signs taken out, from which on they are meaningful.
 EXPLAINED = 0.6
 #: Share of the demand's RMS that a block has at least.
 DEMANDED = 0.3
@@ -29,7 +30,7 @@ QUIET, SCALED = 0.2, 3.0
 ALIKE = 0.95
 #: Delays that are tried to both sides, and the least that is refused - s, and samples: drives and filters have shorter.
 LONGEST, LATE, SAMPLES = 0.1, 0.012, 12
-#: Share of what is left that a fault, taken out, may leave; of signs, of which each block may have either, the first.
+#: Share of the residual that may remain without a fault; of signs, of which each block may have either, the first.
 LEFT_BY_SIGNS, LEFT = 0.25, 0.4
 #: The same of a delay that is a fault: 29 of 37 currents of the shared cases that are 20 ms late or early leave 0.06 to
 #: 0.2, a load on a viscous coupling, which looks 12 ms late, 0.29. Above it it may be physics, which diagnose names.
@@ -84,7 +85,8 @@ def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str,
 
 
 def _left(fitted: Balanced, factors: Array) -> float:
-    """Share of the effort that the balance leaves of the windows, their effort times factors (n,); 0 leaves one out."""
+    """Share of the effort that the balance does not explain in the windows, their effort times factors (n,); 0 leaves
+    one out."""
     used = factors != 0.0
     effort, basis = (fitted.effort * factors)[used], basis_of(fitted.columns[used])
     return 1.0 - float(np.sum((basis.T @ effort) ** 2)) / max(float(effort @ effort), 1e-300)
@@ -99,7 +101,7 @@ def _signs(along: Array) -> Array:
 
 
 def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, str, float]]:
-    """That the effort is late, or early, by more than a drive makes it; and the share that so shifted is left."""
+    """That the effort is late, or early, by more than a drive makes it; and the share that remains so shifted."""
     most = round(LONGEST / trace.sample_period)
     length, each = fitted.length, max(1, most // 50)
     shifts = np.arange(-most, most + 1, each)

@@ -4,7 +4,7 @@
 
 by least squares over spans of SPAN samples, so that a filter of the speed is a lag and a sensor's zero an offset, not
 another ratio. At one steady speed neither can be separated from the ratio, and only that is fitted. What remains, as
-share of the displacements, says whether both are the same motion at all.
+share of the displacements, shows whether both are the same motion at all.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def compared(seen: Seen) -> tuple[float, float, float] | None:
 
 
 def judged(ratio: float, lag: float, remainder: float) -> Check:
-    """What a comparison of speed and position, as of `compared`, says."""
+    """What a comparison of speed and position, as of `compared`, finds."""
     units = "check the units (and signs) of both columns and of the time, or omit one of the two columns"
     if abs(ratio - 1.0) > REFUSED and remainder < REMAINDER:
         thousands = math.log10(abs(ratio)) / 3.0 if ratio else 0.0

@@ -1,4 +1,4 @@
-"""One joint of a robot, as far as logs tell it: what is refused leaves the rest."""
+"""One joint of a robot, as far as logs determine it: a refusal does not affect the rest."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ EFFECTS = "effects"
 
 @dataclass(frozen=True)
 class JointLogs:
-    """What is asked of one joint: logs that are fitted, one that is not, and what is known beside them.
+    """The task of one joint: logs that are fitted, one that is not, and what else is known.
 
     Attributes:
         joint: its name in the MJCF.
@@ -48,7 +48,7 @@ class JointLogs:
         rig: of the joints; None where nothing is known of them.
         stated: positions of joints that stand and that the logs do not hold - rad (m).
         excluded: effects that are not tried.
-        added: what the robot has beside its MJCF.
+        added: what the robot has in addition to its MJCF.
         stand: whether a floating base is fixed.
     """
 
@@ -69,15 +69,15 @@ class JointLogs:
 
 @dataclass(frozen=True)
 class IdentifiedJoint:
-    """What logs tell of a joint.
+    """The result of logs for a joint.
 
     Attributes:
         name: in the MJCF.
-        rig: with what the MJCF knows of its links; None where the MJCF or the logs do not tell the joint.
+        rig: with the MJCF's values of its links; None where the MJCF or the logs do not contain the joint.
         diagnosis: with effects; None where the logs do not decide on them.
-        estimate: inertia and friction alone, where there is no diagnosis; None where they tell nothing.
+        estimate: inertia and friction only, where there is no diagnosis; None where they are not determined.
         refused: why a parameter, or whether anything is missing, is not determined, by its name.
-        record: the motion that would tell it; empty where nothing is refused.
+        record: the motion that would determine it; empty where nothing is refused.
         left_out: why a log was not used, by its file.
         failed: what is wrong with the input, if that is why nothing is determined.
         motion: of a diagnosis with a model that moves.
@@ -155,7 +155,7 @@ class IdentifiedJoint:
 
 
 def identified(asked: JointLogs) -> IdentifiedJoint:
-    """The joint by its logs; what is wrong with them, or what they do not tell, is in it."""
+    """The joint by its logs; what is wrong with them, or what they do not determine, is in it."""
     try:
         robot = asked.robot()
         rig = joint_rig(asked.rig, robot)
@@ -187,7 +187,7 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
 def of_each(
     told: Callable[[JointLogs], Told], work: Sequence[JointLogs], progress: Callable[[float], None]
 ) -> list[Told | Failure]:
-    """What a function tells of each joint by its logs, side by side on processes."""
+    """The result of a function for each joint by its logs, side by side on processes."""
     found: dict[int, Told | Failure] = {}
     for place, one in each(told, work, LIMITS):
         found[place] = one

@@ -1,15 +1,17 @@
-"""What the MJCF does not tell of the links, over all joints together: a payload, or a link's inertia that it has wrong.
+"""What the MJCF does not contain of the links, over all joints together: a payload, or a link's inertia that it has
+wrong.
 
-What a point of mass on a body asks of the joints is linear in the mass and quadratic in its place; what more inertia of
-a link about its joint's axis asks is linear in that. Each is a column of every joint's torque balance beside the
+The joint torque of a point of mass on a body is linear in the mass and quadratic in its place; what more inertia of
+a link about its joint's axis causes is linear in that. Each is a column of every joint's torque balance with the
 joint's own inertia and friction, and its strength is common to all:
 
     M_j = J_j*alpha_j + K_wj*omega_j + f_j*sgn(omega_j) + sum over k of s_k*C_jk
     f_j = K_0j + mu_j*|M_j| + sum over l of a_jl*exp(-(omega_j/w_l)**2)
 
 C_jk - known torque of the robot with the change less that without, per unit of it. Joints weigh by what they leave. The
-covariance is that of scores summed over stretches of time, in which residuals hang together (K.-Y. Liang, S. L. Zeger,
-Biometrika 73, 1986, 13-22). A link turns its own joint as an armature does: other joints tell its inertia, if any do.
+covariance is that of scores summed over stretches of time, in which residuals are correlated (K.-Y. Liang, S. L. Zeger,
+Biometrika 73, 1986, 13-22). A link turns its own joint as an armature does: other joints determine its inertia, if any
+do.
 """
 
 from __future__ import annotations
@@ -39,13 +41,13 @@ OWN = len(BASE) + 1 + len(SLOW)
 STRETCHES = 24
 #: Rounds in which weights of the joints, and the place of a payload, settle.
 ROUNDS = 3
-#: By which the places of masses are apart - m.
+#: Distance between places of masses - m.
 ASIDE = 0.1
 #: Share of the strongest column's power at which another has none.
 SILENT = 1e-9
 #: Least share of a column's power that the joints' own terms must leave.
 LEAST = 0.01
-#: A link's inertia is doubted where this many errors and this share of what all joints leave say so.
+#: A link's inertia is doubted where this many errors and this share of all joints' residuals require it.
 SURE, TAKES = 6.0, 0.2
 #: Links at most whose inertia is doubted.
 MOST = 3
@@ -101,7 +103,7 @@ class Common:
 def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
     """Products of a joint's own columns, those of changes of the robot, and its effort, by stretch (s, n, n).
 
-    None of a joint that the logs do not tell.
+    None of a joint that the logs do not determine.
     """
     found = []
     for log in asked.logs:
@@ -122,7 +124,7 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
 def _frictions(signals: Signals) -> list[Column]:
     """Friction by transmitted torque, and by speeds that are a share of the usual one.
 
-    No joint has been diagnosed yet: what its friction has beside a level would pass for weight.
+    No joint has been diagnosed yet: the part of its friction that is not a level would pass for weight.
     """
     speed = np.abs(signals.velocity)
     slow = (np.exp(-((speed / (share * rms(speed) + 1e-300)) ** 2)) for share in SLOW)
@@ -132,7 +134,7 @@ def _frictions(signals: Signals) -> list[Column]:
 def of_joints(
     work: Sequence[JointLogs], changes: Sequence[AddedBody], progress: Callable[[float], None] = lambda share: None
 ) -> list[Array]:
-    """Those products of all joints that the logs tell, each on a process."""
+    """Those products of all joints that the logs determine, each on a process."""
     every = of_each(partial(gathered, changes=tuple(changes)), work, progress)
     return [one for one in every if isinstance(one, np.ndarray)]
 
@@ -163,7 +165,8 @@ def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
 
 
 def _solved(reduced: Array, lefts: Sequence[float]) -> tuple[Array, Array, Array]:
-    """Strengths (k,), the inverse of their matrix (k, k), and the weights of the joints, by what each leaves (j,)."""
+    """Strengths (k,), the inverse of their matrix (k, k), and the weights of the joints, by the residual of each
+    (j,)."""
     weights = 1.0 / np.maximum(lefts, 1e-300)
     inverse = symmetric_inverse(np.tensordot(weights, reduced[:, :-1, :-1], 1)[None], 1e-12)[0]
     return inverse @ np.tensordot(weights, reduced[:, :-1, -1], 1), inverse, weights
@@ -176,7 +179,7 @@ def _reduced(product: Array) -> Array:
 
 
 def _scores(part: Array, strengths: Array) -> tuple[Array, float]:
-    """Scores of the strengths by stretch (s, k) of a joint, and the sum of squares that it leaves."""
+    """Scores of the strengths by stretch (s, k) of a joint, and its residual sum of squares."""
     whole = part.sum(axis=0)
     projection = np.linalg.lstsq(whole[:OWN, :OWN], whole[:OWN, OWN:], rcond=1e-12)[0]
     theta = projection[:, -1] - projection[:, :-1] @ strengths
@@ -190,7 +193,7 @@ def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float
     """Mass and centre of what a body carries, by gravity and acceleration over all joints together.
 
     Raises:
-        UndeterminedError: the logs do not tell a mass above zero.
+        UndeterminedError: the logs do not determine a mass above zero.
         InputError: the MJCF has no such body.
     """
     replace(work[0], added=(AddedBody(body),)).robot()
@@ -223,7 +226,7 @@ def _monomials(x: Array, y: Array, z: Array) -> Array:
     return np.stack([x**0, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z], axis=-1)
 
 
-#: Places that together tell the torque of a point of mass at any other - m.
+#: Places that together determine the torque of a point of mass at any other - m.
 PLACES = ASIDE * np.array(
     [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0), (0, 0, -1), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
 )
@@ -283,7 +286,7 @@ def _only(product: Array, kept: Sequence[int]) -> Array:
 
 
 def _tells(products: Sequence[Array], k: int) -> bool:
-    """Whether any joint shows a column apart from its own terms."""
+    """Whether any joint shows a column distinct from its own terms."""
     wholes = (_only(product, [k]).sum(axis=0) for product in products)
     return any(whole[-2, -2] > 0.0 and _reduced(whole)[0, 0] > LEAST * whole[-2, -2] for whole in wholes)
 

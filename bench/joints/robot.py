@@ -1,4 +1,4 @@
-"""A robot by its logs: every joint beside the rest, joints side by side on processes, and the MJCF with all of them."""
+"""A robot by its logs: every joint within the rest, joints in parallel on processes, and the MJCF with all of them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SEEKING = 0.3
 
 @dataclass(frozen=True)
 class IdentifiedRobot(Shown):
-    """What logs tell of a robot.
+    """The result of logs for a robot.
 
     Attributes:
         mjcf: its file.
@@ -33,7 +33,7 @@ class IdentifiedRobot(Shown):
         payload: what a body carried in the logs, where that was sought and is determined.
         links: whose inertia is not the MJCF's; joints are reported with what theirs is.
         warnings: what concerns no joint alone.
-        added: what the joints were identified with beside the MJCF.
+        added: what the joints were identified with in addition to the MJCF.
         stand: whether a floating base was fixed.
     """
 
@@ -60,7 +60,7 @@ class IdentifiedRobot(Shown):
         return {name: model for name, model in models.items() if model is not None}
 
     def with_joints(self, out: Path) -> tuple[str, tuple[str, ...]]:
-        """Text of the MJCF with the models of the joints and what it had beside, and what went onto each in sentences.
+        """Text of the MJCF with the models of the joints and the rest of it, and what went onto each in sentences.
 
         InputError where MuJoCo cannot have it.
         """
@@ -86,7 +86,8 @@ def robot(
     progress: Callable[[float], None] = lambda share: None,
     stand: bool = False,
 ) -> IdentifiedRobot:
-    """Identify and diagnose every joint of a robot, each beside the rest of it; one that fails leaves the others.
+    """Identify and diagnose every joint of a robot, each within the rest of it; one that fails does not affect the
+    others.
 
     Args:
         logs: one log of all joints, or several that each move a few.
@@ -119,7 +120,7 @@ def _answered(
 ) -> IdentifiedRobot:
     """All joints, with a payload that is known or sought, and again where links have another inertia.
 
-    `of_all` is what is asked of each, but for its name.
+    `of_all` is the task of each, but for its name.
     """
     sought, warnings = None, list[str]()
     if isinstance(payload, str):

@@ -3,9 +3,9 @@
     J*alpha = M - K_w*w - K_0*sgn(w) - M_L
 
 J - moment of inertia of everything that moves, on the motor's side - kg*m**2; M - motor torque - N*m; K_w - viscous
-friction coefficient - N*m*s/rad; K_0 - Coulomb friction - N*m, which holds a standing axis against any torque below it;
-M_L - load torque, on the motor's side - N*m; alpha, w - acceleration and velocity - rad/s**2, rad/s. On a linear axis
-mass, force and metres take their places.
+friction coefficient - N*m*s/rad; K_0 - Coulomb friction - N*m, which keeps a standing axis at rest against any torque
+below it; M_L - load torque, on the motor's side - N*m; alpha, w - acceleration and velocity - rad/s**2, rad/s. On a
+linear axis mass, force and metres take their places.
 
 Integration is MuJoCo's semi-implicit Euler, made exact for this equation in two ways, both measured in docs/plant.md:
 

@@ -3,7 +3,7 @@
     torque = K_v*e_v + K_i*integral(e_v dt) + J_ff*acceleration_reference,        |torque| <= torque_limit
     e_v = velocity_reference + K_p*(position_reference - position) - velocity
 
-It exists twice and both agree (tests/plant/test_drive.py prints by how much): `CascadeDrive`, ticked in Python, holds
+It exists twice and both agree (tests/plant/test_drive.py prints by how much): `CascadeDrive`, ticked in Python, is
 its integrator while the torque is limited; `add_pid` is the same law as MuJoCo's own actuator, which does not hold, and
 serves wherever the limit is not reached.
 """
@@ -112,7 +112,7 @@ class _EmulatedFriction:
     A tick of length T begins at speed w and accelerates by alpha = (M_net - friction)/J, M_net being set-point less
     load. Viscous friction is that of the speed in its middle, w + alpha*T/2, as the torque is held over the tick. Dry
     friction is what stops the axis within the tick, M_net + J*w/T - K_w*w/2, as far as K_0 allows; beyond that it
-    slips. The load is what the last tick's change of speed tells: M_load = M_motor - J*(w - w_last)/T.
+    slips. The load is given by the last tick's change of speed: M_load = M_motor - J*(w - w_last)/T.
     """
 
     def __init__(self, axis: AxisParameters, period: float, velocity: float) -> None:
@@ -161,7 +161,8 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
 
 
 def pid_inputs(cascade: Cascade, references: References) -> Array:
-    """Inputs pos, vel, ff of the actuator that `add_pid` makes, for one axis, and nothing known beside: (ticks, 4)."""
+    """Inputs pos, vel, ff of the actuator that `add_pid` makes, for one axis, without other known torque: (ticks,
+    4)."""
     lead = cascade.control_period / 2.0 * references.velocity
     feedforward = references.feedforward(cascade.inertia_feedforward)
     beside = np.zeros_like(feedforward)
@@ -175,7 +176,7 @@ class References:
     Attributes:
         time: of the ticks, from zero - s.
         position, velocity, acceleration: rad, rad/s, rad/s**2 (m, m/s, m/s**2 on a linear axis).
-        torque: that is added to the drive's set-point, beside its own feed-forward - N*m (N); None without any.
+        torque: that is added to the drive's set-point, in addition to its own feed-forward - N*m (N); None without any.
     """
 
     time: Array

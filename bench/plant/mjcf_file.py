@@ -30,7 +30,7 @@ FINITE = ("qpos0", "body_mass", "body_inertia", "dof_armature", "dof_damping", "
 
 
 def read_mjcf(path: Path, stand: bool = False) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
-    """What an MJCF or URDF says that MuJoCo makes a model of, as `read_spec`; the files that it names are read with it.
+    """The part of an MJCF or URDF that MuJoCo compiles, as `read_spec`; the files that it names are read with it.
 
     With `stand` a floating base is fixed where the file has it. InputError where one of the files is not a regular
     file, or MuJoCo does not make a model of it within LIMITS.
@@ -47,7 +47,7 @@ def read_mjcf(path: Path, stand: bool = False) -> tuple[mujoco.MjSpec, tuple[str
 
 @lru_cache(maxsize=1)
 def _outcome(path: str, _changed: int, stand: bool) -> str | Failure:
-    """What the process says, once of a robot of many joints."""
+    """Printed by the process, once of a robot of many joints."""
     if watched():
         return _fault((path, stand))
     with WorkerProcess(_fault, LIMITS) as process:
@@ -67,10 +67,10 @@ def _fault(asked: tuple[str, bool]) -> str:
 
 
 def read_spec(path: str, stand: bool = False) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
-    """What an MJCF or URDF says, without meshes that are not there, and these in words.
+    """The contents of an MJCF or URDF, without meshes that are not there, and these in words.
 
     With `stand` also without free joints, and then without keyframes, which give these a pose. Raises ValueError as
-    MuJoCo does, and where the inertia of a body that moves is made of such a mesh.
+    MuJoCo does, and where the inertia of a body that moves is computed from such a mesh.
     """
     spec, notes = mujoco.MjSpec.from_file(path), []
     free = [joint for joint in spec.joints if joint.type == mujoco.mjtJoint.mjJNT_FREE] if stand else []

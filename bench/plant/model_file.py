@@ -1,6 +1,6 @@
-"""A model of an axis on disk: `model.toml` holds all of it, `model.xml` beside it what MuJoCo makes by itself.
+"""A model of an axis on disk: `model.toml` contains all of it, `model.xml` the part that MuJoCo has natively.
 
-With the model stands how it is mounted: what one on the motor's side needs to be put onto a joint of a robot.
+The model contains how it is mounted: what one on the motor's side needs to be put onto a joint of a robot.
 
 schema = "bench.model/1"
 name = "axis"
@@ -11,7 +11,8 @@ effects = [{ name = "cogging_torque", amplitude = "0.05 N*m", harmonic = 6.0 }]
 [parameters]
 moment_of_inertia = "0.0022 kg*m**2"
 
-`effects.toml` holds the same of every joint of a robot: `schema = "bench.effects/1"`, and a table `[joints.NAME]` each.
+`effects.toml` contains the same of every joint of a robot: `schema = "bench.effects/1"`, and a table `[joints.NAME]`
+each.
 """
 
 from __future__ import annotations
@@ -38,10 +39,10 @@ from bench.rig.rig import Load, Rig
 from bench.structured import read_toml
 
 SCHEMA, OF_JOINTS = "bench.model/1", "bench.effects/1"
-#: Table of the torque balance, and its key that says whether the parameters are its first coefficients.
+#: Table of the torque balance, and its key that states whether the parameters are its first coefficients.
 BALANCE, SAME = "torque_balance", "same_parameters"
 #: Share of the larger by which inertia, viscous and dry friction may differ from the coefficients: where they are the
-#: same, and where a file does not say so. Refinement moves an inertia by some percent, weak frictions by more.
+#: same, and where a file does not state it. Refinement moves an inertia by some percent, weak frictions by more.
 EQUAL, REFINED = (1e-9, 1e-9, 1e-9), (0.5, 0.9, 0.9)
 #: What makes an effect that is not native.
 STEPPED, SEEN = "bench.Effects steps it", "it is in what sensors report, not in the motion"
@@ -59,7 +60,7 @@ class Mounting:
 
     Attributes:
         gear_ratio: motor turns per turn of the joint; 1 without a gear.
-        load_mass: of the disk on the joint - kg; None where the rig does not tell.
+        load_mass: of the disk on the joint - kg; None where the rig does not state it.
         link_inertia: part of the model's inertia that is the links' of a robot, on the joint's side - kg*m**2 (kg).
         effort_limit: largest torque (force) that the rig or the robot's MJCF states, on the joint's side - N*m (N);
             None where neither does.
@@ -106,7 +107,8 @@ class StoredModel:
 
 
 def model_xml(stored: StoredModel) -> str:
-    """MJCF that MuJoCo opens alone, and that attaches to any body; a comment tells what it lacks, and assumes."""
+    """MJCF that MuJoCo opens without other files, and that attaches to any body; a comment lists what it lacks, and
+    assumes."""
     model, mounting = stored.model, stored.mounting
     spec = model.spec(TIMESTEP)
     spec.delete(spec.geom(FLOOR))
@@ -136,8 +138,8 @@ def lacking(stored: StoredModel) -> list[str]:
 def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) -> str:
     """The whole model as TOML, every value with its unit; `further` are tables of the same file, by name.
 
-    A torque balance among them says whether its first coefficients are the parameters: values that simulation refined,
-    or of a model with fewer effects, differ.
+    A torque balance among them states whether its first coefficients are the parameters: values that simulation
+    refined, or of a model with fewer effects, differ.
     """
     content = {"schema": SCHEMA, **_content(stored), **(further or {})}
     balance = content.get(BALANCE)

@@ -1,7 +1,7 @@
 """A plant: an axis with its drive; what the two runners take of it, closed loops, and the motion that they give.
 
 MuJoCo's position belongs half a step later than its velocity (see `bench.plant.axis_model`); runners start it there and
-bring it back, so that positions in and out of them are those of the velocities beside them.
+bring it back, so that positions in and out of them are those of their velocities.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from bench.rig.rig import Rig
 
 #: Inputs of the actuator `drive` that are known before the motion, so that MuJoCo closes the loop: from a tick to
 #: before another, held from each to the next - (ticks, inputs + 1). The last two are the motor's effort, and what is
-#: known to resist it beside the axis.
+#: known to resist it in addition to the axis.
 PlannedInputs: TypeAlias = Callable[[int, int], Array]
 #: Effects with which a drive cannot make the friction.
 OF_MECHANICS = (Friction, Bristles, Coupling)
@@ -103,7 +103,7 @@ class Plant:
     """An axis with its drive.
 
     Attributes:
-        axis: with its effects; its friction acts wherever `emulated` says.
+        axis: with its effects; its friction acts as in `emulated`.
         cascade: of the drive.
         timestep: of the integration, a whole part of the control period - s.
         emulated: whether the drive's software makes the friction instead of the mechanics.

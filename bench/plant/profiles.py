@@ -1,4 +1,5 @@
-"""Motion profiles: what an axis is made to do, within the limits of its rig, so that its recording tells what is asked.
+"""Motion profiles: what an axis is made to do, within the limits of its rig, so that its recording determines what is
+wanted.
 
 Their jerk is limited, in closed form: acceleration passes from knot to knot along half a cosine.
 """
@@ -53,7 +54,7 @@ class MotionLimits:
 
     Attributes:
         speed: highest - rad/s (m/s on a linear axis).
-        acceleration: highest that leaves the controller some torque - rad/s**2 (m/s**2).
+        acceleration: highest with some torque in reserve for the controller - rad/s**2 (m/s**2).
         full_acceleration: at peak torque, close to standstill - rad/s**2 (m/s**2).
         travel: from one end to the other - rad (m); infinite on a rotary axis.
         period: of the references - s.
@@ -103,7 +104,8 @@ Profile = Callable[[MotionLimits], References]
 
 
 def fast_reversals(limits: MotionLimits) -> References:
-    """The lab's fast run: accelerate and decelerate between the two directions, never at rest. Tells inertia best."""
+    """The lab's fast run: accelerate and decelerate between the two directions, never at rest. Determines inertia
+    best."""
     return through_speeds(limits, [limits.speed, -limits.speed] * 4 + [0.0], dwell=0.0)
 
 
@@ -115,7 +117,8 @@ def full_torque(limits: MotionLimits) -> References:
 
 
 def speed_staircase(limits: MotionLimits) -> References:
-    """Up and down through steps of speed, each held for a while, in both directions. Tells friction over speed best."""
+    """Up and down through steps of speed, each held for a while, in both directions. Determines friction over speed
+    best."""
     steps = [share * limits.speed for share in (0.2, 0.4, 0.6, 0.8, 1.0, 0.7, 0.3, 0.1)]
     return through_speeds(limits, [*steps, *(-step for step in steps), 0.0], dwell=0.06)
 

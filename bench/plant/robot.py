@@ -6,7 +6,7 @@ robot's mass matrix M and p = row of the joint of M*w,
     M_rest = dp/dt + r,  r = bias - passive - (dM/dt*w),
 
 so that no acceleration is needed from the log (`bench.trace.trace`). The joint's own inertia at the
-configuration of the MJCF is left to the balance, together with the armature: noise of its speed is then weighted
+configuration of the MJCF is estimated by the balance, together with the armature: noise of its speed is then weighted
 correctly.
 """
 
@@ -44,7 +44,7 @@ Poses = tuple[Array, dict[str, Array]]
 TOGETHER = 4096
 #: Time over which the change of the mass matrix along the motion is taken, to both sides - s.
 ASIDE = 1e-4
-#: A joint that moves so far - rad (m) - and asks less than what is left was not what pushed.
+#: A joint that moves so far - rad (m) - and has less torque than the residual was not what pushed.
 FAR = 1.0
 #: Joints of one coordinate, and its unit.
 UNITS = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
@@ -63,7 +63,8 @@ DISABLED = int(
 
 @dataclass(frozen=True)
 class AddedBody:
-    """What a robot has beside its MJCF: a point of mass on a body, or more inertia of a link about its joint's axis.
+    """What a robot has in addition to its MJCF: a point of mass on a body, or more inertia of a link about its joint's
+    axis.
 
     Attributes:
         body: that carries the mass.
@@ -123,8 +124,8 @@ class Robot:
         model: without armature, damping and friction of the joint.
         joint: its name.
         source: file of the model.
-        joints: numbers of the joints that move with it, itself among them, in the model's order: what hangs on the
-            world apart from them is not felt.
+        joints: numbers of the joints that move with it, itself among them, in the model's order: what depends on the
+            world without them is not felt.
         notes: what was left out of the model.
     """
 
@@ -139,7 +140,7 @@ class Robot:
         """From an MJCF or URDF file, with what its robot has in addition; `stand` fixes a floating base.
 
         InputError if there is no such file or joint; if a joint of its tree has more than one coordinate; if a loop, a
-        tendon or an equality of the MJCF puts a torque on it that no log tells.
+        tendon or an equality of the MJCF puts a torque on it that is in no log.
         """
         model, notes = _loaded(path, added, stand)
         names = [model.joint(k).name for k in range(model.njnt)]
@@ -208,7 +209,7 @@ class Robot:
 
     @cached_property
     def inertia(self) -> float:
-        """Of all that the joint carries, where the MJCF stands - kg*m**2 (kg)."""
+        """Of all that the joint carries, in the configuration of the MJCF - kg*m**2 (kg)."""
         unit = np.zeros((1, self.model.nv))
         unit[0, self._dof] = 1.0
         return float(self._momentum(self.model.qpos0[None], unit)[0])
@@ -218,7 +219,8 @@ class Robot:
         return int(self.model.joint(self.joint).dofadr[0])
 
     def rest(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """What the links ask of the joint beside its own inertia: r - N*m (N) - and p - N*m*s (N*s) -, (n,) each.
+        """The load of the links on the joint in addition to its own inertia: r - N*m (N) - and p - N*m*s (N*s) -, (n,)
+        each.
 
         Of positions and velocities of `joints` - rad (m), rad/s (m/s) - (n, joints).
         """
@@ -236,7 +238,7 @@ class Robot:
         return torque, momentum
 
     def asked(self, added: Sequence[AddedBody], position: Array, velocity: Array) -> list[tuple[Array, Array]]:
-        """What each of some additions asks of the joint beside that, r and p as `rest` has them.
+        """The load of each of some additions on the joint in addition to that, r and p as `rest` has them.
 
         Of a point of mass m that a joint moves by a column J of its Jacobian, with speed v,
 
@@ -333,7 +335,7 @@ def link_about_centre(model: mujoco.MjModel, name: str) -> float:
 
 
 def _bound(model: mujoco.MjModel, joint: int) -> Iterator[str]:
-    """What of a model, if anything, puts a torque on a joint beside its motor, its links and its spring."""
+    """What of a model, if anything, puts a torque on a joint other than its motor, its links and its spring."""
     tied = model.eq_active0.astype(bool)
     ends = np.column_stack([model.eq_obj1id, model.eq_obj2id])
     of = {name: tied & (model.eq_type == int(getattr(mujoco.mjtEq, f"mjEQ_{name}"))) for name in ("JOINT", "TENDON")}
@@ -373,7 +375,7 @@ def _moved_tendons(model: mujoco.MjModel, joint: int) -> Sequence[int]:
 
 
 def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
-    """The rig of a joint, or one that tells nothing but its kind, with what the robot's model knows of the links.
+    """The rig of a joint, or one that contains only its kind, with the links of the robot's model.
 
     InputError where the rig is of another kind.
     """
@@ -387,22 +389,22 @@ def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
 
 
 def rig_within(rig: Rig, robot: Robot) -> Rig:
-    """The rig of a joint whose links the robot's model knows."""
+    """The rig of a joint whose links are in the robot's model."""
     known = {"link_inertia": robot.inertia, "effort_limit": robot.effort_limit}
     load = (rig.load or Load()).model_copy(update=known)
     return rig.model_copy(update={"load": load})
 
 
 def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Trace:
-    """A log of a joint with the torque that the rest of the robot asks of it.
+    """A log of a joint with the torque of the rest of the robot.
 
-    The log holds, beside the joint's own signals, the position of every other joint, and its velocity where that is
-    recorded, by their names in the MJCF or by their numbers in its order (`bench.trace.joints`), or as the rig's
-    `[joints.NAME]` says; joints that it does not hold stand where they are `stated` to - rad (m). What has no unit is
-    taken for SI. The rig's gear lies between the log's position and the joint's.
+    The log contains, in addition to the joint's own signals, the position of every other joint, and its velocity where
+    that is recorded, by their names in the MJCF or by their numbers in its order (`bench.trace.joints`), or as the
+    rig's `[joints.NAME]` states; joints that it does not contain are where they are `stated` to - rad (m). What has no
+    unit is taken for SI. The rig's gear lies between the log's position and the joint's.
 
     Raises:
-        InputError: the log cannot be read, a joint is neither in it nor stated, stands beyond what the MJCF allows by
+        InputError: the log cannot be read, a joint is neither in it nor stated, is beyond what the MJCF allows by
             the unit assumed, or its effort is in A or V, which the MJCF's links are not.
     """
     return read_along(path, rig, robot, stated)[0]
@@ -517,7 +519,7 @@ def poses_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float])
     return trace.time, dict(zip(robot.names, position.T, strict=True))
 
 
-#: What a joint that slides has where messages tell all joints as if they turned.
+#: What a joint that slides has where messages give all joints as if they turned.
 _SLIDES = {"rad": "m", "rad/s": "m/s", "N*m": "N"}
 
 
@@ -552,7 +554,7 @@ def _sliding(channel: Channel) -> Channel:
 
 
 def _require_within(position: Array, joint: str, robot: Robot, path: Path) -> None:
-    """InputError where a joint stands further beyond its limits than these are apart: its unit is another."""
+    """InputError where a joint is further beyond its limits than their distance: its unit is another."""
     at = robot.model.joint(joint).id
     low, high = robot.model.jnt_range[at]
     if robot.model.jnt_limited[at] and max(low - position.min(), position.max() - high) > high - low:

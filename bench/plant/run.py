@@ -21,7 +21,7 @@ from bench.plant.stepped_effects import SteppedEffects
 
 Progress = Callable[[float], None]
 
-#: Bytes of inputs and states that a simulation holds at once, however long it is.
+#: Bytes of inputs and states that a simulation keeps at once, however long it is.
 BLOCK_BYTES = 8 * 2**20
 #: Ticks between two reports of progress.
 REPORT_EVERY = 1000
@@ -30,7 +30,7 @@ REPORT_EVERY = 1000
 def run(plant: Plant, references: References, progress: Progress | None = None) -> States:
     """An axis under its drive along references.
 
-    One that MuJoCo runs natively does so; if it reaches its torque limit, where the drive holds its integrator and
+    One that MuJoCo runs natively does so; if it reaches its torque limit, where the drive stops its integrator and
     MuJoCo's does not, it runs again tick by tick.
 
     Raises:

@@ -113,7 +113,7 @@ class Sensors:
     def record(self, states: States, references: References, random: np.random.Generator, origin: str) -> Trace:
         """Trace of a motion along references, position, velocity and current of a row simultaneous.
 
-        Position is rounded to counts. Velocity is the drive's own, true speed with noise. The drive holds its current
+        Position is rounded to counts. Velocity is the drive's own, true speed with noise. The drive keeps its current
         over each tick; the current of a row is interpolated between the middles of the ticks around it, by a cubic
         that keeps their shape (Fritsch, Carlson, SIAM J. Numer. Anal. 17, 1980, 238-246), so it never exceeds the peak.
         """

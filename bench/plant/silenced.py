@@ -1,4 +1,4 @@
-"""MuJoCo without a word: what it would print, and the file it would leave, are the caller's to tell."""
+"""MuJoCo without a word: what it would print, and the file it would leave, are reported by the caller."""
 
 from __future__ import annotations
 

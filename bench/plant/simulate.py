@@ -1,4 +1,4 @@
-"""Simulate a rig: its axis under its drive along a motion as its sensors record it, and the truth to write beside."""
+"""Simulate a rig: its axis under its drive along a motion as its sensors record it, and its truth."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def _moved_friction(rig: Rig, plant: Plant) -> Iterator[str]:
 
 
 def _drive_warnings(plant: Plant, states: States, references: References) -> Iterator[str]:
-    """Whether the drive chatters or leaves its profile, and why."""
+    """Whether the drive chatters or does not follow its profile, and why."""
     loop, cascade = plant.velocity_loop, plant.cascade
     change, largest = np.diff(states.motor_torque), float(np.abs(states.motor_torque).max())
     back = (change[1:] * change[:-1] < 0.0) & (np.abs(change[1:]) > TURNS_BACK * largest)
@@ -193,7 +193,7 @@ def truth_path(trace: str | Path) -> Path:
 
 
 def write_truth(trace: str | Path, truth: Truth) -> Path:
-    """Write the truth beside a trace, whole or not at all, and return its path; InputError where that cannot be."""
+    """Write the truth next to a trace, whole or not at all, and return its path; InputError where that cannot be."""
     path = truth_path(trace)
     write_text(path, truth.as_json())
     return path
@@ -243,7 +243,7 @@ def motion_of(recording: Trace) -> Sampled:
 
 
 def followed(motion: Trace | ArrayLike, step: float, period: float) -> References:
-    """What a drive of a period - s - follows along a recording, or speeds (n,) a step - s - apart - rad/s (m/s).
+    """What a drive of a period - s - follows along a recording, or speeds (n,) at a step - s - rad/s (m/s).
 
     InputError where speeds are not some numbers in a row.
     """

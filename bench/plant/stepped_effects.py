@@ -52,12 +52,12 @@ class Remembered(NamedTuple):
 
 
 class Acts(NamedTuple):
-    """What effects make of a step, (..., axes) each.
+    """The results of effects in a step, (..., axes) each.
 
     Attributes:
         reported: effort that the drive reports - N*m (N).
         motor: torque of the motor - N*m (N).
-        torque: that acts beside it - N*m (N).
+        torque: of others - N*m (N).
         friction: level of dry friction - N*m (N); None where no effect changes it.
         inertia: beyond that of the model - kg*m**2 (kg); None where no effect changes it.
         memory: for the next step.
@@ -108,7 +108,7 @@ class SteppedEffects:
         return Remembered(velocity, tuple(0.0 * some.of(velocity) for some in (*self._flowing, *self._lags)))
 
     def again(self, memory: Remembered, where: Number, velocity: Number) -> Remembered:
-        """A memory that begins anew with a velocity - rad/s (m/s) - where a bool is true, (..., axes) each."""
+        """A memory that begins again with a velocity - rad/s (m/s) - where a bool is true, (..., axes) each."""
         xp, drives = namespace(velocity), (*self._flowing, *self._lags)
         kept = [xp.where(some.of(where), 0.0 * one, one) for some, one in zip(drives, memory.kept, strict=True)]
         return Remembered(xp.where(where, velocity, memory.velocity), tuple(kept))
@@ -240,7 +240,7 @@ class EffectOnAxes(Generic[Kind_co]):
         return xp.take(xp.concat(both, axis=-1), self.places, axis=-1)
 
 
-#: What an effect on some axes makes of values of these, in their state.
+#: The result of an effect on some axes from values of these, in their state.
 Change: TypeAlias = Callable[[EffectOnAxes[Kind], Number, AxisState], Number]
 
 

@@ -1,16 +1,16 @@
-"""Run a model beside a recording: held to it softly, or along its references under the drive of its rig.
+"""Run a model along a recording: weakly coupled to it, or along its references under the drive of its rig.
 
-`track` holds it: the recorded effort drives the model as feed-forward; measured position and velocity are set-points of
-one weak cascade, which keeps the model near the recording where integration alone would drift away. It needs no
+`track` couples it: the recorded effort drives the model as feed-forward; measured position and velocity are set-points
+of one weak cascade, which keeps the model near the recording where integration alone would drift away. It needs no
 references and no drive data. Its bandwidth decides what is seen: a difference in torque of frequency well above it
-shows in full, one well below it is held down. State it beside every velocity gap.
+shows in full, one well below it is held down. State it with every velocity gap.
 
 Every effect is where it acts: electronics on the recorded effort before the simulation, mechanisms in MuJoCo, sensing
-on what comes out. What holds the model is the true motion as far as the recording tells it: sensing is undone on the
+on what comes out. The model is coupled to the true motion as far as the recording shows it: sensing is undone on the
 set-points, or the model would be pulled after the sensor's errors.
 
-`follow_references` predicts, nothing holds the model. References are read between the samples: velocity by a cubic that
-is smooth in acceleration, position by the integral of that, held to the recorded one.
+`follow_references` predicts, the model is not coupled. References are read between the samples: velocity by a cubic
+that is smooth in acceleration, position by the integral of that, held to the recorded one.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ from bench.trace.trace import Trace
 if TYPE_CHECKING:
     import mujoco
 
-#: Bandwidth of the cascade that holds the model - rad/s.
+#: Bandwidth of the cascade that couples the model - rad/s.
 BANDWIDTH = 10.0
-#: Bandwidth that holds nothing: in an hour it moves no model - rad/s.
+#: Bandwidth without an effect: in an hour it moves no model - rad/s.
 FREE = 1e-9
 #: Longest step of the integration - s.
 LONGEST_STEP = 0.5e-3
-#: Longest step beside a contact, times its damping rate or its frequency: explicit steps overshoot from 1 on, and
+#: Longest step with a contact, times its damping rate or its frequency: explicit steps overshoot from 1 on, and
 #: diverge from 2.
 CONTACT_STEP = 0.5
 
@@ -56,10 +56,11 @@ class SoftTracking:
     Attributes:
         model: with effects.
         trace: the recording, with velocity or position.
-        effort: the motor's torque - N*m (force - N) - that the rig makes of it, (n,).
+        effort: the motor's torque - N*m (force - N) - by the rig, (n,).
         misalignment: by how much the effort is reported late - s.
         inertia: that the cascade is laid out for, the model's if None - kg*m**2 (kg).
-        known: torque (force) that is known to resist the motor beside the axis, as the rest of a robot does (n,).
+        known: torque (force) that is known to resist the motor in addition to the axis, as the rest of a robot does
+            (n,).
     """
 
     model: AxisModel
@@ -74,7 +75,7 @@ class SoftTracking:
 class Tracked:
     """What a held model reports at its recording's samples - rad (m), rad/s (m/s) - (n,); nan outside `stretches_of`.
 
-    Where the recording holds no position, that of each stretch counts from zero.
+    Where the recording has no position, that of each stretch counts from zero.
     """
 
     position: Array
@@ -136,7 +137,7 @@ def holding_cascade(inertia: float, timestep: float, bandwidth: float = BANDWIDT
 def _loops(
     held: SoftTracking, bandwidth: float, parts: Sequence[slice] | None = None
 ) -> Iterator[tuple[slice, ClosedLoop, int]]:
-    """Samples of parts of a recording, the loop that holds the model along each, and recorded ticks per sample.
+    """Samples of parts of a recording, the loop that couples the model along each, and recorded ticks per sample.
 
     The parts are all stretches without holes unless others are given.
     """
@@ -233,7 +234,7 @@ def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> States:
 
 
 def references_of(trace: Trace, period: float, stride: int) -> References:
-    """References of a recording at the drive's ticks - s -, `stride` a sample; InputError where it holds none."""
+    """References of a recording at the drive's ticks - s -, `stride` a sample; InputError where it has none."""
     from scipy.interpolate import CubicSpline  # 0.1 s, which only the drive's own loop has to pay
 
     ticks: Array = period * np.arange((len(trace) - 1) * stride + 1, dtype=np.float64)

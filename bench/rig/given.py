@@ -1,7 +1,7 @@
 """What a person may give for a rig or a recording: the object, a file's path, arrays by name or a data frame.
 
-Where no rig is given, one is drafted from the recording: it works as far as the file tells, and asks for what only the
-user knows.
+Where no rig is given, one is drafted from the recording: it works as far as the file determines it, and requires what
+only the user can state.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Given: TypeAlias = Trace | str | Path | Arrays
 GivenRig: TypeAlias = Rig | str | Path | Mapping[str, Any]
 Units: TypeAlias = Mapping[str, str]
-#: What tells in a dictionary that the axis is linear.
+#: Keys of a dictionary by which the axis is linear.
 _LINEAR = {"moving_mass", "force_constant", "force_per_volt", "rated_force"}
 
 
@@ -81,7 +81,7 @@ def rig_of(given: GivenRig) -> Rig:
 
 
 def trace_of(given: Given, rig: Rig, units: Units | None = None) -> Trace:
-    """A recording, read as the rig says where it is a file, arrays or a frame; InputError where it is none."""
+    """A recording, read by the rig where it is a file, arrays or a frame; InputError where it is none."""
     if not isinstance(given, Trace):
         return assemble(_recorded(given, units), rig.trace)
     if units:
@@ -131,7 +131,7 @@ def draft(inspection: Inspection, motor: str | None = None, axis: str | None = N
 def drafted(recording: Recording, axis: str | None = None) -> tuple[Rig, str, str]:
     """The rig that a recording, or one axis of several in it, drafts: its text too, and what it assumes, in a line.
 
-    InputError where the recording leaves open what only the user knows.
+    InputError where the recording leaves open what only the user can state.
     """
     from bench.trace.inspect import inspect_recording
 
@@ -172,7 +172,7 @@ def _motor(inspection: Inspection, motor: str | None, linear: bool) -> list[str]
 
 
 def _trace(inspection: Inspection, axis: str | None) -> list[str]:
-    """`[trace]` and its columns: those that are plain, and as comments those whose unit only the user knows."""
+    """`[trace]` and its columns: those that are plain, and as comments those whose unit only the user can state."""
     settings = [f"axis = {json.dumps(axis)}"] if axis is not None else []
     timed = any(one.signal == "time" or one.rate is not None for one in inspection.columns)
     if (inspection.rate is None and not timed) or "sample_period" in (inspection.asks or ""):
@@ -192,7 +192,7 @@ def _trace(inspection: Inspection, axis: str | None) -> list[str]:
 
 
 def _columns(columns: Iterable[ColumnSummary]) -> list[str]:
-    """Lines of what columns are likely to be, as comments where only the user knows the unit."""
+    """Lines of what columns are likely to be, as comments where only the user can state the unit."""
     lines = []
     for column in columns:
         if column.suggestion is not None:

@@ -1,11 +1,11 @@
-"""Operating range of a motor: its torque at a speed, briefly and for good, and what a motion leaves of it.
+"""Operating range of a motor: its torque at a speed, peak and continuous, and the reserve of a motion.
 
 Its circuit follows from nothing but its peak curve:
 
     U = R(T)*Iq + L*dIq/dt + Ke*omega,    |U| <= U_max
 
-The curve tells two of its constants: at the no-load speed the back-EMF takes all the voltage, Ke = U_max/omega_0, and
-at the corner the full voltage still drives peak current through the hot winding, R = (U_max - Ke*omega_c)/I_max.
+The curve determines two of its constants: at the no-load speed the back-EMF takes all the voltage, Ke = U_max/omega_0,
+and at the corner the full voltage still drives peak current through the hot winding, R = (U_max - Ke*omega_c)/I_max.
 
 U_max = sqrt(3)*mains is the voltage of all three phases, each with mains/sqrt(3) at most, in series with the drive's
 RMS current: power 3*U_phase*I = U*I and torque Ke*I then balance, so Ke is the torque constant of the unsaturated motor
@@ -28,7 +28,7 @@ from bench.rig.motor import Motor, PeakCurve, TorqueConstant
 AT_LIMIT = 0.01
 #: Winding temperatures of the datasheet's curve and of a cold motor - degC.
 HOT, COLD = 120.0, 20.0
-#: Of a motor, what its circuit follows from beside the peak curve.
+#: Of a motor, what its circuit follows from in addition to the peak curve.
 OF_CIRCUIT = ("peak_current", "continuous_stall_current", "cold_resistance_share")
 OF_CIRCUIT += ("electrical_time_constant", "thermal_time_constant")
 
@@ -90,7 +90,7 @@ class OperatingRange:
     Attributes:
         peak_torque: limited by the magnets, Mmax - N*m.
         continuous_torque: limited by heat, at standstill, M0 - N*m.
-        curve: share of peak torque that voltage leaves at a speed.
+        curve: share of peak torque that voltage allows at a speed.
         loss: share of continuous torque that speed-dependent losses take up to the no-load speed.
         torque_constant: kT(Iq), which turns torque into the current that heats.
     """
@@ -140,7 +140,7 @@ class OperatingRange:
 
 @dataclass(frozen=True)
 class Reserve:
-    """What a motion leaves of the range.
+    """The reserve of a motion in the range.
 
     Attributes:
         peak: least distance of the torque to its limit over the motion - N*m; negative beyond it.
@@ -148,7 +148,7 @@ class Reserve:
         at: index of the sample where it is least.
         beyond: share of the samples beyond the limit by more than AT_LIMIT.
         rms_torque: sqrt(mean(M**2)) - N*m.
-        rms_current: sqrt(mean(Iq**2)), which heats the winding - A; more than the RMS torque says where iron saturates.
+        rms_current: sqrt(mean(Iq**2)), which heats the winding - A; more than by the RMS torque where iron saturates.
         mean_speed: mean(|omega|), at which it is compared - rad/s.
         continuous_current: that gives the continuous torque there - A.
         thermal: continuous less RMS current - A; negative where the motor would overheat.

@@ -113,7 +113,7 @@ class Motor(RigTable):
         torque_per_volt, force_per_volt: gain of a torque-controlled amplifier from its set-point voltage - N*m/V, N/V.
         rated_torque: what 100 % of a relative torque means - N*m; on a linear axis `rated_force` - N.
         resistance, inductance, back_emf_constant: winding - ohm, H, V*s/rad (V*s/m).
-        temperature: of the winding that `resistance` holds for - K.
+        temperature: of the winding of `resistance` - K.
         peak_curves: peak torque over speed, one for each mains voltage.
         continuous_torque_loss: share of continuous torque that speed-dependent losses take up to the lowest curve's
             no-load speed.
@@ -173,7 +173,7 @@ class Motor(RigTable):
 
     @property
     def inertia(self) -> float:
-        """Of what moves in the motor - kg*m**2 (kg); 0 when the rig does not tell."""
+        """Of what moves in the motor - kg*m**2 (kg); 0 when the rig has none."""
         return self.rotor_inertia or self.moving_mass or 0.0
 
     @property
@@ -204,7 +204,7 @@ class Motor(RigTable):
 
     @property
     def torque_per_ampere(self) -> TorqueConstant | None:
-        """kT(Iq) - N*m/A (N/A on a linear axis); None when the rig does not tell."""
+        """kT(Iq) - N*m/A (N/A on a linear axis); None when the rig has none."""
         constant = self.torque_constant or self.force_constant
         if constant is not None:
             return TorqueConstant(constant)

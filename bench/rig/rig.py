@@ -117,7 +117,7 @@ class TraceNotes(RigTable):
             the sign.
         sample_period: of recordings without time, or with a sample index - s.
         position_period: by which the recorded position wraps - rad (m).
-        axis: to be read where a recording holds several.
+        axis: to be read where a recording has several.
     """
 
     columns: dict[str, str] = Field(default_factory=dict)
@@ -127,7 +127,7 @@ class TraceNotes(RigTable):
 
 
 class JointNotes(RigTable):
-    """`[joints.NAME]`: what a log of a robot holds of one of its joints, and how it counts.
+    """`[joints.NAME]`: the columns of one of a robot's joints, and how it counts.
 
     Attributes:
         axis: what the log calls the joint, where that is not its name.
@@ -234,7 +234,7 @@ class Rig(RigTable):
     source: Annotated[str, Field(exclude=True)] = "rig"
     assumed: Annotated[tuple[str, ...], Field(exclude=True)] = ()
 
-    def __init__(self, /, **table: Any) -> None:  # noqa: ANN401 - whatever a rig file holds
+    def __init__(self, /, **table: Any) -> None:  # noqa: ANN401 - any content of a rig file
         """Checked from the keys of a rig file, values with units, or numbers in SI; InputError where they are none."""
         source, motor = str(table.get("source", "rig")), table.get("motor")
         if isinstance(motor, dict) and "model" in motor:
@@ -278,12 +278,12 @@ class Rig(RigTable):
         return self.simulation
 
     def on_axis(self, name: str | None) -> Rig:
-        """The same rig, reading the axis of this name from recordings that hold several; None: as the rig says."""
+        """The same rig, reading the axis of this name from recordings with several; None: as in the rig."""
         trace = self.trace if name is None else self.trace.model_copy(update={"axis": name})
         return self.model_copy(update={"trace": trace})
 
     def of_joint(self, name: str) -> Rig:
-        """The same rig with what `[joints.NAME]` says of a joint in place of what is said of all."""
+        """The same rig with `[joints.NAME]` of a joint in place of the values for all."""
         own = self.joints.get(name)
         if own is None:
             return self
@@ -296,14 +296,14 @@ class Rig(RigTable):
         return self.model_copy(update={"motor": motor, "load": load.model_copy(update=gear), "trace": trace})
 
     def effort(self, trace: Trace) -> tuple[Array, str]:
-        """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig tells how.
+        """What drives the axis in a trace, and its unit: motor torque - N*m (force - N) wherever the rig states how.
 
         Taken from the first that is recorded: torque or force, current, voltage. Torque from current is kT(Iq)*Iq; from
         voltage it is either the amplifier's gain times voltage or, with a winding, kT*(U - Ke*w)/R (quasi-static
-        circuit U = R*I + Ke*w). Where the rig knows no constant, the effort stays in A, V or share of rated torque.
+        circuit U = R*I + Ke*w). Where the rig has no constant, the effort stays in A, V or share of rated torque.
 
         Raises:
-            InputError: the trace holds none of the signals, one of a magnitude that no axis has, or motor and trace
+            InputError: the trace has none of the signals, one of a magnitude that no axis has, or motor and trace
                 disagree on the kind of axis.
         """
         require_plausible(trace)
@@ -336,7 +336,7 @@ class Rig(RigTable):
         return less_known(trace, effort), unit
 
     def own_effort(self, trace: Trace) -> tuple[Array, str]:
-        """The effort less the load torque that the rig knows (an eccentric mass under gravity), and its unit.
+        """The effort less the load torque of the rig (an eccentric mass under gravity), and its unit.
 
         InputError as `effort`, or where the known load needs a position, or torque, that the recording does not give.
         """
@@ -355,7 +355,7 @@ class Rig(RigTable):
         return self.effort(still)[0]
 
     def needs_speed(self, trace: Trace) -> bool:
-        """Whether the effort in a trace is made of a voltage less what the speed induces, kT*(U - Ke*w)/R."""
+        """Whether the effort in a trace is computed from a voltage less what the speed induces, kT*(U - Ke*w)/R."""
         if {self.axis_kind.effort, "current"} & set(trace.signals):
             return False
         return self.motor.force_per_volt is None and self.motor.torque_per_volt is None
@@ -381,7 +381,7 @@ class Rig(RigTable):
         )
 
     def voltage(self, trace: Trace) -> Array:
-        """Of the motor (n,) - V; InputError for a duty cycle where nothing tells the supply's voltage."""
+        """Of the motor (n,) - V; InputError for a duty cycle where the supply's voltage is unknown."""
         if trace.units["voltage"] == "V":
             return trace["voltage"]
         supply = trace.signals.get("supply_voltage", self.motor.supply_voltage)
@@ -421,7 +421,7 @@ def rig_file(given: str | Path) -> Path:
     try:
         if path.suffix or path.name != str(given) or path.exists():
             return path
-    except OSError:  # such as a name that is too long: who reads it says so
+    except OSError:  # such as a name that is too long: its reader reports it
         return path
     if str(given) not in known:
         found = f"no such file and no shipped rig{nearest(str(given), list(known))}"

@@ -30,7 +30,7 @@ class RigTable(BaseModel):
 
 
 class Toleranced(float):
-    """A value of a rig that knows its tolerance: half width of the range that holds the true one at 95 % - its unit."""
+    """A value of a rig with its tolerance: half width of the range that contains the true one at 95 % - its unit."""
 
     tolerance: float
 
@@ -76,7 +76,7 @@ def si(unit: str, translated: bool = False) -> WrapValidator:
             raise refused(error.found, error.allowed) from error
         try:
             checked = check(value)
-        except ValidationError as error:  # of the bounds, which are reported of the text that stands in the file
+        except ValidationError as error:  # of the bounds, which are reported of the text in the file
             raise PydanticCustomError("bounds", "{found}", {"found": error.errors()[0]["msg"]}) from error
         return Toleranced(checked, tolerance) if tolerance else checked
 

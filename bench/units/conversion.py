@@ -2,9 +2,9 @@
 
 Units are read as people and recorders write them: `1/min`, `U/min`, `°/s`, `Nm`, `oz-in`, `Arms`, `0.229 rpm`,
 `turn/4096/s`. An ambiguous one is refused and both meanings are named: a speed in `1/s` or `Hz` may be radians or
-revolutions; what a count is worth, only the user knows.
+revolutions; what a count is worth, only the user can state.
 
-Importing pint and building its registry costs 0.2 s of CPU, a quarter of the run time of `bench identify`. It is asked
+Importing pint and building its registry costs 0.2 s of CPU, a quarter of the run time of `bench identify`. It is used
 for single names only, so that no text of a file is an expression that it evaluates.
 """
 
@@ -27,7 +27,7 @@ _ORDER = ("[mass]", "[length]", "[time]", "[current]", "[temperature]", "[substa
 
 
 class NamedUnit(NamedTuple):
-    """What one name stands for: `SI = number*factor + offset`.
+    """The meaning of one name: `SI = number*factor + offset`.
 
     Attributes:
         factor, offset: to the units of `_ORDER` in SI; radian of an angle.
@@ -66,15 +66,15 @@ _USUAL = {
 }
 _PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "d": 1e-1, "k": 1e3}
 _PREFIXED = ("g", "m", "s", "A", "K", "N", "W", "V", "ohm", "H", "Hz", "rad", "deg", "rpm")
-#: Base units by which pint says that a speed turns, and those that it calls dimensionless and that are no angle.
+#: Base units of a turning speed in pint, and those that it calls dimensionless and that are no angle.
 _KINDS = {
     "angle": "radian degree turn rpm grade arcminute arcsecond milliarcsecond angular_mil",
     "share": "percent permille ppm",
     "count": "bit byte particle number count decibel neper",
 }
-#: What pint raises on names that are no unit, beside errors of its own.
+#: What pint raises on names that are no unit, in addition to errors of its own.
 _NO_UNIT = (AttributeError, LookupError, TypeError, ValueError, AssertionError, ArithmeticError)
-#: A mass that stands for the force it weighs, as in kg*cm for N*m: its powers. ISO 80000-3: g_n.
+#: A mass in place of the force it weighs, as in kg*cm for N*m: its powers. ISO 80000-3: g_n.
 _MASS = ((1,), (1, 0, 0))
 _STANDARD_GRAVITY = 9.80665
 #: What may also be written over a speed or an acceleration, without an angle in SI: V/(rad/s), N*m/(rad/s**2), W*s/rad.
@@ -83,7 +83,7 @@ _PER_TURN = ("N*m", "kg*m**2", "N*m/A", "N*m/V")
 
 @cache
 def named_unit(name: str) -> NamedUnit:
-    """What a name stands for; ValueError if it is no unit."""
+    """The meaning of a name; ValueError if it is no unit."""
     if name in _USUAL:
         return _USUAL[name]
     if name[:1] in _PREFIXES and name[1:] in _PREFIXED:
@@ -135,7 +135,8 @@ def powers_of(unit: UnitProduct) -> tuple[float, ...]:
 
 
 def to_si(unit: UnitProduct) -> tuple[float, float]:
-    """Factor and offset that turn a number in a unit into one in SI; a temperature's zero counts if it stands alone."""
+    """Factor and offset that turn a number in a unit into one in SI; a temperature's zero counts if it is the only
+    unit."""
     if len(unit.powers) == 1 and unit.factor == 1.0:
         ((name, exponent),) = unit.powers.items()
         if exponent == 1:

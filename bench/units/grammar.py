@@ -2,7 +2,7 @@
 
 `*`, `/`, a blank, or a hyphen or point between names separates them: `kg*m**2`, `rad s-1`, `oz-in`, `turn/4096/s`,
 `N*m*(s/rad)**0.5`. Numbers become a factor. Length, powers and brackets are limited: nothing here takes long, whatever
-a file holds.
+a file contains.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ _ALIASES = {
     "N*m": "NM newtonmeter newtonmetre",
 }
 
-#: What a drive counts or scales by settings of its own; one of them is worth what only the user knows.
+#: What a drive counts or scales by settings of its own; one of them is worth what only the user can state.
 _COUNTS = (
     "inc incs incr increment increments ink inkr inkremente cnt cnts ct cts count counts pulse pulses pls ppr tick "
     "ticks lsb digit digits raw bit bits step steps usteps microsteps qc quadcounts uu puu unit units lu cps pps "
@@ -131,7 +131,7 @@ _COMMENT = re.compile(r"(?<=[^\s*/])\s*\((?!.*(?:eff|rms|peak|pk|el))[^()\d]{3,}
 
 
 class UnitError(ValueError):
-    """A text that is no unit, or not plainly one: `found` says what it is, `allowed` what would be."""
+    """A text that is no unit, or not plainly one: `found` is what it is, `allowed` what would be."""
 
     def __init__(self, found: str, allowed: str) -> None:
         self.found, self.allowed = found, allowed
@@ -158,7 +158,7 @@ class UnitProduct:
         """Multiply by, or behind a `/` divide by, a power of another product.
 
         Raises:
-            ArithmeticError: no number holds the factor.
+            ArithmeticError: no number can represent the factor.
             ValueError: a power that no unit has.
         """
         exponent *= self.sign
@@ -193,7 +193,7 @@ def parse_unit(text: str, wanted: tuple[str, ...] = ()) -> UnitProduct:
         wanted: SI units of the dimensions that it should have, for messages.
 
     Raises:
-        UnitError: no unit, or one that only the user knows.
+        UnitError: no unit, or one that only the user can state.
     """
     refusal = UnitError(f"found '{text[:LONGEST]}', which is not a unit", allowed(wanted))
     if len(text) > LONGEST:
@@ -251,7 +251,7 @@ def _add(match: re.Match[str], groups: list[UnitProduct], text: str, wanted: tup
 
 
 def _named(name: str, text: str, wanted: tuple[str, ...]) -> UnitProduct:
-    """What one name stands for."""
+    """The meaning of one name."""
     if name in COUNTS or name.lower() in COUNTS:
         example = "turn/4096/s" if any("/s" in si for si in wanted) else "turn/4096"
         found = f"found unit '{text}', counts without a scale in the file"

@@ -32,7 +32,7 @@ class Quantity:
         lower, upper: closed bounds in that unit.
         angle: whether it stays an angle on a linear axis, where other angles become lengths.
         linear_unit: SI unit on a linear axis, where it is not the rotary one with metres and newtons in it.
-        null: value at which what it belongs to is exactly absent, if one says so.
+        null: value at which what it belongs to is exactly absent, if it has one.
         preset: value that it has where none is given, if it need not be.
         instant: whether it is a time of the recording, whose zero means nothing.
         minor: whether what it belongs to is known without it, as with how an effect divides between dry and viscous, or
