@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -38,20 +39,18 @@ def no_typst() -> str:
 
 def write_pdf(path: Path, document: Document) -> None:
     """Write a document: title and its first two sections on one page, then answers, contents and the other sections."""
-    path.write_bytes(compiled(document))
+    with tempfile.TemporaryDirectory() as folder:
+        path.write_bytes(compiled(typeset(document, Path(folder)), Path(folder)))
 
 
-def compiled(document: Document, **options: Any) -> Any:  # noqa: ANN401, as many bytes as the format has files
-    """The same as bytes, with options of typst.compile."""
+def compiled(content: Mapping[str, Any], folder: Path, **options: Any) -> Any:  # noqa: ANN401, bytes of each file
+    """What is typeset, with its diagrams in a folder, as bytes, with options of typst.compile."""
     import typst  # of the extra `lab`
 
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        content = typeset(document, folder)
-        (folder / "document.json").write_text(json.dumps(content), encoding="utf-8")
-        (folder / TEMPLATE.name).write_bytes(TEMPLATE.read_bytes())
-        template = folder / TEMPLATE.name
-        return typst.compile(template, font_paths=[FONTS], ignore_system_fonts=True, **options)
+    template = folder / TEMPLATE.name
+    (folder / "document.json").write_text(json.dumps(content), encoding="utf-8")
+    template.write_bytes(TEMPLATE.read_bytes())
+    return typst.compile(template, font_paths=[FONTS], ignore_system_fonts=True, **options)
 
 
 def typeset(document: Document, folder: Path) -> dict[str, Any]:

@@ -24,13 +24,11 @@ from tests.course.mistakes import (
 
 TRACES = asset("data", "traces")
 COUNT = 20
-#: Rows of the table of mistakes that once passed for done, and more that are drawn.
+#: Every mistake once, and more that are drawn.
 DRAWN = np.random.default_rng(25).choice(list(MISTAKES), COUNT)
-CASES = [
-    *((mistake, seed) for mistake in BEYOND_MENDING for seed in (0, 1)),
-    *((mistake, 0) for mistake in MISTAKES),
-    *((mistake, seed) for seed, mistake in enumerate(DRAWN, 1)),
-]
+CASES = [(mistake, 0) for mistake in BEYOND_MENDING | MISTAKES]
+MORE = [*((mistake, 1) for mistake in BEYOND_MENDING), *((mistake, seed) for seed, mistake in enumerate(DRAWN, 1))]
+CASES += [pytest.param(*case, marks=pytest.mark.slow) for case in MORE]
 
 
 @pytest.fixture(scope="module")

@@ -276,9 +276,16 @@ def test_a_cover_sheet_names_the_group(tmp_path):
             Cover.in_folder(tmp_path)
 
 
-def test_pages_of_the_pdf_hold_what_is_said_and_are_full(lab, tmp_path):
+@pytest.fixture(scope="module")
+def typeset(lab, tmp_path_factory):
+    """The report as the template takes it, and the folder with its diagrams."""
+    folder = tmp_path_factory.mktemp("typeset")
+    return pdf.typeset(document(lab.results), folder), folder
+
+
+def test_pages_of_the_pdf_hold_what_is_said_and_are_full(typeset):
     """No table or diagram leaves a page's margins, and no page but the last leaves half of its height empty."""
-    pages = pdf.compiled(document(lab.results), format="png", ppi=36.0)
+    pages = pdf.compiled(*typeset, format="png", ppi=36.0)
     inked = [imread(BytesIO(page))[..., :3].min(axis=2) < 0.9 for page in pages]
     height, width = inked[0].shape
     bottom, side = round(height * 0.94), round(width * 18.0 / 210.0)  # above the page's number, 20 mm less two
@@ -289,8 +296,8 @@ def test_pages_of_the_pdf_hold_what_is_said_and_are_full(lab, tmp_path):
     assert not any(page[:, :side].any() or page[:, -side:].any() for page in inked)
 
 
-def test_the_pdf_has_every_cell_number_and_caption(lab, done, tmp_path):
-    content = pdf.typeset(document(lab.results), tmp_path)
+def test_the_pdf_has_every_cell_number_and_caption(typeset, done):
+    content, folder = typeset
     assert [section["heading"] for section in content["front"]] == ["Cover sheet", "Answers"]
     parts = [part for section in content["sections"] for part in section["blocks"]]
     by_kind = {kind: [part for part in parts if part["kind"] == kind] for kind in ("chart", "table", "equation")}
@@ -298,7 +305,7 @@ def test_the_pdf_has_every_cell_number_and_caption(lab, done, tmp_path):
     assert [part["title"].split(":")[0] for part in by_kind["chart"]] == [f"Figure {k}" for k in range(1, 13)]
     tables = len(by_kind["table"])
     assert [part["caption"].split(":")[0] for part in by_kind["table"]] == [f"Table {k}" for k in range(2, tables + 2)]
-    assert all((tmp_path / part["file"]).read_bytes().startswith(b"<?xml") for part in by_kind["chart"])
+    assert all((folder / part["file"]).read_bytes().startswith(b"<?xml") for part in by_kind["chart"])
     names = {row[0] for part in by_kind["table"] for row in part["rows"]}
     assert {number.name for task in done.values() for number in task.numbers} <= names
     (answers,) = content["front"][1]["blocks"]
