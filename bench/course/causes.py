@@ -6,9 +6,9 @@ The fewest mistakes that do are the cause; where several would, all are named, a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from itertools import combinations, permutations, product
 
 import numpy as np
@@ -82,7 +82,10 @@ def _alike(one: LabRun, other: LabRun) -> bool:
 def _causes(runs: Mapping[str, LabRun], choices: Sequence[Sequence[str]], rig: Rig) -> list[Undone]:
     """The smallest sets of mistakes without which nothing contradicts the first choice of recordings that has any."""
     mistakes = (*(mistake for mistake in MISTAKES if mistake.undo), *_scale(runs, rig))
-    possible = cache(lambda name, other, most, more: [*_options(name, runs[other], rig, most, more, mistakes)])
+    outcome = cache(lambda name, other, made: _outcome(name, runs[other], rig, made))
+    possible = cache(
+        lambda name, other, most, more: [*_options(partial(outcome, name, other), most, more, mistakes)],
+    )
     for (most, mixed, more), names in product(TRIED, choices):
         found: list[tuple[int, Undone]] = []
         for order in permutations(names) if mixed else [names]:
@@ -117,14 +120,26 @@ def _scale(runs: Mapping[str, LabRun], rig: Rig) -> Iterator[Mistake]:
             yield Mistake(kind="amplitude", words=words, undo=scaled(current=1.0 / factor))
 
 
+def _outcome(name: str, run: LabRun, rig: Rig, made: Sequence[Mistake]) -> tuple[bool, float | None]:
+    """Whether a recording is sound by itself without these mistakes, and its J then - kg*m**2."""
+    undone: LabRun | None = run
+    for mistake in made:
+        undone = mistake.undo(undone, rig) if undone is not None and mistake.undo else None
+    sound = undone is not None and not fault(name, undone, rig)
+    return sound, inertia_of(undone) if sound and undone is not None else None
+
+
 def _options(
-    name: str, run: LabRun, rig: Rig, most: int, more: bool, mistakes: Sequence[Mistake]
+    outcome: Callable[[Sequence[Mistake]], tuple[bool, float | None]],
+    most: int,
+    more: bool,
+    mistakes: Sequence[Mistake],
 ) -> Iterator[tuple[tuple[Mistake, ...], float | None]]:
     """Mistakes, at most so many, without which a recording is sound by itself, and its J without them - kg*m**2.
 
     No more than it asks for, or `more`.
     """
-    sound = False
+    found = False
     for count in range(most + 1):
         for chosen in combinations(mistakes, count):
             kinds = {mistake.kind for mistake in chosen}
@@ -132,12 +147,10 @@ def _options(
                 continue
             # which was made first makes a difference to exchanged columns alone
             for made in (chosen, chosen[::-1])[: 1 + (count > 1 and "columns" in kinds)]:
-                undone: LabRun | None = run
-                for mistake in made:
-                    undone = mistake.undo(undone, rig) if undone is not None and mistake.undo else None
-                if undone is not None and not fault(name, undone, rig):
-                    sound = True
-                    yield made, inertia_of(undone)
+                sound, inertia = outcome(made)
+                if sound:
+                    found = True
+                    yield made, inertia
                     break
-        if sound and count and not more:
+        if found and count and not more:
             return

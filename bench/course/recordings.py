@@ -100,7 +100,7 @@ class LabRecordings:
         runs = {}
         for name in (WITHOUT_FRICTION, WITH_FRICTION, FASTEST):
             with suppress(BenchError):  # raised where a task needs it
-                runs[name] = self.run(name)
+                runs[name] = self._read(name)
         return runs
 
     @cached_property
@@ -142,6 +142,9 @@ class LabRecordings:
 
         Raises InputError where there is no such file, it is no recording, or a signal is missing in it.
         """
+        return self.readable[name] if name in self.readable else self._read(name)
+
+    def _read(self, name: str) -> LabRun:
         path, others = self.files(name)
         columns = self.rig.trace.columns
         recording = read_recording(path)
