@@ -9,7 +9,7 @@ from threading import Event, Thread
 from types import FrameType
 
 # Many small least-squares problems: BLAS threads only wait for one another (a diagnosis took 9.7 s with one thread, 14
-# to 26 s with two on two cores). Read when numpy is first imported, so it stands before everything else.
+# to 26 s with two on two cores). Read when numpy is first imported, so it is set before everything else.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # MuJoCo loads a window library at import, 0.1 s; `bench.view.video.prepare` selects one to render with.
 os.environ.setdefault("MUJOCO_GL", "off")
@@ -35,7 +35,7 @@ def _stop(number: int, _frame: FrameType | None) -> None:
 
 
 def _threads() -> bool:
-    """Whether as many threads as libraries need may run beside one another (1 ms)."""
+    """Whether as many threads as libraries need may run at the same time (1 ms)."""
     ended = Event()
     try:
         for _ in range(LEAST_THREADS):
@@ -60,7 +60,7 @@ def _lacking() -> str | None:
 
 def main() -> None:
     """Entry point of `bench`."""
-    with suppress(OSError):  # which the command line tells
+    with suppress(OSError):  # which the command line reports
         if sys.argv[1:] == ["--version"] and sys.stdout is not None:
             print(__version__, flush=True)  # 0.03 s of CPU; 0.2 s with the command line's library
             return

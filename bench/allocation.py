@@ -16,7 +16,7 @@ _OPTIONS = {"MALLOC_MMAP_THRESHOLD_": -3, "MALLOC_TRIM_THRESHOLD_": -1}
 
 
 def keep_freed_memory() -> None:
-    """Keep freed memory in this process; without glibc, or where its environment says otherwise, nothing changes."""
+    """Keep freed memory in this process; without glibc, or where its environment sets otherwise, nothing changes."""
     if any(name.startswith("MALLOC_") for name in os.environ):
         return
     try:

@@ -1,4 +1,4 @@
-"""Arrays of numbers, and what is asked of them everywhere."""
+"""Arrays of numbers, and functions of them used everywhere."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ import array_api_compat
 import numpy as np
 from numpy.typing import NDArray
 
-#: Numbers of any shape; a docstring says which.
+#: Numbers of any shape; a docstring gives it.
 Array = NDArray[np.float64]
 #: Those of any library of the array API standard, which have no static type in common.
 Anys = Any
 #: Half width of a normal distribution's 95 % interval in standard deviations.
 NORMAL95 = NormalDist().inv_cdf(0.975)
 
-#: The functions of formulas for numbers, of which a tick of a lone axis asks many: a tenth of the time of NumPy's.
+#: The functions of formulas for numbers, of which a tick of a lone axis needs many: a tenth of the time of NumPy's.
 NUMBERS = SimpleNamespace(
     inf=math.inf,
     abs=abs,

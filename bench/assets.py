@@ -1,4 +1,4 @@
-"""Where the files that travel with the bench lie: beside the sources, or inside the installed package."""
+"""Where the files that travel with the bench lie: next to the sources, or inside the installed package."""
 
 from importlib.resources import files
 from pathlib import Path

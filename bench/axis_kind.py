@@ -82,7 +82,7 @@ class AxisKind:
         return unit.replace(ROTARY.effort_unit, effort_unit or self.effort_unit)
 
 
-#: Inertia of a joint beside that of its links, on the joint's side.
+#: Inertia of a joint in addition to that of its links, on the joint's side.
 ARMATURE = "armature"
 
 ROTARY = AxisKind("rotary", True, "rad", "torque", "N*m", "moment_of_inertia", "kg*m**2")
@@ -92,7 +92,7 @@ KINDS = (ROTARY, LINEAR)
 
 
 def axis_kind(name: object, where: object) -> AxisKind:
-    """The kind of a name that stands in a file or an argument; InputError that names `where` if there is none."""
+    """The kind of a name in a file or an argument; InputError that names `where` if there is none."""
     for kind in KINDS:
         if kind.name == name:
             return kind

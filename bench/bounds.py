@@ -1,7 +1,7 @@
 """Limits on the size of a file's content, as stored and decompressed.
 
-A gzip holds up to a thousand times its size, a Parquet file of one repeated value or a zip far more; a few megabytes
-would fill the memory of any machine. Whatever expands asks here before, or while, it does.
+A gzip expands to up to a thousand times its size, a Parquet file of one repeated value or a zip far more; a few
+megabytes would fill the memory of any machine. Whatever expands is checked here before, or while, it does.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The whole chain on the embedded rig: hide an effect in it, find it, add it, and set truth beside what was found."""
+"""The whole chain on the embedded rig: hide an effect in it, find it, add it, and compare the result with the truth."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def demo(out: Path, seed: int, progress: Callable[[float], None]) -> tuple[Docum
     """Run the chain into a folder; identification and diagnosis read the trace file, like anybody's.
 
     The seed draws which effect is hidden, how strong it is, and the sensors' noise; `progress` is called with the share
-    done. Returns the diagnosis beside the truth, and the files that were written. InputError where they cannot be.
+    done. Returns the diagnosis with the truth, and the files that were written. InputError where they cannot be.
     """
     rig, trace = load_rig(RIG), out / "trace.csv.gz"
     case = Plan(seed, Hiding(1, 1), population=own_axis(rig, DEFAULT, None)).case(0)

@@ -14,7 +14,7 @@ class InputError(BenchError):
 
     Args:
         where: file, and line, column or key within it.
-        found: what stands there.
+        found: what is there.
         allowed: what may stand there, or what to do.
     """
 

@@ -32,7 +32,7 @@ class _Touched:
 
 
 _TOUCHED: ContextVar[_Touched | None] = ContextVar("touched", default=None)
-#: What tells that a folder is one recording, and the endings of its files that are read.
+#: Files by which a folder is one recording, and the endings of its files that are read.
 _OF_FOLDERS, _READ = ("meta/info.json", "metadata.yaml"), (".parquet", ".json", ".yaml", ".db3", ".mcap")
 #: Ending of lock files, and names of those of files that are being written.
 _LOCK = ".lock"
@@ -40,7 +40,7 @@ _UNDER_WAY = re.compile(r"\.bench-[0-9a-f]{12}-.*\.lock", re.DOTALL)
 
 
 def marker(path: Path) -> Path:
-    """The file itself, or of a folder that is one recording the file that tells what it holds."""
+    """The file itself, or of a folder that is one recording the file that describes it."""
     found = (path / name for name in _OF_FOLDERS) if path.is_dir() else ()
     return next((file for file in found if file.is_file()), path)
 
@@ -155,7 +155,7 @@ def whole(path: str | Path, lasting: bool = True) -> Iterator[Path]:
     """A temporary path next to `path` that takes its name once the block has ended well, and is gone otherwise.
 
     The file is on the disk before it takes the name, unless it is one of many that can be made again (not `lasting`).
-    Links are followed; permissions are those of the file that is replaced, else what the umask leaves. Its folder is
+    Links are followed; permissions are those of the file that is replaced, else what the umask allows. Its folder is
     made; files of runs that were killed while they wrote to it are removed. InputError: it cannot be written to, or is
     an input.
     """

@@ -1,10 +1,11 @@
-"""Friction over steady speeds: several recordings, each at one speed, tell how friction depends on it, without inertia.
+"""Friction over steady speeds: several recordings, each at one speed, determine how friction depends on it, without
+inertia.
 
     M(omega) = K_w*omega + K_0*sgn(omega) + M_0 (+ an effect of speed alone)
 
 Each recording gives one point, the means of its speed and torque: at a steady speed inertia takes no torque, and what
-repeats with position averages out. An effect is named where an F-test over all shapes tried says that chance would not
-save as many squares. A single recording at one speed tells none of this, and no such map tells the inertia.
+repeats with position averages out. An effect is named where an F-test over all shapes tried shows that chance would not
+save as many squares. A single recording at one speed determines none of this, and no such map determines the inertia.
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ from bench.trace.trace import Trace
 CHANCE = 1e-3
 #: Speeds in each direction below which curvature is lost in scatter.
 LEAST = 8
-#: Parts of a recording whose mean speeds tell whether it keeps one, and how far apart they may lie as share of it: a
+#: Parts of a recording whose mean speeds show whether it keeps one, and how far they may differ, as share of it: a
 #: screw drive at its slowest, published as steady, has 0.35, a ramp from rest 1.75.
 PARTS, STEADY = 8, 0.5
-#: Share of all squares that rounding leaves of a map without scatter.
+#: Share of all squares due to rounding in a map without scatter.
 ROUNDING = 1e-24
 
 
@@ -48,10 +49,10 @@ class FrictionCurve:
     Attributes:
         name: of the effect.
         shape: what enters nonlinearly - SI.
-        theta: K_w, K_0, M_0, strengths of the effect - SI. M_0 is 0 where the effect holds a constant torque itself.
-        squares: sum of what it leaves - effort squared.
+        theta: K_w, K_0, M_0, strengths of the effect - SI. M_0 is 0 where the effect contains a constant torque itself.
+        squares: sum of its residuals - effort squared.
         freedom: numbers fitted.
-        constant: whether M_0 was fitted beside the effect.
+        constant: whether M_0 was fitted with the effect.
     """
 
     name: str
@@ -75,12 +76,13 @@ class FrictionMap:
         effort_unit: N*m, N, or what the rig allows.
         kind: of the axis.
         plain, best: curves without an effect and with the one that explains most; the same where physics allows none.
-        base: K_w and K_0 of the curve that holds; inertia nan.
-        offset: M_0 of that curve; None where the named effect holds a constant torque, which no map tells from it.
+        base: K_w and K_0 of the valid curve; inertia nan.
+        offset: M_0 of that curve; None where the named effect contains a constant torque, which no map distinguishes
+            from it.
         name: of the effect, None where chance explains as much.
         values: of the effect's quantities - SI.
         probability: that chance saves as many squares, for the best effect.
-        unexplained: norm of what is left over that of the effort, without and with the best effect.
+        unexplained: norm of the residual over that of the effort, without and with the best effect.
         checks: of the recordings, the worst of each.
     """
 
@@ -104,7 +106,7 @@ def friction_map(recordings: Sequence[Given], rig: GivenRig | None = None, units
 
     Raises:
         UndeterminedError: fewer than LEAST speeds in a direction, or none twice as fast as another.
-        InputError: a recording holds no torque or speed, fails a check, keeps no speed or was given twice, recordings
+        InputError: a recording has no torque or speed, fails a check, keeps no speed or was given twice, recordings
             give efforts in different units, or torque and speed are counted in opposite directions.
     """
     rig, traces = recordings_of(recordings, rig, units)
@@ -180,12 +182,12 @@ def _steady_speed(trace: Trace) -> float:
 
 
 def _different(speeds: Array) -> int:
-    """Speeds more than a hundredth apart: repetitions of one tell scatter, not curvature."""
+    """Speeds that differ by more than a hundredth: repetitions of one show scatter, not curvature."""
     return 1 + int((np.diff(np.log(np.sort(speeds))) > 0.01).sum()) if speeds.size else 0
 
 
 def bent_curve(name: str, velocity: Array, effort: Array) -> FrictionCurve:
-    """The curve with an effect of speed alone, its shape the one that leaves least of what physics allows."""
+    """The curve with an effect of speed alone, its shape the physically allowed one of least residual."""
     shapes = len(catalogue()[name].shapes)
     if not shapes:
         return _fitted(name, (), velocity, effort)

@@ -37,7 +37,7 @@ def words(name: str) -> str:
 
 
 def cell(text: str) -> str:
-    """The text as a cell of a CSV that no spreadsheet takes for a formula: an apostrophe stands before one."""
+    """The text as a cell of a CSV that no spreadsheet takes for a formula: an apostrophe is put before one."""
     formula = text[:1] in ("=", "+", "-", "@", "\t", "\r") and _NUMBER.fullmatch(text) is None
     return f"'{text}" if formula else text
 
@@ -65,7 +65,7 @@ def short(text: str, most: int = 200) -> str:
 
 
 def meant(name: str, known: Mapping[str, T]) -> T:
-    """The entry of a name, or of one without the words that tell no two entries apart; KeyError with the nearest.
+    """The entry of a name, or of one without the words that distinguish no two entries; KeyError with the nearest.
 
     `inertia` or `J` is the moment of inertia, `coulomb_friction` or `K_0` the Coulomb friction torque.
     """

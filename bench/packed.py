@@ -1,6 +1,6 @@
-"""A result with all its parts in one file, to be had again as it was: numbers and texts as JSON, arrays beside them.
+"""A result with all its parts in one file, to be had again as it was: numbers and texts as JSON, arrays with them.
 
-The file (NumPy's .npz) names dataclasses of the bench and effects of the catalogue; nothing that it holds is run.
+The file (NumPy's .npz) names dataclasses of the bench and effects of the catalogue; nothing in it is run.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _SERIES = {kind.__name__: kind for kind in (tuple, list, frozenset)}
 def pack(path: Path, result: object) -> Path:
     """Write a dataclass of the bench whole into a file, whose path is returned; InputError where it cannot be written.
 
-    TypeError: a part of it is neither a dataclass, an effect, an array, a number nor a text, nor made of those.
+    TypeError: a part of it is neither a dataclass, an effect, an array, a number nor a text, nor composed of those.
     """
     arrays: dict[str, Array] = {}
     parts = json.dumps(_pack(result, arrays))

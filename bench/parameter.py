@@ -18,7 +18,7 @@ from bench.presented import ByName
 LEVEL = 0.95
 #: Share by which a half width may exceed that of a normal distribution and still count as one.
 NORMAL = 1e-6
-#: How much further up than down an interval goes from which on both ends are told.
+#: How much further up than down an interval goes from which on both ends are given.
 LOPSIDED = 2.0
 
 
@@ -29,7 +29,7 @@ class Parameter(ByName, NDArrayOperatorsMixin):
     Attributes:
         value: in `unit`.
         unit: SI, or built from the unit the effort was allowed in (A*s**2/rad, ...).
-        std_error: standard error - unit; nan where the estimator knows none.
+        std_error: standard error - unit; nan where the estimator has none.
         ci95: 95 % interval - unit.
     """
 
@@ -69,7 +69,7 @@ class Parameter(ByName, NDArrayOperatorsMixin):
 
     @property
     def lopsided(self) -> bool:
-        """Whether the interval is one of a factor, so wide that half of it says little."""
+        """Whether the interval is one of a factor, so wide that half of it means little."""
         low, high = self.ci95
         return 0.0 < low < self.value and LOPSIDED * (self.value - low) < high - self.value < math.inf
 

@@ -72,7 +72,7 @@ app.command(hidden=True)(guarded(report))
 UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 #: Errors of a system that has no more to give, whatever it was asked for.
 SCARCE = (errno.EMFILE, errno.ENFILE, errno.EAGAIN, errno.ENOMEM)
-#: Characters of a line that says what is wrong; a path may have 4096.
+#: Characters of a line of an error; a path may have 4096.
 LONGEST = 6000
 
 
@@ -116,7 +116,7 @@ def main() -> None:
 
 
 def _leave_output() -> None:
-    """Have what is left for standard output, which Python flushes once more at its end, go nowhere."""
+    """Have the rest of standard output, which Python flushes once more at its end, go nowhere."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -130,7 +130,7 @@ def _add_offered() -> None:
 
 
 def _fault(fault: BaseException) -> str:
-    """What to say of an exception that nobody foresaw: it is never mistaken for bad input."""
+    """The message on an exception that nobody foresaw: it is never mistaken for bad input."""
     if isinstance(fault, MemoryError):
         return "out of memory; give less at a time, or a machine with more"
     last = extract_tb(fault.__traceback__)[-1]

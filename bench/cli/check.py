@@ -97,7 +97,7 @@ def _require_consistent(
 
 
 def _observed(of: Subject, traces: list[Path], axis: str | None, names: bool) -> Observed:
-    """What recordings tell now, with where it comes from."""
+    """The present state by recordings, with where it comes from."""
     from bench.baseline.observe import observe
     from bench.report.terminal import progress
 
@@ -139,7 +139,7 @@ def _model_checked(baseline: Path, model: Path, rig: Path | None, axis: str | No
 
 
 def _accept(baseline: Path, state: State, recordings: int = 0) -> None:
-    """Write the present state, and say what a check against it will not be able to tell."""
+    """Write the present state, and warn of what a check against it cannot determine."""
     from bench.baseline.state import write_baseline
     from bench.comparison.difference import ENOUGH
 

@@ -300,7 +300,7 @@ class Subject:
         read: how its recordings are read whole.
         reported: a recording, whose notes are printed with the result, or with why there is none.
         along: the robot along a log.
-        options: of the command that say which joint it is.
+        options: of the command that select the joint.
     """
 
     rig: bench.Rig
@@ -314,7 +314,7 @@ class Subject:
     def provenance(
         self, traces: Sequence[Path], options: Mapping[str, object], holdout: Path | None = None
     ) -> dict[str, Any]:
-        """What a result of recordings rests on, with the options that change it."""
+        """What a result of recordings is based on, with the options that change it."""
         from bench.report.parts import provenance
 
         rig, mjcf = self.files
@@ -372,7 +372,7 @@ def subject(
 
 
 def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.Rig:
-    """The rig that a recording drafts, after saying what it assumes."""
+    """The rig that a recording drafts, with a warning of what it assumes."""
     if trace is None:
         raise InputError("--rig", "missing", "allowed: a rig file, or --mjcf and --joint")
     from bench.rig.given import drafted

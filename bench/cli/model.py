@@ -103,7 +103,7 @@ def _written(
 
 
 def _joint_states(replayed: Replay, out: Path, joint: str) -> None:
-    """Measured beside simulated; without efforts that are none, as a drive's amperes."""
+    """Measured and simulated; without efforts that are none, as a drive's amperes."""
     from bench.axis_kind import KINDS
     from bench.trace.write import write_joint_states
 

@@ -61,7 +61,7 @@ def simulate(
         present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
         simulated = bench.simulate(axis, profile, seed, progress=done, effects=present)
     out = common.placed(out, "trace.csv.gz")
-    with held(out.parent):  # a trace and its own truth, not that of a run beside this one
+    with held(out.parent):  # a trace and its own truth, not that of a run at the same time
         write(simulated.trace, out)
         truth = write_truth(out, simulated.truth)
     if report is not None:
@@ -240,7 +240,7 @@ def _into(
 
 
 def _own(rig: Path, profile: Path, options: dict[str, object]) -> tuple[OwnAxis, dict[str, Any]]:
-    """The axis of a rig along a named motion, or the one of a file, and what it rests on."""
+    """The axis of a rig along a named motion, or the one of a file, and what it is based on."""
     from bench.report.parts import provenance
     from bench.validation.plan import own_axis
 

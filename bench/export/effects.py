@@ -130,7 +130,7 @@ class Effects:
         return Worlds(self.models, Simulations.of(batch), own)
 
     def on_warp(self, model: mujoco.MjModel, warp_model: Foreign, warp_data: Foreign) -> Worlds:
-        """The effects on all worlds of mujoco_warp: `model`, and what its `put_model` and `put_data` made of it.
+        """The effects on all worlds of mujoco_warp: `model`, and what its `put_model` and `put_data` made from it.
 
         Fields of the model that effects change become those of each world. On a GPU this needs torch.
         """
@@ -156,7 +156,7 @@ class Effects:
         return Worlds(self.models, simulations)
 
     def on_mjx(self, model: mujoco.MjModel, mjx_model: Foreign) -> Mjx:
-        """The effects in MJX: `model`, and what `mjx.put_model` made of it."""
+        """The effects in MJX: `model`, and what `mjx.put_model` made from it."""
         return Mjx(self.models, model, mjx_model)
 
     def on_arrays(self, like: Number, step: float) -> AtJoints:
@@ -235,7 +235,7 @@ class Worlds:
 
 
 class _Place(Joints):
-    """Joints of simulations, beside whatever else is applied to them."""
+    """Joints of simulations, in addition to whatever else is applied to them."""
 
     def __init__(self, simulations: Simulations, joints: Sequence[str]) -> None:
         model, kind = simulations.model, mujoco.mjtObj.mjOBJ_ACTUATOR
@@ -339,7 +339,7 @@ class AtJoints:
         return self._effects.start(self._ratio * velocity)
 
     def again(self, memory: Remembered, where: Number, velocity: Number) -> Remembered:
-        """A memory that begins anew where simulations were reset: bool - (..., joints), or one for all joints."""
+        """A memory that begins again where simulations were reset: bool - (..., joints), or one for all joints."""
         return self._effects.again(memory, where, self._ratio * velocity)
 
     def act(self, memory: Remembered, time: Number, position: Number, velocity: Number, torque: Number) -> Acts:
@@ -352,8 +352,8 @@ class AtJoints:
             torque: of their actuators - N*m (N) - (..., joints).
 
         Returns:
-            `torque` to apply beside the actuators', `friction` level and additional `inertia` of the joints, which are
-            None where no effect changes them, and the `memory` of this step.
+            `torque` to apply in addition to the actuators', `friction` level and additional `inertia` of the joints,
+            which are None where no effect changes them, and the `memory` of this step.
         """
         ratio = self._ratio
         acts = self._effects.act(memory, time, ratio * position, ratio * velocity, torque / ratio)

@@ -4,11 +4,11 @@
 
 F - mean over a turn of what resists steady motion at a speed - N*m; C - what it varies by over the position, mean over
 both directions at a slow speed - N*m; alpha, omega, q - references. What is neither - ripple, which grows with the
-current; a friction level that varies with position; what the drive itself does - is left to the drive's feedback.
+current; a friction level that varies with position; what the drive itself does - is handled by the drive's feedback.
 
-What resists is asked of all effects at once: native ones through MuJoCo, which makes their torques of position and
-speed; the others through their own hooks, as in a simulation. Time stands at its end: what warms up is warm, what
-happens for a while is over. How much better a drive tracks with it says a simulation of the model.
+The resisting torque is that of all effects at once: native ones through MuJoCo, which computes their torques from
+position and speed; the others through their own hooks, as in a simulation. Time is at its end: what warms up is warm,
+what happens for a while is over. A simulation of the model shows how much better a drive tracks with it.
 
 `DriveUnits` writes it as tables in the drive's own units: those that its recorder speaks, as the rig's columns have
 them.
@@ -41,13 +41,13 @@ from bench.trace.signals import scale_in, unit_on
 POSITIONS, SPEEDS = 720, 60
 #: Slowest speed of the table over speed, as a share of the fastest: below it friction is taken from rest linearly.
 SLOWEST = 1e-3
-#: Speed at which torque over position is asked, as a share of the fastest.
+#: Speed at which torque over position is computed, as a share of the fastest.
 SLOWLY = 0.05
 #: Share of a table's largest torque below which an effect changes nothing in it.
 NOTHING = 1e-6
 #: Share of the torque over a turn by which its ends differ where it does not repeat itself.
 OPEN = 1e-3
-#: Timestep of a model that is asked and does not move - s.
+#: Timestep of a model that is evaluated and does not move - s.
 TIMESTEP = 1e-4
 
 
@@ -135,7 +135,7 @@ def _tables(model: AxisModel, fastest: float, span: tuple[float, float]) -> tupl
 def tracking(model: AxisModel, rig: Rig, references: References, feedforward: Feedforward | None = None) -> Tracking:
     """Errors of a rig's drive on an axis along references at its ticks.
 
-    It feeds forward what it is given, else what its rig file says. InputError where the rig has no drive,
+    It feeds forward what it is given, else what is in its rig file. InputError where the rig has no drive,
     SimulationError where the simulation diverged.
     """
     cascade = Cascade.from_rig(rig)
@@ -203,11 +203,11 @@ class DriveUnits:
 
     @classmethod
     def of(cls, rig: Rig) -> DriveUnits:
-        """As a rig tells them; InputError where a unit is none of its signal's."""
+        """As in a rig; InputError where a unit is none of its signal's."""
         return cls(rig, Unit.of(rig, "position"), Unit.of(rig, "velocity"), Unit.of(rig, "current"))
 
     def table(self, name: str, unit: Unit, table: TorqueTable) -> str:
-        """A table as CSV, in the order of the drive's own count; with currents where the rig knows what gives them."""
+        """A table as CSV, in the order of the drive's own count; with currents where the rig states what gives them."""
         coordinate, constant = table.coordinate / unit.factor, self.rig.motor.torque_per_ampere
         columns = [coordinate, table.torque]
         head = [f"{name} [{unit.text}]", f"{self.rig.axis_kind.effort} [{self.rig.effort_unit}]"]

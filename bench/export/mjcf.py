@@ -10,8 +10,8 @@ effects are asked for their parts by building the axis alone (`AxisModel.spec`);
 an effect adds comes along. A coupling of motor and load becomes a second joint of the link, behind the first one:
 then the first joint is the motor's shaft, its armature the motor's inertia.
 
-Ranges for domain randomisation say how far each value may lie from the one given: its interval at 95 %; where several
-recordings tell it, the interval of what one more may tell, which holds what the axis differs by from day to day.
+Ranges for domain randomisation state how far each value may lie from the one given: its interval at 95 %; where several
+recordings determine it, the interval of one more, which includes how the axis differs from day to day.
 """
 
 from __future__ import annotations
@@ -65,7 +65,8 @@ class ArmatureShare(StrEnum):
 
 @dataclass(frozen=True)
 class Armature:
-    """Inertia of a joint beside that of its links, on its side - kg*m**2 (kg) -, and what of the model's it is."""
+    """Inertia of a joint in addition to that of its links, on its side - kg*m**2 (kg) -, and what of the model's it
+    is."""
 
     value: float
     origin: str
@@ -111,7 +112,7 @@ def robot_with(
         path: of the robot's MJCF.
         models: of joints by their names, each with its armature; None: that of the MJCF stays.
         out: where the text will stand, from where its meshes and textures are found.
-        added: what the robot has beside its MJCF.
+        added: what the robot has in addition to its MJCF.
         kept: joints that were asked for and have no model.
         with_assets: whether meshes, height fields and textures are copied into ASSETS next to `out`.
         stand: whether a floating base is fixed.
@@ -159,7 +160,7 @@ def _beside(spec: mujoco.MjSpec, one: AddedBody, path: Path) -> str:
     """Give a robot a payload, or a link's body the inertia that it has more about its joint's axis; in a sentence.
 
     A payload is a body of its own, which can be taken off again. A link's own inertia, about its centre, becomes larger
-    in its proportions: no log of its one joint tells more, and any tensor that was one stays one.
+    in its proportions: no log of its one joint determines more, and any tensor that was one stays one.
     """
     if not one.joint:
         add_body(spec, PAYLOAD, one, path)
@@ -178,7 +179,7 @@ def _beside(spec: mujoco.MjSpec, one: AddedBody, path: Path) -> str:
 
 
 def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
-    """Text of an MJCF that holds one body on a joint, whose values are a default class; it attaches to any body."""
+    """Text of an MJCF with one body on a joint, whose values are a default class; it attaches to any body."""
     spec, model, mounting = mujoco.MjSpec(), stored.model, stored.mounting
     spec.modelname = name
     body = spec.worldbody.add_body(name=BODY)
@@ -204,8 +205,8 @@ def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
 def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature | None = None) -> Carried:
     """Put a model onto a joint of a robot, which is changed, instead of the joint's own armature, damping and friction.
 
-    Without an armature given it is what the model tells. InputError where there is no such joint, one of another kind,
-    a coupling on a body of several joints, or no armature is left.
+    Without an armature given it is that of the model. InputError where there is no such joint, one of another kind,
+    a coupling on a body of several joints, or no armature remains.
     """
     joint, model, ratio = joint_of(spec, name, stored.model), stored.model, stored.mounting.gear_ratio
     links = link_inertia(spec, name)
@@ -218,7 +219,7 @@ def onto(spec: mujoco.MjSpec, name: str, stored: StoredModel, armature: Armature
     joint.damping = _scaled(alone.damping, ratio)
     own, added = float(joint.stiffness[0]), _scaled(alone.stiffness, ratio)
     joint.stiffness = np.asarray(joint.stiffness) + added
-    if added[0]:  # two springs are one that rests between them
+    if added[0]:  # two springs are one with a rest position between them
         reference = alone.springref / ratio * _angle(joint)
         joint.springref += (reference - joint.springref) * added[0] / (own + added[0])
     joint.frictionloss = alone.frictionloss * ratio
@@ -277,9 +278,9 @@ def joint_of(spec: mujoco.MjSpec, name: str, model: AxisModel) -> mujoco.MjsJoin
 
 
 def armature_of(stored: StoredModel, share: ArmatureShare | None = None) -> Armature:
-    """Armature of the joint: a share of the model's inertia, or what the model tells.
+    """Armature of the joint: a share of the model's inertia, or that of the model.
 
-    InputError where the model tells no inertia of the motor, or none is left beside the links.
+    InputError where the model has no inertia of the motor, or none remains without the links.
     """
     parameters, mounting = stored.model.parameters, stored.mounting
     if share is None:
@@ -300,7 +301,8 @@ def armature_of(stored: StoredModel, share: ArmatureShare | None = None) -> Arma
 
 
 def link_inertia(spec: mujoco.MjSpec, name: str) -> float:
-    """Inertia about a joint of all that it carries, its armature aside, where the MJCF stands - kg*m**2 (kg)."""
+    """Inertia about a joint of all that it carries, its armature aside, in the configuration of the MJCF - kg*m**2
+    (kg)."""
     model = compiled(spec)
     dof = model.joint(name).dofadr[0]
     return float(model.dof_M0[dof] - model.dof_armature[dof])
@@ -339,7 +341,7 @@ def _couple(joint: mujoco.MjsJoint, axis: mujoco.MjSpec, name: str, ratio: float
 
 
 SCHEMA = "bench.ranges/1"
-#: What ranges are made of.
+#: What ranges are computed from.
 SOURCES = ("bench.identify/1", "bench.diagnose/1")
 
 

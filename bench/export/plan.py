@@ -1,6 +1,7 @@
-"""The motion to record, and how well it will tell: every profile inside the rig's limits, simulated and fitted.
+"""The motion to record, and how well it determines the axis: every profile inside the rig's limits, simulated and
+fitted.
 
-What a recording tells is known before it is made: the inverse of the information matrix of its regression is the
+What a recording determines is known before it is made: the inverse of the information matrix of its regression is the
 covariance of what will be found. Each profile is simulated on the axis as the rig file describes it, its sensors' noise
 included, and fitted by the engine that will fit the recording; its errors are those to expect.
 """
@@ -39,7 +40,7 @@ PLANNED = tuple(name for name, profile in PROFILES.items() if profile is not ful
 class PlannedMotion:
     """A motion at the drive's ticks, repeated until it is long enough, and quantities with the errors to expect of it.
 
-    `reason` says why it determines nothing; empty if it does.
+    `reason` is why it determines nothing; empty if it does.
     """
 
     profile: str
@@ -62,8 +63,8 @@ def motions(rig: Rig, wanted: Present | None = None, profile: str | None = None)
         wanted: an effect that is to be determined, as strong as it may be; None: inertia and friction are.
 
     Raises:
-        InputError: the rig lacks what a simulation needs, no such profile, or no torque balance tells the effect.
-        UndeterminedError: no profile tells what is wanted.
+        InputError: the rig lacks what a simulation needs, no such profile, or no torque balance determines the effect.
+        UndeterminedError: no profile determines what is wanted.
     """
     effects = [] if wanted is None else [wanted]
     plant = Plant.from_rig(rig, effects)
@@ -87,7 +88,7 @@ def motions(rig: Rig, wanted: Present | None = None, profile: str | None = None)
 
 
 def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effect | None) -> PlannedMotion:
-    """What a simulated recording tells of the effect, or of inertia and friction."""
+    """What a simulated recording determines of the effect, or of inertia and friction."""
     kind = rig.axis_kind
     units = kind.base_parameters()
     try:

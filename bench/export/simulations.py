@@ -56,7 +56,7 @@ class Simulations:
 
 
 class Joints:
-    """Joints of simulations, to which what effects make of a step is written, in the joints' own units.
+    """Joints of simulations, to which the results of effects in a step are written, in the joints' own units.
 
     Args:
         simulations: whose joints they are.

@@ -1,7 +1,7 @@
 """A model as other simulators take a joint: for each of them a file as it documents it, and what that cannot carry.
 
 All values are on the joint's side of a gear, as `bench.export.mjcf` has them, but where a simulator has the gear too.
-Effects are asked: for what MuJoCo makes of them natively, by building the axis with each alone; for their friction in
+Effects give the part that MuJoCo has natively, by building the axis with each alone; for their friction in
 others' words (`bench.effects.torque.FrictionLaw`).
 """
 
@@ -42,7 +42,7 @@ class SimulatedJoint:
 
     @property
     def armature(self) -> float:
-        """kg*m**2 (kg); InputError where the model tells none."""
+        """kg*m**2 (kg); InputError where the model has none."""
         return armature_of(self.stored).value
 
     @property
@@ -72,14 +72,15 @@ class SimulatedJoint:
             yield present.name, self.stored.model.with_effects([present]).spec(TIMESTEP)
 
     def passive(self) -> Iterator[tuple[str, mujoco.MjsActuator]]:
-        """Passive motors that effects are made of, behind the effects' names; they are behind the gear themselves."""
+        """Passive motors of effects, behind the effects' names; they are behind the gear themselves."""
         for name, spec in self.native():
             for actuator in spec.actuators:
                 if actuator.name not in (DRIVE, LOAD_TORQUE):
                     yield name, actuator
 
     def friction(self) -> tuple[FrictionLaw, dict[str, str]]:
-        """Dry friction beside Coulomb's; and the effects that are its `rise` and its share of the `load`, the first."""
+        """Dry friction in addition to Coulomb's; and the effects that are its `rise` and its share of the `load`, the
+        first."""
         model, found, names = self.stored.model, {"rise": FrictionLaw(), "load": FrictionLaw()}, {}
         for effect, values in model.acting(Friction):
             law = effect.law(values, model.axis)
@@ -91,7 +92,7 @@ class SimulatedJoint:
         return FrictionLaw(rise, velocity, rising.exponent, loaded.motor, loaded.external), names
 
     def summary(self, carried: Sequence[str], *notes: str) -> list[str]:
-        """What a file holds of the joint, and what not, in sentences."""
+        """What a file contains of the joint, and what not, in sentences."""
         model, left = self.stored.model, [present.name for present in self.stored.model.effects]
         for name in carried:
             left.remove(name)
@@ -107,7 +108,7 @@ Written = tuple[str, list[str]]
 
 
 def simulator_file(target: str, models: Mapping[str, StoredModel], actuator: str | None) -> Written:
-    """Text of the file of joints for a simulator of `TARGETS`, and what it holds and lacks in sentences.
+    """Text of the file of joints for a simulator of `TARGETS`, and what it contains and lacks in sentences.
 
     `actuator` is BAM's that makes the torque. InputError: no such simulator, or it does not take such joints.
     """

@@ -23,7 +23,7 @@ import scipy  # its special functions load when first used: 0.2 s
 from bench.arrays import Array
 from bench.comparison.spread import next_interval
 
-#: Recordings below which nothing can be said: two means, and one number for the scatter about them.
+#: Recordings below which nothing can be concluded: two means, and one number for the scatter about them.
 FEWEST = 3
 
 

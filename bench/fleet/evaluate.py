@@ -1,6 +1,6 @@
 """One recording of a fleet, evaluated where the work is done: what is known of it becomes plain data.
 
-A recording may lie in a storage that fsspec knows (s3://, gs://, https://, sftp://): it is copied to be read.
+A recording may lie in a storage of fsspec (s3://, gs://, https://, sftp://): it is copied to be read.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ from bench.trace.trace import Trace, assemble
 if TYPE_CHECKING:
     from bench.diagnosis.diagnosis import Diagnosis
 
-#: Storages that a manifest may name: those that only send files. fsspec knows others that start programs or unpack.
+#: Storages that a manifest may name: those that only send files. fsspec has others that start programs or unpack.
 STORAGES = ("https", "http", "s3", "gs", "gcs", "az", "abfs", "sftp", "ssh")
-#: What a recording is called in what is said of it: the same whatever its path is, and wherever it was copied to.
+#: What a recording is called in messages: the same whatever its path is, and wherever it was copied to.
 CALLED = "recording"
 #: Bytes copied from a storage at a time.
 _PIECE = 1 << 22
@@ -49,10 +49,10 @@ _PIECE = 1 << 22
 
 @dataclass(frozen=True)
 class Job:
-    """One recording to be evaluated: its path, or URL of a storage that fsspec knows; `diagnose`: are effects sought
+    """One recording to be evaluated: its path, or URL of a storage of fsspec; `diagnose`: are effects sought
     too.
 
-    The axis of this name is read where the file holds several and one has it.
+    The axis of this name is read where the file has several and one has it.
     """
 
     place: str
@@ -98,7 +98,7 @@ def _found(trace: Trace, job: Job) -> Plain:
     found = diagnose(trace, job.rig)
     try:
         explained = identify(cut(trace), job.rig).explained
-    except UndeterminedError:  # effects tell apart what J and friction alone leave open
+    except UndeterminedError:  # effects distinguish what J and friction alone leave open
         explained = None
     gaps = {"torque": found.torque, "velocity": found.velocity}
     return {
@@ -163,7 +163,7 @@ def marked(url: str, storages: Sequence[str] = STORAGES) -> str:
 
 
 def fetched(url: str, folder: Path) -> Path:
-    """A copy of a file in a folder, under its own name, which may tell its format.
+    """A copy of a file in a folder, under its own name, which may determine its format.
 
     InputError as `marked`, or where it is too large.
     """
@@ -191,7 +191,7 @@ def _errors_as_input(url: str) -> Iterator[None]:
 class PlannedRecording:
     """One recording of the manifest: the key of its result and the job, or why it cannot be begun, as a result.
 
-    `basis` is what its result rests on, for the table.
+    `basis` is what its result is based on, for the table.
     """
 
     key: str
@@ -229,7 +229,7 @@ def plan(
 
 
 def _looked_at(storages: Sequence[str], limits: Bounds, asked: tuple[str, str]) -> tuple[Rig, str] | str | Plain:
-    """A rig with the hash of its file, or what tells a recording's file from any other content; or what is wrong.
+    """A rig with the hash of its file, or what identifies the content of a recording's file; or what is wrong.
 
     A rig has a name, and a refusal a text, that are the same wherever the file lies.
     """

@@ -69,7 +69,7 @@ def fleet(
         limits, workers, scheduler: as `bench.jobs.each.each` has them.
         progress: called with the share done.
         finish: called with what was found while no other run writes to the folder.
-        storages: that the manifest may name beside `bench.fleet.evaluate.STORAGES`, by fsspec's names.
+        storages: that the manifest may name in addition to `bench.fleet.evaluate.STORAGES`, by fsspec's names.
 
     Raises:
         InputError: a bad manifest, a folder that cannot be written to, or no scheduler at the address.
@@ -119,11 +119,11 @@ def tabulate(manifest: Manifest, planned: Sequence[PlannedRecording], results: S
 def _columns(
     planned: Sequence[PlannedRecording], results: Sequence[Plain]
 ) -> Iterator[tuple[str, pa.DataType, list[Any]]]:
-    """Name, type and values (n,) of each column; empty where a result tells nothing of it."""
+    """Name, type and values (n,) of each column; empty where no result has it."""
     for name in ("status", "reason"):
         yield name, TEXT, [found[name] for found in results]
     parameters = [found.get("parameters", {}) for found in results]
-    for name in dict.fromkeys(name for one in parameters for name in one):  # that any recording tells
+    for name in dict.fromkeys(name for one in parameters for name in one):  # that any recording determines
         for ending, (key, kind) in OF_PARAMETER.items():
             yield name + ending, kind, [one.get(name, {}).get(key) for one in parameters]
     yield "verdict", TEXT, [found.get("verdict") for found in results]

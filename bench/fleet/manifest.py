@@ -60,7 +60,7 @@ class Manifest:
 
     @property
     def times(self) -> Array:
-        """When each was recorded (n,) - s, or what the manifest counts in; nan where it does not say."""
+        """When each was recorded (n,) - s, or what the manifest counts in; nan where it is not given."""
         column = self.table["time"].combine_chunks()
         if self.dated:
             microseconds = column.cast(pa.timestamp("us"), safe=False).cast(pa.int64())
@@ -123,7 +123,7 @@ def _of_csv(content: bytes) -> pa.Table:
 
 
 def _require_text(path: Path, table: pa.Table, name: str) -> None:
-    """InputError if a column holds anything but text."""
+    """InputError if a column contains anything but text."""
     kind = table[name].type
     if not (pa.types.is_string(kind) or pa.types.is_large_string(kind)):
         raise InputError(f"{path}: {name}", f"found values of type {kind}", "allowed: text")

@@ -58,7 +58,7 @@ class _OfGap(_Part):
 
 
 class _Result(_Part):
-    """What a result has to be for a table to be made of it; one that is not is as one that is not there."""
+    """What a result has to be to be used in a table; one that is not is as one that is not there."""
 
     warnings: list[str] = []
     verdict: str | None = None
@@ -93,7 +93,7 @@ class Store:
     folder: Path
 
     def path(self, key: str) -> Path:
-        """Of a result's file; a folder holds a 256th of them, for a hundred thousand in one are slow."""
+        """Of a result's file; a folder has a 256th of them, for a hundred thousand in one are slow."""
         return self.folder / key[:2] / f"{key}.json"
 
     def get(self, key: str) -> Plain | None:

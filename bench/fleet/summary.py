@@ -1,6 +1,7 @@
-"""What a fleet's table says: which axes changed and since when, what was named, and which axes need attention and why.
+"""Conclusions from a fleet's table: which axes changed and since when, what was named, and which axes need attention
+and why.
 
-An axis changed where what its recordings tell of inertia or friction steps (`bench.fleet.change_point`).
+An axis changed where inertia or friction of its recordings steps (`bench.fleet.change_point`).
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from bench.fleet.store import Plain
 
 #: Chance of a report that any axis changed of a fleet in which none did.
 ALARM = 0.01
-#: Standard errors over the median one beyond which a recording says too little of a quantity to be compared.
+#: Standard errors over the median one beyond which a recording determines too little of a quantity to be compared.
 VAGUE = 5.0
 #: Quantities of the axis itself; what follows from them, or is the drive's, would be reported twice.
 COMPARED = (INERTIA, VISCOUS, COULOMB, OFFSET)
@@ -36,7 +37,7 @@ KINDS = ("failed", "timed_out", "missing", "refused", "unexplained", "checks")
 
 @dataclass(frozen=True)
 class History:
-    """What the recordings of one axis tell of one quantity, by the name of the contract, in the order of time.
+    """One quantity by the recordings of one axis, by the name of the contract, in the order of time.
 
     Rows of the manifest, and values with their standard errors (n,).
     """
@@ -117,7 +118,7 @@ class Summary:
 
     Attributes:
         rows: of the manifest, by axis, in the order of time; those without a time come last.
-        histories: what they tell of each quantity.
+        histories: each quantity over them.
         counts: recordings of each status.
         compared: series of a quantity over the recordings of an axis in which a change could be sought.
         changed: surest first.

@@ -1,4 +1,4 @@
-"""Do the same work on many items: in worker processes beside this one, or on the workers of a Dask cluster."""
+"""Do the same work on many items: in worker processes, or on the workers of a Dask cluster."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Pieces of work on a Dask cluster.
 
 Dask has the queue, the balance between workers, and the retries where a worker or its machine is lost; each thread of a
-worker has one process beside it (`process.py`), so that no piece of work can hold up or end the worker itself.
+worker has one process with it (`process.py`), so that no piece of work can hold up or end the worker itself.
 """
 
 from __future__ import annotations
@@ -66,13 +66,13 @@ def _client(scheduler: str, answers: float) -> Client:
 
 
 async def _answered(scheduler: str) -> None:
-    """Return once a scheduler has said what it is, for which a client would wait without end."""
+    """Return once a scheduler has identified itself, for which a client would wait without end."""
     comm = await connect(scheduler, **Security().get_connection_args("client"))
     await comm.close()
 
 
 class WorkerProcesses(WorkerPlugin):
-    """The processes beside a worker, one for each of its threads that works; tasks find it by its name."""
+    """The processes of a worker, one for each of its threads that works; tasks find it by its name."""
 
     def __init__(self, name: str, work: Callable[..., object], limits: Limits) -> None:
         self.name, self._work, self._limits = name, work, limits
@@ -84,7 +84,7 @@ class WorkerProcesses(WorkerPlugin):
             process.close()
 
     def do(self, item: object) -> object:
-        """The work's result or failure, by the process of the thread that asks."""
+        """The work's result or failure, by the process of the calling thread."""
         process = self._processes.setdefault(threading.get_ident(), WorkerProcess(self._work, self._limits))
         return process.do(item)
 
@@ -97,7 +97,7 @@ def _done(name: str, item: object) -> object:
 def _outcome(future: Future) -> Any:  # noqa: ANN401
     """What a task returned, or that its worker was lost as often as Dask allows.
 
-    A result that was lost with its worker is made anew while it is asked for, which may fail as the first time.
+    A result that was lost with its worker is computed again while it is asked for, which may fail as the first time.
     """
     try:
         return future.result()

@@ -1,7 +1,7 @@
 """A worker process that does one piece of work after another, and can be stopped during one.
 
 A thread cannot be stopped, and a signal does not interrupt compiled code that hangs: only a process can be ended, with
-what it holds. It is kept from one piece to the next, for loading numerics costs it a second. Dask has no deadline for a
+its memory. It is kept from one piece to the next, for loading numerics costs it a second. Dask has no deadline for a
 task (a future that is cancelled runs on), and its workers may have no child of `multiprocessing`, hence `subprocess`.
 """
 
@@ -163,11 +163,11 @@ def _memory(number: int) -> int:
 def serve(handle: int) -> None:
     """Do the work that comes through a pipe of this handle, in the worker process, until the other end is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: the waiting process decides
-    sys.unraisablehook = lambda _: None  # of a library's half-made objects, which would be printed beside the one line
+    sys.unraisablehook = lambda _: None  # of a library's half-made objects, which would be printed with the one line
     with Connection(handle) as calls, Path(os.devnull).open("w") as nowhere:
         try:
             work, deadline = calls.recv()
-        except Exception as error:  # what it is made of cannot be imported here
+        except Exception as error:  # its parts cannot be imported here
             calls.send(raised(error))
             return
         calls.send(None)

@@ -35,7 +35,7 @@ NEXT = {
 }
 #: Margins to which the chart reaches at least, so that one is seen, and at most, so that small differences are.
 LEAST, MOST = 2.0, 8.0
-#: Characters of what a state rests on, and of a title made of file names.
+#: Characters of what a state is based on, and of a title made of file names.
 LONG = 600
 
 
@@ -252,7 +252,7 @@ def _unlike(checked: Checked) -> doc.Points | doc.Paragraph:
 
 
 def _gaps_table(checked: Checked) -> doc.Table:
-    """What is left in both states, and their verdicts."""
+    """The residuals of both states, and their verdicts."""
     rows: list[tuple[str | None, ...]] = [
         ("verdict", *(words(state.verdict) or "not checked" for state in (checked.baseline, checked.now)), "")
     ]
@@ -266,7 +266,7 @@ def _gaps_table(checked: Checked) -> doc.Table:
 
 
 def _basis(label: str, provenance: Mapping[str, Any]) -> str:
-    """What a state rests on, whatever its baseline file says of it."""
+    """What a state is based on, with any content of its baseline file."""
     return short(f"{label}: {', '.join(_leaves('', provenance))}", LONG)
 
 

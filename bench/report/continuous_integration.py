@@ -29,7 +29,7 @@ _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 MOST = 10
 #: Characters of Markdown markup and mentions, other than in HTML entities.
 _MARKUP = re.compile(r"[\\`*_\[\]|~@!#](?!#?\w+;)")
-#: What ends a workflow command, and beside it what ends one of its properties.
+#: What ends a workflow command, and in addition what ends one of its properties.
 _ESCAPED = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})
 _ENDING = str.maketrans({":": "%3A", ",": "%2C"})
 

@@ -39,7 +39,7 @@ PERIOD = 1e-3
 DRAWN = ("position", "velocity", "current", "time")
 #: Additions drawn over time at most, the last ones: more would be no page any more.
 STEPS = 6
-#: Probability with which a set of names holds the truth.
+#: Probability with which a set of names contains the truth.
 SURE = 0.9
 #: Alternatives that are named in a sentence at most, and the least probability of one.
 MOST_SHOWN, LEAST_SHOWN = 3, 1e-3
@@ -51,7 +51,7 @@ def diagnosis_json(found: Diagnosis, provenance: Mapping[str, Any] | None = None
 
 
 def diagnosis_content(found: Diagnosis, provenance: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """What that JSON holds."""
+    """The content of that JSON."""
     likely = found.probabilities
     effects = [
         {
@@ -135,7 +135,7 @@ def _(step: Step) -> dict[str, Any]:
 
 @as_json.register
 def _(compared: SameAxis) -> dict[str, Any]:
-    """Whether the holdout is of the same axis; what each of the two recordings tells of what differs."""
+    """Whether the holdout is of the same axis; the differing values of the two recordings."""
     differs = [
         {
             "quantity": name,

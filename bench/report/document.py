@@ -1,8 +1,9 @@
-"""A result as a document: a headline, answers, and sections of text, tables, charts and files. It knows no renderer.
+"""A result as a document: a headline, answers, and sections of text, tables, charts and files. It is independent of
+renderers.
 
 Every command makes one document of its result, in one file of `bench/report`. `bench.report.html`, `terminal`,
-`markdown` and `figures` show it, and know no result. It is data, stored beside its page, which can be made anew of it
-(`bench report`). All text in it is text: a name from a file is shown, whatever it holds, and never obeyed.
+`markdown` and `figures` show it, and know no result. It is data, stored next to its page, which can be rendered again
+from it (`bench report`). All text in it is text: a name from a file is shown and never executed.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ from bench.arrays import Array
 
 SCHEMA = "bench.page/1"
 
-#: How a headline is meant: all is well, something is left to do, or the answer is no.
+#: How a headline is meant: all is well, something remains to be done, or the answer is no.
 Tone = Literal["sure", "open", "refused"]
-#: What something drawn stands for: what was measured, a model, a residual, noise, or what comes first; and four more.
+#: The meaning of something drawn: what was measured, a model, a residual, noise, or what comes first; and four more.
 Colour = Literal["ink", "model", "residual", "floor", "first", "violet", "ochre", "blue", "red"]
 #: Of the curves of a chart that stand for nothing of these, in their order.
 COLOURS: tuple[Colour, ...] = ("ink", "model", "residual", "violet", "ochre", "blue", "red", "first")
@@ -43,7 +44,7 @@ Address = Annotated[str, Field(pattern=r"^(\.\./)*([A-Za-z0-9_][A-Za-z0-9_.-]*/)
 
 
 def _require(right: bool, allowed: str) -> None:
-    """What its parts cannot say of themselves, of a document that is read back."""
+    """What its parts cannot check themselves, of a document that is read back."""
     if not right:
         raise ValueError(allowed)
 
@@ -83,7 +84,7 @@ class Heading(Part):
 
 
 class Series(Part):
-    """What is drawn into a chart, under its name in the legend, in the colour of what it stands for.
+    """What is drawn into a chart, under its name in the legend, in the colour of its meaning.
 
     Attributes:
         x, y: points (b,); `y` is () of a band.
@@ -160,7 +161,7 @@ class Panel(Part):
     """One pair of axes of a chart.
 
     Attributes:
-        note: that stands in its corner.
+        note: in its corner.
         y_label: of the vertical axis with its unit, where it is no other panel's.
         log: whether both axes are logarithmic.
     """
@@ -183,7 +184,7 @@ class Drawing(Part):
 class Chart(Drawing):
     """Panels of points and lines over anything; drawn without a script.
 
-    Panels stand beside each other and share one y scale; those that have y labels stand one above the other, with
+    Panels are next to each other and share one y scale; those that have y labels stand one above the other, with
     a scale each.
     """
 
@@ -242,7 +243,7 @@ class HeatMap(Part):
     Attributes:
         corner: what rows are.
         rows, columns: headings.
-        counts: a row each; zero is left blank. All should lie on the diagonal, which is framed.
+        counts: a row each; zero is blank. All should lie on the diagonal, which is framed.
     """
 
     kind: Literal["heat"] = "heat"
@@ -269,7 +270,7 @@ class Samples(Part):
 
     Attributes:
         offset, scale: a value is offset + scale*number.
-        low, high: numbers in base 64; `high` is None where one value stands for each interval.
+        low, high: numbers in base 64; `high` is None where each interval has one value.
     """
 
     offset: float
@@ -288,7 +289,7 @@ class TimeCurve(Part):
 
 
 class TimePanel(Part):
-    """Curves over one y axis; `first`: whether those of the first choice stay in sight beside another one's."""
+    """Curves over one y axis; `first`: whether those of the first choice stay in sight with another one's."""
 
     label: str
     unit: str
@@ -323,7 +324,7 @@ class Triangles(Part):
 class Pivot(Part):
     """A joint of a body: its axis and a point of it in the body's frame - m -, and its zero - rad (m).
 
-    `of`: whose position it has: 0 of the motion, then of a robot's poses; None of none, it stands.
+    `of`: whose position it has: 0 of the motion, then of a robot's poses; None of none, it is fixed.
     """
 
     of: int | None
@@ -344,10 +345,10 @@ class Body(Part):
 
 
 class RobotDrawing(Part):
-    """What moves beside the joint that a motion is of, whose motor turns `ratio` times as far.
+    """What moves with the joint that a motion is of, whose motor turns `ratio` times as far.
 
     Attributes:
-        bodies: the first stands, the others come after the one that carries them.
+        bodies: the first is fixed, the others come after the one that carries them.
         ratio: of the joint's gear.
         start, step: of the instants of the poses - s.
         poses: of the other joints - rad (m) -: 32-bit floats in base 64.
@@ -402,7 +403,7 @@ class Moving(Drawing):
 
 
 class File(Part):
-    """A file to take along, under its name and media type: inside of the page, and beside it in a command's folder."""
+    """A file to take along, under its name and media type: inside of the page, and next to it in a command's folder."""
 
     name: str
     about: str
@@ -444,7 +445,7 @@ class Neighbour(Part):
 
 
 class Neighbours(Part):
-    """Links to files beside the page."""
+    """Links to files next to the page."""
 
     kind: Literal["neighbours"] = "neighbours"
     files: tuple[Neighbour, ...]
@@ -464,7 +465,7 @@ Drawable = Table | TimeGraph | Chart | Intervals | HeatMap
 
 
 class Section(Part):
-    """A section under a heading; `key`: its anchor on the page, `detail`: whether a terminal leaves it to the page."""
+    """A section under a heading; `key`: its anchor on the page, `detail`: whether only the page shows it."""
 
     key: str = Field(pattern=r"^[a-z][a-z0-9-]*$")
     heading: str
@@ -483,14 +484,15 @@ def sections(*given: Section) -> tuple[Section, ...]:
 
 
 class Picture(Part):
-    """A figure for paper, by its file's name without ending: rows from top to bottom, their parts beside each other."""
+    """A figure for paper, by its file's name without ending: rows from top to bottom, their parts next to each
+    other."""
 
     name: str
     title: str
     rows: tuple[tuple[Drawable, ...], ...]
 
 
-def _answers(given: Any) -> Any:  # noqa: ANN401 - whatever a file holds
+def _answers(given: Any) -> Any:  # noqa: ANN401 - any content of a file
     """Answers by question: of the list that a file has, or as they are."""
     try:
         return {one["question"]: one["answer"] for one in given}
@@ -513,8 +515,8 @@ class Document(Part):
         subject: what it is about: rig and recordings.
         verdict, tone: the headline, a sentence.
         answers: what a reader wants to know first, by question.
-        glance: what shows it best, drawn below the answers beside each other.
-        origin: version and digests, so that anybody can tell what it rests on.
+        glance: what shows it best, drawn below the answers next to each other.
+        origin: version and digests, on which it is based.
         pictures: figures for paper, which are no part of the page.
         files_in_folder: texts of files by their names, which lie in its folder and are no part of the page.
         warnings: what a user should know before relying on it, for standard error; the page has them in a section.

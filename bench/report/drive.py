@@ -23,7 +23,7 @@ from bench.trace.trace import Trace
 
 
 def plan_table(best: PlannedMotion) -> doc.Table:
-    """What a motion will tell, and how well."""
+    """What a motion will determine, and how well."""
     title = f"{best.profile}, {best.motion.time[-1]:.3g} s: what it will determine, and how well"
     rows = (
         (words(name), number(found.value), number(found.std_error, digits=2), unit_text(found.unit))
@@ -33,7 +33,7 @@ def plan_table(best: PlannedMotion) -> doc.Table:
 
 
 def others_line(found: list[PlannedMotion]) -> str:
-    """How well all profiles tell the same, in a line."""
+    """How well all profiles determine the same, in a line."""
     others = [f"{each.profile} {'nothing' if each.reason else f'{each.worst:.2%}'}" for each in found]
     return f"largest standard error over its value: {', '.join(others)}"
 
@@ -112,7 +112,7 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
     panels, in_legend = [], set()  # one legend serves all panels
     for volts, limit in ranges.items():
         curves = _curves(speed, torque, warm[volts], limit)
-        with suppress(InputError):  # the motor does not tell its circuit
+        with suppress(InputError):  # the motor has no circuit
             cold = limit.cold(rig.motor, rig.source)
             of_peak.setdefault(reserve(cold, speed, torque).peak, []).append(f"{volts} cold")
             at = np.linspace(0.0, cold.curve.no_load_speed, 300)

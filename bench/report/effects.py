@@ -28,7 +28,7 @@ def effects_table() -> Table:
 
 
 def effect_page(name: str) -> str:
-    """What the effect's module says of it, its quantities, and how it is simulated.
+    """The description of the effect's module, its quantities, and how it is simulated.
 
     Raises:
         InputError: no such effect.

@@ -27,7 +27,7 @@ from bench.report.over_time import unpacked
 
 #: More points than this do not show in a figure; the extremes of each stretch stand for it.
 POINTS = 8000
-#: What is measured, what a model makes, what is left, and noise: the same everywhere, and distinct in grey too.
+#: What is measured, a model, a residual, and noise: the same everywhere, and distinct in grey too.
 MEASURED, MODELLED, REST, NOISE = "#4c5c6e", "#c0480a", "#25704e", "#d6e0e8"
 #: Colours of a document on paper.
 COLOURS = {"ink": MEASURED, "model": MODELLED, "residual": REST, "floor": NOISE, "first": "#7d8894"}
@@ -40,7 +40,7 @@ in_style = rc_context(STYLE)
 FORMATS = (".png", ".pdf", ".svg")
 #: Width of a picture, and height of its title - inch.
 WIDTH, TITLE = 11.0, 0.35
-#: Panels of a chart beside each other, and height of a row of them - inch.
+#: Panels of a chart next to each other, and height of a row of them - inch.
 ACROSS, ROW = 4, 2.4
 #: Height of a panel over time, of one of a stack, of a row of intervals and of one of a table - inch.
 TIME_PANEL, STACKED, SPAN, LINE = 1.5, 1.6, 0.3, 0.2
@@ -69,7 +69,7 @@ ROLES: dict[str, dict[str, Any]] = {
 
 @in_style
 def drawn(picture: doc.Picture) -> Figure:
-    """The figure of a picture: its rows from top to bottom, the parts of a row beside each other."""
+    """The figure of a picture: its rows from top to bottom, the parts of a row next to each other."""
     heights = [max(drawing(part)[0] for part in row) for row in picture.rows]
     figure = Figure(figsize=(WIDTH, TITLE + sum(heights)), layout="constrained")
     title_figure(figure, picture.title)
@@ -111,7 +111,7 @@ def drawing(part: doc.Drawable) -> tuple[float, Callable[..., None]]:
 
 
 def _write(figure: Figure | SubFigure, table: doc.Table) -> None:
-    """A table as text: what a row is of, and what it says below."""
+    """A table as text: what a row is of, and its cells below."""
     axes = figure.subplots()
     axes.set_axis_off()
     lines = [f"{row[0]}\n    {' '.join(filter(None, row[1:]))}" for row in table.rows]
@@ -119,7 +119,7 @@ def _write(figure: Figure | SubFigure, table: doc.Table) -> None:
 
 
 def _over_time(figure: Figure | SubFigure, graph: doc.TimeGraph) -> None:
-    """All panels, with the model chosen last, and the one chosen first beside it where it stays in sight."""
+    """All panels, with the model chosen last, and the one chosen first with it where it stays in sight."""
     last = len(graph.choices) - 1
     every = figure.subplots(len(graph.panels), 1, sharex=True, squeeze=False)[:, 0]
     for axes, panel in zip(every, graph.panels, strict=True):
@@ -147,7 +147,7 @@ def _extent(time: Array, low: Array, high: Array) -> list[Array]:
 
 
 def _beside(figure: Figure | SubFigure, chart: doc.Chart) -> None:
-    """Panels beside each other on one y scale, under one legend."""
+    """Panels next to each other on one y scale, under one legend."""
     across = min(len(chart.panels), ACROSS)
     rows = -(-len(chart.panels) // across)
     every = figure.subplots(rows, across, sharey=True, squeeze=False).ravel()
@@ -160,7 +160,7 @@ def _beside(figure: Figure | SubFigure, chart: doc.Chart) -> None:
             axes.set_ylabel(plain(_labelled(chart.y_label, chart.y_unit)), parse_math=False)
     handles, labels = every[0].get_legend_handles_labels()
     if handles:
-        wide = figure.bbox.width > 0.8 * WIDTH * figure.dpi  # and no other chart beside it
+        wide = figure.bbox.width > 0.8 * WIDTH * figure.dpi  # and no other chart next to it
         legend = figure.legend(handles, labels, loc="outside upper right", ncols=LEGEND if wide else LEGEND // 2)
         _as_text(legend.get_texts())
 
@@ -223,7 +223,7 @@ def _intervals(figure: Figure | SubFigure, block: doc.Intervals) -> None:
 
 
 def _spans(axes: Axes, block: doc.Intervals) -> None:
-    """Rows with their values beside the axis, where nothing crosses them."""
+    """Rows with their values next to the axis, where nothing crosses them."""
     places = np.arange(len(block.spans))
     low, high = block.right
     if low < high:
@@ -303,7 +303,7 @@ def _save_png(figure: Figure, to: Path | BytesIO) -> None:
 
 @contextmanager
 def quiet_about_glyphs() -> Iterator[None]:
-    """No warning for each character that the font lacks: a box stands for it in the figure."""
+    """No warning for each character that the font lacks: a box replaces it in the figure."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", r"Glyph \d+ ", UserWarning)
         warnings.filterwarnings("ignore", r"Matplotlib currently does not support \w+ natively", UserWarning)
@@ -317,7 +317,7 @@ def title_figure(figure: Figure | SubFigure, title: str, **style: Any) -> None: 
 
 
 def across(names: Sequence[str], most: int = LEGEND) -> int:
-    """How many of these names, at most so many, have room beside each other in a legend."""
+    """How many of these names, at most so many, have room next to each other in a legend."""
     return max(1, min(most, LETTERS // (max(map(len, names), default=0) + OF_SAMPLE)))
 
 

@@ -98,7 +98,7 @@ def _(one: Changed) -> dict[str, Any]:
 
 
 def write_fleet(folder: Path, fleet: Fleet, provenance: Mapping[str, Any]) -> None:
-    """Write summary and pages of a fleet: its own, one of each axis that it shows, and one beside each result.
+    """Write summary and pages of a fleet: its own, one of each axis that it shows, and one next to each result.
 
     Raises:
         InputError: the folder cannot be written to.
@@ -274,7 +274,7 @@ def _changes(pages: FleetPages) -> Iterator[doc.AnyPart]:
 def _first(
     caption: str, headings: Sequence[str], rows: Sequence[tuple[str, ...]], marked: Sequence[int] = ()
 ) -> doc.Table:
-    """A table of the first rows, which says how many there are."""
+    """A table of the first rows, which states how many there are."""
     more = f"; the first {ROWS} of {len(rows)}" if len(rows) > ROWS else ""
     return doc.table(f"{sentence(caption)}{more}", headings, rows[:ROWS], marked)
 
@@ -307,7 +307,7 @@ class FleetPages:
         return f"axes/{hashlib.sha256(axis.encode('utf-8', 'surrogatepass')).hexdigest()[:16]}.html"
 
     def recording_place(self, row: int) -> str:
-        """Where that of a recording lies, beside its result; empty of one that could not be begun."""
+        """Where that of a recording lies, next to its result; empty of one that could not be begun."""
         key = self.fleet.planned[row].key
         return f"results/{key[:2]}/{key}.html" if key else ""
 
@@ -429,7 +429,7 @@ class FleetPages:
 
 
 def parameters(result: Plain) -> dict[str, Parameter]:
-    """Parameters of a result; without an interval where it knows none."""
+    """Parameters of a result; without an interval where it has none."""
     found = {}
     for name, one in result.get("parameters", {}).items():
         error, low, high = np.array([one["std_error"], *one["ci95"]], dtype=np.float64).tolist()  # nan for null
@@ -456,7 +456,7 @@ def _recording_verdict(found: Plain) -> str:
 
 
 def _gaps(gaps: Mapping[str, Plain]) -> doc.Table:
-    """What is left of torque (force) and velocity."""
+    """Residuals of torque (force) and velocity."""
     rows = []
     for name, gap in gaps.items():
         values = (gap[key] for key in ("before", "after", "noise_floor"))

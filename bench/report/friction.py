@@ -1,6 +1,6 @@
 """Friction over steady speeds: the curve, the effect that bends it, and how sure that is.
 
-As JSON (`bench.friction/1`) and as a document; its picture has the recordings, the curves, and what each leaves.
+As JSON (`bench.friction/1`) and as a document; its picture has the recordings, the curves, and their residuals.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Values = Mapping[str, tuple[float, str]]
 
 
 def friction_json(found: FrictionMap) -> str:
-    """The map, what holds of it and how sure that is."""
+    """The map, what is valid of it and how sure that is."""
     before, after = found.unexplained
     axis, effect = (
         {name: {"value": value, "unit": unit} for name, (value, unit) in values.items()}
@@ -121,7 +121,7 @@ def _answers(found: FrictionMap) -> dict[str, str]:
 
 
 def _charts(found: FrictionMap) -> tuple[doc.Chart, doc.Chart]:
-    """The recordings and the curves fitted to them, and what each curve leaves of the recordings."""
+    """The recordings and the curves fitted to them, and the residuals of each curve."""
     effort, curves = effort_word(found.effort_unit), [("no effect", found.plain)]
     if found.name is not None:
         curves.append((words(found.name), found.best))

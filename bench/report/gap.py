@@ -30,7 +30,7 @@ CUTS, NEARLY = (2, 4, 8, 16, 32), 0.7
 LEAST, POINTS = 60, 400
 #: Coordinates of the gap, by those of a table.
 TABULATED = {"position": "position", "speed": "velocity", "torque": "current"}
-#: Share of all that it spans which a stretch does at least: where an axis stands, steps of its sensor are all there is.
+#: Share of all that it spans which a stretch does at least: at standstill, steps of its sensor are all there is.
 MOVES = 0.05
 
 

@@ -1,4 +1,4 @@
-"""A document as HTML: one file that opens without any other and without a network, or beside a script file for many.
+"""A document as HTML: one file that opens without any other and without a network, or with a script file for many.
 
 Charts are SVG: here is their geometry; the page's style sheet draws it.
 """
@@ -83,7 +83,7 @@ def _json(content: Mapping[str, Any]) -> Markup:
 
 
 def _policy(inside: str | None) -> str:
-    """What a browser may do for the page: run this script or one beside it, and load nothing from anywhere."""
+    """What a browser may do for the page: run this script or one next to it, and load nothing from anywhere."""
     if inside is None:
         scripts = "'self' file:"
     else:
@@ -96,7 +96,7 @@ WIDTH, ALONE, HEIGHT = 380.0, 760.0, 230.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 24.0, 42.0
 #: Size of a sketch in a row, and what its largest dot takes of each side.
 SKETCH, DOT = (150.0, 30.0), 4.0
-#: Share of the span that is left free around the points.
+#: Share of the span that is free around the points.
 MARGIN = 0.04
 #: Width of a row of intervals, which the page stretches, and ends of the travel of a slide, which is 760 wide.
 ROW, TRAVEL = 1000.0, (80.0, 680.0)
@@ -117,13 +117,13 @@ class Ruler:
     log: bool = False
 
     def __call__(self, value: float) -> float:
-        """Where a value stands."""
+        """The place of a value."""
         low, high, value = map(math.log10, (self.low, self.high, value)) if self.log else (self.low, self.high, value)
         return round(self.start + (value - low) / (high - low) * (self.stop - self.start), 1)
 
     @classmethod
     def around(cls, values: Iterable[float], start: float, stop: float, log: bool = False) -> Ruler:
-        """A ruler that holds all values with a margin."""
+        """A ruler that contains all values with a margin."""
         known = [value for value in values if shown(value, log)] or [1.0 if log else 0.0]
         low, high = min(known), max(known)
         if log:
@@ -162,7 +162,7 @@ class Drawn:
 
 @dataclass(frozen=True)
 class PlacedPanel:
-    """A panel in the drawing: ticks of its axes, the place of zero where its scale holds it, and what is drawn."""
+    """A panel in the drawing: ticks of its axes, the place of zero where its scale contains it, and what is drawn."""
 
     panel: Panel
     width: float
@@ -216,7 +216,7 @@ def sketched(parts: Sequence[Series]) -> list[Drawn]:
 
 
 def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    """Round values within bounds, with labels of as many digits as tell them apart."""
+    """Round values within bounds, with labels of as many digits as distinguish them."""
     from matplotlib.ticker import MaxNLocator  # 0.1 s, which only a chart on a page has to pay
 
     places = [float(value) for value in MaxNLocator(most).tick_values(low, high) if low <= value <= high]

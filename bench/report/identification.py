@@ -1,7 +1,7 @@
-"""An identification: inertia and friction, how sure that is, and what the model leaves of the torque.
+"""An identification: inertia and friction, how sure that is, and the residual torque.
 
 As the contract's JSON (`bench.identify/1`) and as a document; its picture has the motion, torque measured and modelled,
-what is left, and the estimates.
+the residual, and the estimates.
 """
 
 from __future__ import annotations
@@ -77,7 +77,8 @@ def identification_json(
 def recordings_json(
     recordings: Sequence[Alone], between: Mapping[str, Between], provenance: Mapping[str, Any] | None
 ) -> dict[str, Any]:
-    """Each of several recordings alone, and how they differ; `reason`: why one leaves some of the parameters open."""
+    """Each of several recordings by itself, and how they differ; `reason`: why one does not determine some of the
+    parameters."""
     digests = {each["file"]: each["sha256"] for each in provenance["traces"]} if provenance else {}
     alone = []
     for one in recordings:
@@ -160,7 +161,7 @@ def identification(
         sections=tuple(sections),
         origin=origin(provenance),
         pictures=tuple(
-            doc.Picture(  # motion and torque of a recording, the estimates, and what is left
+            doc.Picture(  # motion and torque of a recording, the estimates, and the residual
                 name="identification" if place == 1 else f"identification-{place}",
                 title=f"{title.partition(': ')[0]}: {one.name}",
                 rows=(
@@ -175,7 +176,7 @@ def identification(
 
 
 def _times_noise(estimate: Estimate) -> float:
-    """What is left over the noise floor; nan where the estimator knows none."""
+    """Residual over noise floor; nan where the estimator has none."""
     return estimate.residual.rms / estimate.residual.noise_floor
 
 
@@ -257,7 +258,7 @@ def _motor(motor: MotorConstants) -> str:
 
 
 def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeGraph:
-    """Speed, and torque beside the model's; one of so many graphs."""
+    """Speed, and torque with the model's; one of so many graphs."""
     moved, unit = one.motion, one.along.residual.unit
     effort = effort_word(unit)
     signals = [Plotted("speed", one.kind.speed_unit, moved.time, moved.velocity)]
@@ -269,7 +270,7 @@ def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeG
 
 
 def _rest(estimate: Estimate, motions: Sequence[Moved]) -> doc.Chart:
-    """What is left of the torque over speed, acceleration, torque and time."""
+    """The residual torque over speed, acceleration, torque and time."""
     from bench.diagnosis.where import LEAST, bins_of, means_in
 
     unit, floor, kind = estimate.residual.unit, estimate.residual.noise_floor, motions[0].kind

@@ -1,4 +1,4 @@
-"""An inspection: what a recording holds, every signal over time, and what its checks say."""
+"""An inspection: the contents of a recording, every signal over time, and its checks."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | N
 
     Args:
         checks: what the gate found; () of a recording that is not read.
-        trace: the recording as it is read; None where `found.asks` something first.
+        trace: the recording as it is read; None where `found.asks` is set.
     """
     name, (verdict, tone) = readable(Path(found.origin).name), _verdict(found, checks)
     rest = [column for column in found.columns if not column.read]
@@ -175,7 +175,7 @@ def _columns(columns: Sequence[ColumnSummary]) -> doc.Table:
 
 
 def _of_axes(found: Inspection) -> bool:
-    """Whether all that is asked is which of several axes to read."""
+    """Whether the only open question is which of several axes to read."""
     return len(found.axes) > 1 and "--axis" in (found.asks or "")
 
 

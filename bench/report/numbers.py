@@ -60,7 +60,7 @@ def interval(found: Parameter, unit: bool = True) -> str:
 
 
 def brief(found: Parameter) -> str:
-    """A parameter to three digits, with half of its interval of 95 % in per cent where that says more."""
+    """A parameter to three digits, with half of its interval of 95 % in per cent where that is more informative."""
     size, half = abs(found.value), found.half_width
     if found.lopsided or not 0.0 < half < size < math.inf:
         return interval(found)

@@ -1,4 +1,4 @@
-"""Signals over time as a document holds them: lowest and highest value of each interval, in 16 bits.
+"""Signals over time as a document stores them: lowest and highest value of each interval, in 16 bits.
 
 A page draws at most a few intervals per pixel, so what lies between lowest and highest of an interval would not show.
 Signals of unlike rows (every sample, rows of a torque balance) come on one grid: one time axis for all.
@@ -20,16 +20,16 @@ from bench.report.numbers import unit_text
 
 Values = NDArray[np.floating]
 
-#: Numbers that a page holds of its graphs: FEW where samples are few, then MORE for each of them, at most MOST. A
+#: Numbers of a page's graphs: FEW where samples are few, then MORE for each of them, at most MOST. A
 #: number takes 2.7 bytes: that is 0.7 MB for 10 s at 1 kHz, and 3.7 MB for ten million samples.
 FEW, MORE, MOST = 250_000, 5, 1_400_000
-#: Steps between lowest and highest value, and what stands for no value.
+#: Steps between lowest and highest value, and the code of no value.
 STEPS, NOTHING = 65534, -32768
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Intervals of length `step` - s - from `start` - s - on; one value stands for a `single` one, a sample period."""
+    """Intervals of length `step` - s - from `start` - s - on; a `single` one has one value, a sample period."""
 
     start: float
     step: float
@@ -89,13 +89,13 @@ def unpacked(samples: Samples) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class Plotted:
-    """A signal and what each of several models leaves of it.
+    """A signal and the residual of each of several models.
 
     Attributes:
         label, unit: of it.
         time: s - (n,).
         values: as measured (n,).
-        left: measured less modelled, for each model (n,); None where it says nothing.
+        left: measured less modelled, for each model (n,); None where it predicts nothing.
         modelled: what a model's signal is called.
         name: what the values are called.
     """
@@ -110,7 +110,7 @@ class Plotted:
 
     @property
     def shown(self) -> list[tuple[int, Values]]:
-        """Models that say something."""
+        """Models that predict something."""
         return [(k, left) for k, left in enumerate(self.left) if left is not None and np.isfinite(left).any()]
 
 

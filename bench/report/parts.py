@@ -1,4 +1,4 @@
-"""Parts that documents share: parameters, recordings, checks, and what a result rests on."""
+"""Parts that documents share: parameters, recordings, checks, and what a result is based on."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from bench.report.numbers import interval, number, unit_text
 def parameters_table(
     caption: str, parameters: Mapping[str, Parameter], truth: Mapping[str, float] | None = None
 ) -> Table:
-    """Parameters with their intervals of 95 %; beside the truth, in their units, and the error where it is known."""
+    """Parameters with their intervals of 95 %; with the truth, in their units, and the error where it is known."""
     rows = []
     for name, found in parameters.items():
         known = truth.get(name) if truth else None
@@ -41,7 +41,8 @@ def values_table(caption: str, values: Iterable[tuple[str, float, str]], digits:
 def recordings_table(
     recordings: Sequence[Alone], between: Mapping[str, Between], parameters: Mapping[str, Parameter]
 ) -> list[Table]:
-    """What each of several recordings tells alone, and where the next is to be expected; none where there is only one.
+    """The values of each of several recordings by itself, and where the next is to be expected; none where there is
+    only one.
 
     Args:
         between: how they differ, by name of a quantity.
@@ -103,7 +104,7 @@ def model_sections(model: Path, warnings: Sequence[str]) -> list[Section]:
 
 
 def origin(provenance: Mapping[str, Any] | None) -> tuple[str, ...]:
-    """Version and digests of what a page rests on."""
+    """Version and digests of what a page is based on."""
     if provenance is None:
         return (f"servobench {__version__}",)
     rig = provenance["rig_sha256"]
@@ -125,7 +126,7 @@ def provenance(
     """The contract's `provenance`: from the same version, files and options come the same results.
 
     Args:
-        rig: file of the axis; None of a joint that only an MJCF knows, and of what rests on no file.
+        rig: file of the axis; None of a joint that only an MJCF has, and without any file.
         traces: files of the recordings, in the order given.
         options: of the command that change its result.
         holdout: file of the recording that was not fitted.

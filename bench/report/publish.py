@@ -63,7 +63,7 @@ def rebuild(folders: list[Path], script: Path | None = None) -> list[Path]:
 
     Args:
         folders: with a `report.json` each.
-        script: file to write that all of them share; each holds its own without.
+        script: file to write that all of them share; each contains its own without.
 
     Raises:
         InputError: a folder without a page's data, or data of something else; a script that is not named .js.
@@ -87,7 +87,7 @@ def read_document(path: Path) -> Document:
     """The document of a `report.json`.
 
     Raises:
-        InputError: no such file, or one that holds none.
+        InputError: no such file, or one without any.
     """
     if path.parent.is_dir() and not path.exists():
         raise InputError(path.parent, f"found no {DATA}", "allowed: a folder that --out of a command wrote")
@@ -98,7 +98,7 @@ def read_document(path: Path) -> Document:
         detail = error.errors()[0]
         key = ".".join(str(part) for part in detail["loc"]) or "page"
         found = f"found {short(repr(detail['input']), 60)}"
-        allowed = short(" ".join(detail["msg"].split()))  # which quotes a kind that there is not, whatever stands there
+        allowed = short(" ".join(detail["msg"].split()))  # which quotes a kind that there is not, whatever is there
         raise InputError(f"{path}: {key}", found, f"allowed: {allowed[0].lower()}{allowed[1:]}") from error
 
 

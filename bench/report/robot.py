@@ -1,4 +1,4 @@
-"""A robot by its logs: a row for each joint, and below what each diagnosis says.
+"""A robot by its logs: a row for each joint, and below each diagnosis.
 
 As the contract's JSON (`bench.robot/1`) and as a document, which has the MJCF with all joints to take along.
 """
@@ -118,7 +118,7 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     values = [_values(joint) for joint in found.joints.values()]
     for name, column in zip(("armature", "viscous", "Coulomb"), zip(*values, strict=True), strict=True):
         units = {value.unit for value in column if value is not None}
-        alike = len(units) == 1  # then it stands in the heading
+        alike = len(units) == 1  # then it is in the heading
         headings.append(f"{name} / {unit_text(units.pop())}>" if alike else f"{name}>")
         cells.append([None if value is None else interval(value, unit=not alike) for value in column])
     missing = map(_missing, found.joints.values())

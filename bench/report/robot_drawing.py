@@ -1,7 +1,7 @@
 """A robot as a page draws it: bodies with triangles in few bytes, and the joints by which each moves its own.
 
 A mesh is simplified by vertices that fall into one cell of a grid (J. Rossignac, P. Borrel, "Multi-resolution 3D
-approximations for rendering complex scenes", 1993), as coarse as the triangles that are left to it ask.
+approximations for rendering complex scenes", 1993), as coarse as the number of triangles requires.
 """
 
 from __future__ import annotations

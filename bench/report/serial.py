@@ -25,7 +25,7 @@ def serialised(content: Mapping[str, Any]) -> str:
 
 
 def known(value: float) -> float | None:
-    """A number that may be unknown: JSON has no nan, so that null stands for it."""
+    """A number that may be unknown: JSON has no nan, so that it is null."""
     return value if math.isfinite(value) else None
 
 
@@ -36,7 +36,7 @@ def picked(result: object, *names: str) -> dict[str, Any]:
 
 @singledispatch
 def as_json(value: object) -> Any:  # noqa: ANN401 - what JSON can hold
-    """A value as JSON holds it; another one for a type is registered with it."""
+    """A value as JSON has it; another one for a type is registered with it."""
     if isinstance(value, Mapping):
         return {key: as_json(each) for key, each in value.items()}
     if isinstance(value, list | tuple):

@@ -27,11 +27,11 @@ from bench.view.free_running import BARE, HELD, HORIZONS, FreeRun
 from bench.view.joint_motion import JointMotion
 from bench.view.side_by_side import RobotAlong, SideBySide
 
-#: Instants that a page holds of a motion, 8 bytes each and a third more as text: 0.4 MB.
+#: Instants of a motion on a page, 8 bytes each and a third more as text: 0.4 MB.
 MOST = 40_000
-#: Part of what a page may hold of graphs over time that is left beside them.
+#: Part of a page's graphs over time that is allowed with them.
 PART = 0.8
-#: The axis of a model that nothing holds.
+#: The axis of a model that is not coupled.
 FREE_RUNNING = ("time since it was started", "s")
 #: Points that are drawn of the curve of how far off it is.
 DRAWN = 300
@@ -148,7 +148,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
 
 
 def _left(measured: Array, simulated: Array) -> tuple[float, float]:
-    """Share of a signal that is left, and its RMS; nan where the model says nothing."""
+    """Share of a signal that is residual, and its RMS; nan where the model predicts nothing."""
     known = np.isfinite(simulated) & np.isfinite(measured)
     if not known.any():
         return math.nan, math.nan
@@ -164,7 +164,7 @@ def view(
     free: FreeRun | None = None,
     robot: RobotAlong | None = None,
 ) -> doc.Document:
-    """The document of a model's file in motion beside its ghost, along a recording or profile of a name.
+    """The document of a model's file in motion with its ghost, along a recording or profile of a name.
 
     `free` is how far off it runs by itself; a robot is drawn in place of the axis.
 
@@ -268,7 +268,7 @@ def motion_of(shown: SideBySide, robot: RobotAlong | None = None) -> doc.Moving:
 
 
 def moving_section(mjcf: Path, motions: Mapping[str, JointMotion]) -> doc.Section:
-    """The robot along the log that most joints were identified from, and how far off each is where nothing holds it."""
+    """The robot along the log that most joints were identified from, and the error of each when free-running."""
     origins = [motion.origin for motion in motions.values()]
     charts = []
     for unit, move in (("rad", "turn"), ("m", "slide")):
@@ -298,7 +298,7 @@ def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) ->
     runs = sorted(ways, key=lambda how: [HELD, BARE, how].index(how))
 
     def apart(name: str, how: str) -> Array:
-        """Of a joint that the log tells; as weakly coupled where its model has nothing to leave out."""
+        """Of a joint that the log contains; as weakly coupled where its model has nothing to leave out."""
         one = here.get(name)
         return np.zeros_like(motion.time) if one is None else one.runs.get(how, one.runs[HELD]) - one.measured[name]
 

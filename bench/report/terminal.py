@@ -1,4 +1,4 @@
-"""A document on a terminal, and whatever else a command says there; text from files is shown and never obeyed."""
+"""A document on a terminal, and all other output of a command; text from files is shown and never executed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rich.text import Text
 from bench.names import plain
 from bench.report.document import Code, Document, Paragraph, Points, Table
 
-#: Columns of a log: a terminal says how wide it is.
+#: Columns of a log: a terminal has its own width.
 WIDTH = 110
 #: Columns between those of a table and the least that a text takes in it, where there is room and where there is less.
 LAYOUTS = ((3, WIDTH), (2, WIDTH), (2, 16), (1, 16))
@@ -25,7 +25,7 @@ LEAST_PROSE, APART = 30, 2
 #: Rows of a table on one screen, which the list of all effects fits.
 ROWS = 32
 _VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
-#: Spaces at which no line ends: before a per cent sign, and beside an interval's.
+#: Spaces at which no line ends: before a per cent sign, and next to an interval's.
 KEPT = re.compile(r"(?<=\d) (?=[%±])|(?<=±) ")
 #: Below the headings of a table, and how a headline looks by its tone.
 RULE, TONES = "─", {"sure": "bold green", "open": "bold yellow", "refused": "bold red"}
@@ -170,7 +170,7 @@ def _widths(table: Table, headings: list[str], rows: list[list[str]], room: int,
 
 
 def _stacked(table: Table, headings: list[str], rows: list[list[str]], width: int) -> Text:
-    """A block for each row: its name, and below it each cell beside its heading."""
+    """A block for each row: its name, and below it each cell with its heading."""
     found = []
     for name, *cells in rows:
         lines = [f"  {heading}: {cell}" for heading, cell in zip(headings[1:], cells, strict=True) if cell]

@@ -41,7 +41,7 @@ NOTE = (
 )
 #: The level that the page's chart shows; the table has the others.
 LEVEL = LEVELS[-1]
-#: Share that the chart's scale begins at, where no bound lies below it; fewer runs than tell as much are too few.
+#: Share that the chart's scale begins at, where no bound lies below it; fewer runs than show as much are too few.
 FROM = 0.8
 NO_QUANTITY = "No run determines a quantity."
 FEW = " More runs narrow these bounds."
@@ -57,7 +57,7 @@ NAMING = {
     "falsely_named": "falsely",
     "confusion": "confusion",
 }
-#: What a diagnosis says of a run, as a table has it.
+#: The result of a diagnosis for a run, as a table has it.
 SAID = ("verdict", "named", "false", "missed", "diagnose_reason")
 FILES = {
     "validation.json": "all of it, as data",
@@ -125,7 +125,7 @@ def validation(found: Validation, provenance: Mapping[str, Any], command: str, o
 
 
 def _first(found: Validation) -> list[Coverage]:
-    """What `identify` tells of the first whole group of runs: those with the least hidden in them."""
+    """The results of `identify` for the first whole group of runs: those with the least hidden in them."""
     groups = [one for one in found.coverage if one.by == "identify" and one.whole and one.told]
     return [one for one in groups if one.group == groups[0].group]
 
@@ -238,7 +238,7 @@ def _determined(runs: tuple[Run, ...]) -> tuple[doc.AnyPart, ...]:
 
 
 def _outcomes(runs: tuple[Run, ...]) -> doc.Table:
-    """How many runs there are, and why some tell nothing, without the numbers of a run."""
+    """How many runs there are, and why some determine nothing, without the numbers of a run."""
     counts = Counter((run.status, run.reason.partition(":")[0]) for run in runs)
     rows = ((status, reason, str(count)) for (status, reason), count in sorted(counts.items(), key=lambda e: -e[1]))
     return doc.table("Runs", ("identify", "why", "runs>"), rows)
@@ -271,7 +271,8 @@ def _naming(found: Naming) -> Iterator[doc.AnyPart]:
 
 
 def confusion(counts: Mapping[str, Mapping[str, int]]) -> doc.HeatMap:
-    """What is said of runs with one effect hidden or none, as a matrix: first the right answers, in the rows' order."""
+    """What is found in runs with one effect hidden or none, as a matrix: first the right answers, in the rows'
+    order."""
     answers = [NOTHING_MISSING if name == NOTHING else name for name in counts]
     columns = [*answers, *sorted({name for said in counts.values() for name in said} - set(answers))]
     return doc.HeatMap(
@@ -328,7 +329,7 @@ def runs_table(runs: tuple[Run, ...]) -> pa.Table:
 
 
 def quantities_table(runs: tuple[Run, ...]) -> pa.Table:
-    """One row a quantity that a run tells."""
+    """One row a quantity that a run determines."""
     rows = []
     for run in runs:
         for one in run.scored:

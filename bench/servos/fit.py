@@ -34,7 +34,7 @@ WIDER = 1.7
 LONGEST_DEAD_TIME = 0.25
 #: What every servo has; `known torque per inertia` joins it where a torque is known.
 BASE = ("stiffness", "damping", "friction", "dead_time", "offset")
-#: What a servo may have in addition: names, and starting values of the first as shares of what `_scales` says.
+#: What a servo may have in addition: names, and starting values of the first as shares of `_scales`.
 ADDITIONS: dict[str, tuple[tuple[str, ...], tuple[float, ...]]] = {
     "limit": (("limit", "drive_damping"), (0.15, 0.25, 0.4, 0.6, 0.8, 0.95)),
     "gravity": (("sine", "cosine"), (-0.3, -0.1, 0.1, 0.3)),

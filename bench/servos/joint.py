@@ -21,14 +21,14 @@ KNOWN_SLOPE = "known_slope"
 
 @dataclass(frozen=True)
 class JointModel:
-    """What an MJCF knows of a joint.
+    """The values of an MJCF for a joint.
 
     Attributes:
         name: of the joint.
         robot: around it.
         rig: of the log's columns.
         stated: positions of joints that stand and that the log does not hold - rad (m).
-        link_inertia: of what it carries, where the MJCF stands - kg*m**2 (kg).
+        link_inertia: of what it carries, in the configuration of the MJCF - kg*m**2 (kg).
         armature, damping: of the joint in the MJCF - kg*m**2 (kg), N*m*s/rad (N*s/m).
         before: parameters of `bench.servos.model.NULL` of the position actuator that the MJCF has; None without one.
     """

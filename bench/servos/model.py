@@ -55,7 +55,7 @@ class Stretches:
         period: of the samples - s.
         starts: first sample of each (w,).
         length: samples of each.
-        goal: of the whole recording - rad (m) - (n,); it is held from sample to sample, as a controller holds it.
+        goal: of the whole recording - rad (m) - (n,); it is held from sample to sample, as in a controller.
         known: torque known to act against the motion, less `known_slope` times the measured position - N*m (N) - (n,);
             zero where none is.
         known_slope: how it changes with position - N*m/rad (N/m) - (n,).
@@ -74,7 +74,8 @@ class Stretches:
     steps: int
 
     def resolving(self, stiffness: float) -> Stretches:
-        """The same with steps that resolve when a loop of this stiffness - 1/s**2 - reaches a limit and leaves it."""
+        """The same with steps that resolve when a loop of this stiffness - 1/s**2 - reaches a limit and returns from
+        it."""
         return replace(self, steps=int(np.ceil(self.period * max(1.0 / STEP, np.sqrt(stiffness) / SHARE))))
 
     def samples(self) -> NDArray[np.int64]:
@@ -144,7 +145,7 @@ def _integrated(
 
 
 def _moved(q: Array, w: Array, force: Array, f: Array, regime: list[Array], h: float) -> tuple[Array, Array]:
-    """Position and speed after a step under a force without damping; friction stops, holds or opposes."""
+    """Position and speed after a step under a force without damping; friction stops, keeps or opposes."""
     held = np.clip(force, -f, f)
     net = force - np.where(w == 0.0, held, np.copysign(f, w))
     qw, qf, ww, wf = regime
@@ -178,9 +179,9 @@ def _exact(a: Array, b: Array, h: float) -> list[Array]:
 
 
 def _delayed(dead_time: Array, stretches: Stretches, differenced: bool) -> tuple[Array, Array | None]:
-    """The goal after a dead time (p,), mean over each step, and its slope over a sample where asked: (steps, p, w).
+    """The goal after a dead time (p,), mean over each step, and its slope over a sample where wanted: (steps, p, w).
 
-    The mean makes the motion depend smoothly on the dead time, of which a step holds only a part.
+    The mean makes the motion depend smoothly on the dead time, of which a step is only a part.
     """
     times, which = np.unique(dead_time, return_inverse=True)
     goals = np.array([_held(stretches.goal, stretches, one) for one in times])

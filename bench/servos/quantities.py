@@ -97,7 +97,7 @@ def _damping(
     kind: AxisKind,
     model: JointModel | None,
 ) -> None:
-    """kv and K_w: apart where the limit was reached often enough, else together, or kv less what an MJCF has."""
+    """kv and K_w: separate where the limit was reached often enough, else together, or kv less what an MJCF has."""
     unit, viscous = f"{kind.effort_unit}*s/{kind.length_unit}" if scaled else "1/s", kind.parameter(VISCOUS)
     both = fit.parameter(lambda values: scale(values) * (values["damping"] + values["drive_damping"]), unit)
     drive = fit.parameter(lambda values: scale(values) * values["drive_damping"], unit)

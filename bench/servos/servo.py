@@ -4,7 +4,7 @@
 
 The motion scales with nothing: all torques, times any factor, move any inertia times the same factor alike. A log of
 goal and position therefore determines kp/J, (kv + K_w)/J, K_0/J, limit/J and d. The scale comes from a known torque
-(gravity on links that an MJCF knows, or on an eccentric mass of the rig) or a known inertia. kv and K_w act alike until
+(gravity on links of an MJCF, or on an eccentric mass of the rig) or a known inertia. kv and K_w act alike until
 the controller reaches its limit: only then K_w brakes and kv does not.
 """
 
@@ -36,13 +36,14 @@ from bench.trace.trace import Trace, join
 
 #: A gain whose interval is wider than this share of it is not determined, nor is an inertia.
 DETERMINED, SCALED = 0.5, 0.15
-#: Residual over noise floor up to which nothing is missing.
+#: Residual over noise floor up to which no effect is missing.
 NOISE = 2.0
 #: Radians that a loop turns between samples of the log, from which on the log is too slow for it.
 SLOW = 1.2
 #: Distance over which the slope of a known torque is taken - rad.
 ASIDE = 1e-3
-#: A position error that stays above this share of its size, and of the range of the goal, tells no gain from a limit.
+#: A position error that stays above this share of its size, and of the range of the goal, does not distinguish a gain
+#: from a limit.
 ALIKE, AWAY = 0.5, 0.2
 #: Position steps by which a signal has to move at least.
 MOVES = 4.0

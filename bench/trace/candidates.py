@@ -1,4 +1,4 @@
-"""Which signal a column probably holds: the one place that decides it, from name, unit and samples.
+"""Which signal a column probably has: the one place that decides it, from name, unit and samples.
 
 Reasons are weighed: a well-known name, words in it, the dimension of the unit, a column that is another's derivative. A
 unit rules out every signal of another dimension, and a word for a signal rules out all others.
@@ -105,7 +105,7 @@ class LikelySignal:
 
 @np.errstate(over="ignore", invalid="ignore")  # implausible magnitudes give no reasons
 def candidates(channels: Sequence[Channel]) -> dict[Channel, LikelySignal]:
-    """The signal that each column most probably holds, the best columns first; without those that fit none."""
+    """The signal that each column most probably has, the best columns first; without those that fit none."""
     names = {channel: read_name(_bare(channel)) for channel in channels}
     bare = all(_written_unit(channel) is None or _fits("time", _written_unit(channel)) for channel in channels)
     reasons = {channel: _reasons(channel, name, bare) for channel, name in names.items()}
@@ -217,7 +217,7 @@ def _candidate(channel: Channel, name: ColumnName, reasons: Reasons) -> LikelySi
 
 @cache
 def _fits(signal: str, unit: str | None) -> bool | None:
-    """Whether a signal may be in a unit; None where there is none, or only the user knows."""
+    """Whether a signal may be in a unit; None where there is none, or only the user can state it."""
     if unit is None:
         return None
     try:

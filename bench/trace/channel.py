@@ -24,17 +24,17 @@ class Channel:
 
     Attributes:
         name: as in the file, without its unit.
-        unit: as in the file; None where the file tells none.
+        unit: as in the file; None where the file has none.
         values: in that unit - (n,).
-        origin: file it stands in.
+        origin: file it is in.
         time: channel with its sample times; None in a table, whose time is one of its columns. Channels sampled
             together share the same object.
-        line: line of the file that holds the first value, where one line holds one sample.
+        line: line of the file of the first value, where one line is one sample.
         start: number of the first value among the file's samples.
         defect: why the values cannot be read; raised only where a trace needs them.
-        open_unit: why the file leaves the unit open though it names one.
-        axis: of a file that tells several apart.
-        signal: that it holds of that axis, where its name tells (`bench.trace.joints`).
+        open_unit: why the unit is not determined though it names one.
+        axis: of a file with several.
+        signal: that it is of that axis, by its name (`bench.trace.joints`).
         number: of its column in the file, from 1, where it has one.
         moments: whether the values are moments of a calendar or a clock, as times from the first of them.
     """
@@ -59,7 +59,7 @@ class Channel:
         return self.name if self.unit is None else f"{self.name} [{self.unit}]"
 
     def place(self, sample: int | None = None) -> str:
-        """Where a value stands, for messages: file, line (or sample, counted from 0) and column."""
+        """Where a value is, for messages: file, line (or sample, counted from 0) and column."""
         if sample is None:
             return f"{self.origin}: column '{short(self.label)}'"
         row = f"sample {self.start + sample}" if self.line is None else f"line {self.line + sample}"
@@ -68,13 +68,13 @@ class Channel:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """What one file holds.
+    """The contents of one file.
 
     Attributes:
         channels: in the file's order.
         format: the file's format in words.
         origin: the file.
-        metadata: what the file says about itself.
+        metadata: what the file states about itself.
         notes: what the reader did or left out that the user should know.
         usual_units: units of well-known signals in files of this kind, which carry none; used as a reported
             assumption.

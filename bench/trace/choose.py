@@ -73,13 +73,13 @@ def reading_options(given: Mapping[str, str] | ReadingOptions | None) -> Reading
 
 @dataclass(frozen=True)
 class SignalColumn:
-    """The channel that holds a signal.
+    """The channel of a signal.
 
     Attributes:
         channel: as the reader returned it.
         scale: how its numbers become SI; in `samples` where they only count them.
         sign: +1 or -1, by which values are multiplied.
-        usual: unit that was taken where the file tells none; None where it does.
+        usual: unit that was taken where the file has none; None where it has.
     """
 
     channel: Channel
@@ -150,7 +150,7 @@ def axes_of(channels: Iterable[Channel]) -> tuple[str, ...]:
 def _require(
     recording: Recording, chosen: Mapping[str, SignalColumn], faults: dict[str, InputError], how: ReadingOptions
 ) -> None:
-    """Raise the first fault that leaves a trace without what it needs."""
+    """Raise the first fault by which a trace lacks what it needs."""
     timed = "time" in chosen or any(choice.channel.time is not None for choice in chosen.values())
     if not timed and how.sample_period is None:
         if "time" in faults:
@@ -268,7 +268,7 @@ def _column(
 def _assumption(
     columns: Mapping[str, _Chosen], recording: Recording, how: ReadingOptions, known: Mapping[Channel, LikelySignal]
 ) -> Assumption:
-    """Units of the columns without one; none where the file names a unit and leaves it open.
+    """Units of the columns without one; none where the file names a unit that is ambiguous.
 
     Nor where the format has units of its own: variables of a PLC program are in whatever its author chose.
     """

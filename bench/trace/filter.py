@@ -2,8 +2,8 @@
 
 The derivatives of a Gaussian are Hermite's polynomials times it. On samples those that are orthogonal over the samples
 take their place, so that the k-th derivative of every polynomial below degree k is zero but for rounding, that of a
-power k exactly its own, and nothing hangs on where a recording begins and ends. Many samples pass at once as a product
-of two matrices, some five times as fast as by transforms.
+power k exactly its own, and nothing depends on where a recording begins and ends. Many samples pass at once as a
+product of two matrices, some five times as fast as by transforms.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ class GaussianFilter:
         return len(range(self.margin, count - self.margin, self.stride))
 
     def _layout(self, count: int) -> tuple[int, int]:
-        """Samples of a block, two of which its rows are made of, and how many blocks so many samples have."""
+        """Samples of a block, two of which give its rows, and how many blocks so many samples have."""
         size = self.stride * -(-(2 * self.margin + 1) // self.stride)
         return size, -(-self._rows(count) * self.stride // size)
 

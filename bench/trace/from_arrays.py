@@ -89,7 +89,7 @@ def _index_named(table: pa.Table) -> pa.Table:
 
 
 def _channel(label: str, values: ArrayLike, origin: str) -> Channel:
-    """Channel of one array; a defect where it holds anything but a number for each sample."""
+    """Channel of one array; a defect where it has anything but a number for each sample."""
     import pyarrow as pa
 
     from bench.trace.readers.arrow import channel_of

@@ -34,7 +34,7 @@ class Clock:
         time: s - (n,).
         recorded: the same times in the file's unit, as its digits show them - (n,).
         tick: seconds per file unit.
-        place: where sample i stands in the file, for messages.
+        place: where sample i is in the file, for messages.
     """
 
     time: Array

@@ -1,4 +1,5 @@
-"""What a recording holds, before it is used: every column with the signal that it is, and why, and what is read."""
+"""The contents of a recording, before it is used: every column with the signal that it is, and why, and what is
+read."""
 
 from __future__ import annotations
 
@@ -48,9 +49,9 @@ class ColumnSummary:
 
     Attributes:
         name, unit: as in the file.
-        axis: of a file that tells several apart.
+        axis: of a file with several.
         count: of its numbers.
-        minimum, maximum, resolution: of its numbers, in the file's unit; None where it holds none, or never changes.
+        minimum, maximum, resolution: of its numbers, in the file's unit; None where it has none, or never changes.
         rate: of its samples, where it has times of its own - Hz.
         signal: that it is read as, or probably is; None if unknown.
         read: whether it is read as that.
@@ -74,7 +75,7 @@ class ColumnSummary:
 
 @dataclass(frozen=True)
 class Inspection:
-    """What a recording holds; only columns and `asks` if its signals are not clear.
+    """The contents of a recording; only columns and `asks` if its signals are not clear.
 
     Attributes:
         origin, format: the file and what it is.
@@ -87,7 +88,7 @@ class Inspection:
         jitter, holes, duplicates, interpolated, resampled, steps: as of `bench.trace.time_base.TimeBase`.
         signals: in the order of `bench.trace.signals`.
         dropped: columns that are no known signal.
-        metadata: what the file says about itself.
+        metadata: what the file states about itself.
         notes: what the reader did, assumed or left out.
     """
 
@@ -161,7 +162,7 @@ def inspect_recording(recording: Recording, how: ReadingOptions) -> Inspection:
 
 
 def to_json(inspection: Inspection, more: Mapping[str, object] = MappingProxyType({})) -> str:
-    """The inspection as JSON, its fields under their names, and what others have to say of the recording."""
+    """The inspection as JSON, its fields under their names, and other results on the recording."""
     return json_text({"schema": SCHEMA, **asdict(inspection), "suggestions": inspection.suggestions, **more})
 
 

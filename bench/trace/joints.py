@@ -1,6 +1,6 @@
 """Which columns of a log are of which joint: `q_0`, `elbow.position`, `/joint_states/elbow/position`, `pos_meas1`.
 
-A name is cut into words. One of them tells the signal, some may tell that it is measured or a set-point; the other
+A name is cut into words. One of them is the signal, some may mean that it is measured or a set-point; the other
 words are the joint, its name or its number. Joints are separated where names of the same making differ in them alone,
 as `q_0` and `q_1` do: a file of one axis has no such names.
 """
@@ -22,7 +22,7 @@ _STATE = re.compile(r"observations?[./]state[./]", re.IGNORECASE)
 
 
 def by_joints(recording: Recording) -> Recording:
-    """The same with the joint of each column of one as its axis, and the signal it holds of it."""
+    """The same with the joint of each column of one as its axis, and its signal of it."""
     names: dict[int, tuple[str, ColumnName]] = {}
     for place, channel in enumerate(recording.channels):
         text = unit_in_name(channel.name)[0]
@@ -39,13 +39,13 @@ def by_joints(recording: Recording) -> Recording:
     channels = list(recording.channels)
     for place, (signal, name) in names.items():
         if name.joint in joints if channels[place].axis is None else name.joint == channels[place].axis:
-            plain = name.measured or (signal, name.joint) not in measured  # `pos_meas1` beside `pos1`
+            plain = name.measured or (signal, name.joint) not in measured  # `pos_meas1` next to `pos1`
             channels[place] = replace(channels[place], axis=name.joint, signal=signal if plain else None)
     return replace(recording, channels=tuple(channels))
 
 
 def _signal(text: str, name: ColumnName) -> str | None:
-    """Signal of a joint, or its time, that a column's name tells; None where it tells none, or several."""
+    """Signal of a joint, or its time, by a column's name; None where there is none, or several."""
     told = name.told or ({LETTERS[name.letter]} if name.letter is not None and name.letter not in VAGUE else set())
     if not told and (_STATE.match(text) or _is_goal(name)):
         told = {"position"}
@@ -62,7 +62,7 @@ def _is_goal(name: ColumnName) -> bool:
 def named(recording: Recording, joints: Sequence[str]) -> Recording:
     """The same with its axes called as the joints of a robot - by their names, or their numbers in its order.
 
-    A name may stand within a longer one, as `elbow` in `robot0_elbow_joint`, where that leaves no choice.
+    A name may be within a longer one, as `elbow` in `robot0_elbow_joint`, where that is unique.
     """
     axes = axes_of(recording.channels)
     found = _by_name(axes, joints)
@@ -80,7 +80,7 @@ def named(recording: Recording, joints: Sequence[str]) -> Recording:
 
 
 def _by_name(axes: Sequence[str], joints: Sequence[str]) -> dict[str, str]:
-    """Joint of each axis that one name leaves no choice of."""
+    """Joint of each axis with only one name."""
     found: dict[str, str] = {}
     for alike in (str.__eq__, lambda axis, joint: _plain(axis) == _plain(joint), _within):
         left = [axis for axis in axes if axis not in found]

@@ -29,7 +29,7 @@ KEPT = 0.9
 SIGN_REACH = 3.1
 #: Number of samples sufficient for noise and spectrum; of longer recordings pieces spread over them are taken.
 ENOUGH, PIECE = 2**17, 2**13
-#: Share of the fastest stretch's RMS speed above which a stretch moves. Where the axis stands, coarse signals hide
+#: Share of the fastest stretch's RMS speed above which a stretch moves. At standstill, coarse signals hide
 #: their noise and effort is unrelated to motion.
 MOVES = 0.1
 #: A filtered sign further than this from +-1 has seen speeds of the other sign, or of none.
@@ -50,7 +50,7 @@ class Conditioning:
         coherence: highest coherence of effort and acceleration over frequency.
         known_noise: white noise of the momentum that is known - N*m*s (N*s); 0 where none is.
         known_shared: covariance of that with the noise of the source - of both units.
-        source_spectrum: angular frequencies (k,) - rad/s - and power that rounding leaves there (k,) - the source's
+        source_spectrum: angular frequencies (k,) - rad/s - and power of rounding there (k,) - the source's
             unit squared; None where it is white.
     """
 
@@ -91,7 +91,7 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
     """Choose source, filter and thresholds for a recording.
 
     All are read from the stretches that move. The cut-off is the frequency up to which effort and acceleration are
-    coherent above one half; beyond it they no longer tell the same story, be it for noise or for dynamics that a rigid
+    coherent above one half; beyond it they no longer agree, because of noise or for dynamics that a rigid
     axis does not have. It is raised where the filter's reach around reversals would cost more than a tenth of the rows.
     Of velocity and position, the one whose noise makes less of the acceleration is taken.
 
@@ -195,7 +195,7 @@ def known_sign(speed: Array, threshold: float) -> Array:
 
 
 def _least_cutoff(signs: Sequence[Array], sample_period: float) -> float:
-    """Lowest cut-off that still leaves KEPT of the rows, by the signs of the speed in each stretch - Hz.
+    """Lowest cut-off that still keeps KEPT of the rows, by the signs of the speed in each stretch - Hz.
 
     A filter of width s loses 3.1*s at both ends of each run of one sign, where its reach spans a reversal.
     """
@@ -242,7 +242,7 @@ class Motion:
         acceleration: alpha - rad/s**2 (m/s**2).
         effort: motor torque M - N*m (force - N, or what the rig allows).
         effort_rate: dM/dt of what the recorded signal gives - effort's unit per s.
-        direction: filtered sgn(omega), within ONE_SIGN of +-1; 0 where the filter's reach holds both signs or none.
+        direction: filtered sgn(omega), within ONE_SIGN of +-1; 0 where the filter's reach contains both signs or none.
         conditioning: how it was filtered.
     """
 
@@ -301,7 +301,7 @@ def windows_of(trace: Trace, length: float) -> list[slice]:
 
 
 def in_stretches(trace: Trace) -> NDArray[np.bool_]:
-    """Samples at which a model held to a recording says something, (n,): those of `stretches_of`."""
+    """Samples at which a model coupled to a recording predicts something, (n,): those of `stretches_of`."""
     found = np.zeros(len(trace), dtype=np.bool_)
     for part in stretches_of(trace):
         found[part] = True

@@ -5,7 +5,7 @@ A signal that is reported in steps, as an encoder's position is, has the error
     e = q*round(x/q) - x
 
 q - step; x - the signal. Where x crosses steps at a changing rate the error is white, q**2/12. Where it runs evenly the
-error repeats with the fraction of a step that is left at each sample: lines, which sampling folds to anywhere, and
+error repeats with the fraction of a step at each sample: lines, which sampling folds to anywhere, and
 which within the band of the motion are many times as strong as white noise of that power, or next to nothing.
 Source: B. Widrow, I. Kollar, Quantization Noise, 2008.
 """
@@ -30,9 +30,9 @@ TOP = 0.3
 #: Variance of a mean of neighbouring Hann-weighted periodogram values over that of independent ones:
 #: 1 + 2*(2/3)**2 + 2*(1/6)**2 from the window's overlap of one and two bins.
 CORRELATION = 35.0 / 18.0
-#: Samples a distinct value at least, on average, in a signal of whose steps anything can be said.
+#: Samples a distinct value at least, on average, in a signal whose steps can be evaluated.
 REPEATED = 4
-#: Samples that mostly tell that there is no step of which all distances are multiples.
+#: Samples that mostly show that there is no step of which all distances are multiples.
 FEW = 512
 #: Share of a step below which a distance is rounding of numbers, not a step.
 TOLERANCE = 1e-3
@@ -82,7 +82,7 @@ def resolution(values: Array) -> float:
     The median, as steps that no sample fell on are missing, and a torque of a saturating motor has uneven ones.
     """
     if np.unique(values[: 2 * values.size // REPEATED]).size > values.size / REPEATED:
-        return 0.0  # which half of them tell in half the time
+        return 0.0  # which half of them show in half the time
     levels = np.unique(values)
     return float(np.median(np.diff(levels))) if 1 < levels.size <= values.size / REPEATED else 0.0
 
@@ -112,7 +112,7 @@ def common_step(values: Array, least: float) -> float:
 
 
 def rounding_spectrum(stretches: Sequence[Array], smooth: GaussianFilter, step: float) -> tuple[Array, Array]:
-    """Angular frequencies - rad/s (k,) - and the power of what rounding leaves there - the signal's unit squared (k,).
+    """Angular frequencies - rad/s (k,) - and the power of rounding there - the signal's unit squared (k,).
 
     White noise of a variance has that value at all frequencies. The way is read from the signal itself - stretches of
     regular samples (n,) without a hole -, smoothed.

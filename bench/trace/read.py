@@ -1,7 +1,7 @@
 """Read a recording of an axis from a file of any known format, by the bench's readers and those of other packages.
 
 Another package offers readers as entry points of the group `servobench.readers`, each an object with what `Reader`
-tells:
+requires:
 
     [project.entry-points."servobench.readers"]
     flight_recorder = "their_package.flight_recorder:READER"
@@ -36,7 +36,7 @@ from bench.trace.trace import Trace, assemble
 
 @runtime_checkable
 class Reader(Protocol):
-    """Reads one format: whatever stands in a file, as named columns with their units, and no meaning given to any."""
+    """Reads one format: any content of a file, as named columns with their units, and no meaning given to any."""
 
     @property
     def format(self) -> str:
@@ -45,7 +45,7 @@ class Reader(Protocol):
 
     @property
     def endings(self) -> tuple[str, ...]:
-        """Of file names, in lower case, e.g. `(".mat",)`: they count where no content tells."""
+        """Of file names, in lower case, e.g. `(".mat",)`: they count where the content does not decide."""
         ...
 
     def recognises(self, source: Source, /) -> bool:
@@ -61,7 +61,7 @@ class Reader(Protocol):
         ...
 
 
-#: The surest to tell first. The plain table is asked last: many a format looks like one.
+#: The surest to tell first. The plain table is tried last: many a format looks like one.
 OWN: tuple[Reader, ...] = (
     *(LEROBOT, PARQUET, MAT, HDF5, NUMPY, TDMS, MCAP, MDF),
     *(CODESYS_XML, SINUMERIK, CODESYS_CSV, CODESYS_TEXT, TWINCAT, EPOS, BAM, BAG, JSON_LOG),
@@ -70,7 +70,7 @@ OWN: tuple[Reader, ...] = (
 
 @cache
 def readers() -> tuple[Reader, ...]:
-    """All readers, in the order in which they are asked: the bench's, those of other packages, the plain table.
+    """All readers, in the order in which they are tried: the bench's, those of other packages, the plain table.
 
     Raises:
         InputError: what another package offers is no reader.
@@ -85,7 +85,7 @@ def reader_of(source: Source) -> Reader:
     """The reader whose format the content shows; failing that, the one that the file's ending names.
 
     Raises:
-        InputError: neither tells.
+        InputError: neither decides.
     """
     for reader in readers():
         if reader.recognises(source):
@@ -108,7 +108,7 @@ def read(
     Args:
         path: file of any format, recognised by its content first and its ending second.
         columns: signal -> column name with unit, as in a rig's `[trace.columns]`, see `assemble`; or all that
-            a rig's `[trace]` tells, as `rig.trace`.
+            a rig's `[trace]` contains, as `rig.trace`.
         units: units of columns by their names, which replace those of the file.
 
     Raises:

@@ -30,7 +30,7 @@ SI_UNITS: dict[str, tuple[str, str]] = {
     "torque_reference": ("N*m", "N"),
 }
 
-#: What is known to act on an axis, which no file holds (`bench.trace.trace.with_known`).
+#: What is known to act on an axis, which no file contains (`bench.trace.trace.with_known`).
 KNOWN_TORQUE, KNOWN_MOMENTUM = "known_torque", "known_momentum"
 #: Keys of a trace's metadata: where other joints of a robot were stated to stand, in words, and the torque that the
 #: one of them that is felt most would put on the axis where it moves - N*m (N).
@@ -64,7 +64,7 @@ WORDS: dict[str, str] = {
     "temperature": r"temp\w*",
     "acceleration": r"acc|accel\w*|beschl\w*",
 }
-#: What is a signal where no word tells one: an encoder, `q`, and letters of the field where no word is with them.
+#: What is a signal where no word determines one: an encoder, `q`, and letters of the field where no word is with them.
 LETTERS: dict[str, str] = {"q": "position", "enc": "position", "encoder": "position"}
 _WITH_WORDS = frozenset(LETTERS)
 LETTERS |= {"x": "position", "w": "velocity", "i": "current", "u": "voltage", "t": "time"}
@@ -84,7 +84,7 @@ _FOREIGN = re.compile(
     re.I,
 )
 _SUPPLY = re.compile(r"dc|bus|vbus|udc|link|dclink|in|batt?|battery|supply|mos", re.I)
-#: Where a log keeps its joints: words that tell no joint from another.
+#: Where a log keeps its joints: words that distinguish no joints.
 _PLACE = re.compile(r"observations?|obs|states?|joint_?states?|joints|field|data|msg|log", re.I)
 #: Words in compounds, as `Drehzahlsollwert` and `nist`, and other spellings of the currents of the q and the d axis.
 _STEM = r"drehzahl|lage|moment|strom|geschwindigkeits?|winkel|positions?|kraft|spannungs?"
@@ -118,7 +118,7 @@ _INDEX = re.compile(
 _BY_ALIAS = {alias: signal for signal, aliases in ALIASES.items() for alias in aliases.split("|")}
 _BY_ALIAS |= {signal.replace("_", " "): signal for signal in ("time", *SI_UNITS)}
 
-#: What stands for a unit where there is none.
+#: Texts in place of a unit where there is none.
 _NO_UNIT = frozenset(("", "(none)", "none", "-", "--", "n/a", "na", "null", "(-)", "?"))
 
 
@@ -193,7 +193,7 @@ def _fitting(signals: Iterable[str], spellings: Iterable[str]) -> str | None:
 
 
 def _is_usual(unit: str) -> bool:
-    """Whether a text is a unit of a drive, counts included; asks no library."""
+    """Whether a text is a unit of a drive, counts included; without a library."""
     try:
         names = parse_unit(unit).powers
     except UnitError as error:
@@ -202,7 +202,7 @@ def _is_usual(unit: str) -> bool:
 
 
 def _suits(unit: str, signal: str) -> bool:
-    """Whether a signal may be in a unit: as far as it is known, where only the user knows what it is worth."""
+    """Whether a signal may be in a unit: as far as it is known, where only the user can state its scale."""
     try:
         scale_of(unit, wanted_units(signal))
     except UnitError as error:
@@ -211,7 +211,7 @@ def _suits(unit: str, signal: str) -> bool:
 
 
 def is_index(name: str) -> bool:
-    """Whether a column's name says that it counts samples."""
+    """Whether a column's name means that it counts samples."""
     return _INDEX.fullmatch(plain_name(name)) is not None
 
 
@@ -220,9 +220,9 @@ class ColumnName:
     """What the words of a column's name mean.
 
     Attributes:
-        told: signals that its words stand for, more than one where they leave it open.
-        letter: of LETTERS, where no word stands for a signal.
-        setpoint, measured: whether a word says so.
+        told: signals of its words, more than one where they leave it open.
+        letter: of LETTERS, where no word names a signal.
+        setpoint, measured: whether a word states it.
         foreign, supply: whether it is of something else than the axis, or of its supply.
         joint: the other words, by which joints differ.
         words: those that have a meaning, in lower case.
@@ -270,7 +270,7 @@ def read_name(text: str) -> ColumnName:
 
 
 def _pieces(word: str) -> list[str]:
-    """A word, or where one of them stands for a signal, the words that capital letters join in it."""
+    """A word, or where one of them names a signal, the words that capital letters join in it."""
     pieces = [] if _signals_of(word) else _CAMEL.split(word)
     return pieces if any(map(_signals_of, pieces)) else [word]
 

@@ -48,7 +48,7 @@ class Source:
 
     @cached_property
     def head(self) -> str:
-        """First 64 KiB as text, for telling formats apart; undecodable bytes replaced."""
+        """First 64 KiB as text, for distinguishing formats; undecodable bytes replaced."""
         return self.content[:_HEAD].decode("utf-8", errors="replace")
 
     def text(self) -> str:
@@ -58,7 +58,7 @@ class Source:
 
 @dataclass(frozen=True)
 class FileFormat:
-    """A `bench.trace.read.Reader` made of functions."""
+    """A `bench.trace.read.Reader` of functions."""
 
     format: str
     endings: tuple[str, ...]
@@ -72,7 +72,7 @@ def begins(*marks: bytes) -> Callable[[Source], bool]:
 
 
 def shows(pattern: re.Pattern[str]) -> Callable[[Source], bool]:
-    """Whether the head of a file holds a pattern, as a function of it."""
+    """Whether the head of a file contains a pattern, as a function of it."""
     return lambda source: pattern.search(source.head) is not None
 
 
@@ -104,7 +104,7 @@ def utf8(content: bytes) -> bytes:
 
 
 def open_source(path: str | Path) -> Source:
-    """Read a file, or of a folder that is one recording the file that tells what it holds.
+    """Read a file, or of a folder that is one recording the file that describes it.
 
     Raises:
         InputError: not there, not a file, not readable, empty, or a damaged gzip.

@@ -40,7 +40,7 @@ def stream(
 ) -> Iterator[Trace]:
     """Consecutive traces of at most `chunk` samples (one more at the end), which together are the recording.
 
-    They do not overlap; `Trace.continues` says whether one follows the last without a hole. Of Parquet only columns
+    They do not overlap; `Trace.continues` is whether one follows the last without a hole. Of Parquet only columns
     that are signals are read, chunk by chunk; other formats are read whole and cut. In Parquet the time base is found
     for each chunk, so a recording with jitter is interpolated onto a regular base in each.
 
@@ -65,7 +65,7 @@ def _is_parquet(path: Path) -> bool:
 
         return not any(is_moment(kind) or pa.types.is_nested(kind) for kind in pq.read_schema(path).types)
     except (*DAMAGE, InputError, ValueError):
-        return False  # `read` says what is wrong with it
+        return False  # `read` reports what is wrong with it
 
 
 def _continues(last: Trace | None, time: Array, period: float, origin: str) -> bool:
@@ -121,7 +121,7 @@ def _parquet(path: str, how: ReadingOptions, chunk: int) -> Iterator[Trace]:
 
 
 def _batches(file: pq.ParquetFile, names: list[str], chunk: int) -> Iterator[pa.RecordBatch]:
-    """Batches of at least two rows: the last one takes a single row that would be left over."""
+    """Batches of at least two rows: the last one takes a single row that would remain."""
     held: pa.RecordBatch | None = None
     for batch in file.iter_batches(chunk, columns=names):
         if held is not None and batch.num_rows > 1:

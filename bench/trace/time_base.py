@@ -1,10 +1,10 @@
 """Signals with their own sample times, jitter and holes, brought to one regular time base on purpose.
 
 The rules, in order:
-1. Time never runs backwards; a time that stands twice keeps its first sample.
+1. Time never runs backwards; a repeated time keeps its first sample.
 2. A step beyond `LONGEST_STEP` sample periods is a hole. Nothing is placed inside it; the segments on both sides stand
    alone.
-3. Within a segment sample k stands at t0 + k*T. Times that follow this line exactly stay as they are, bit for bit, and
+3. Within a segment sample k is at t0 + k*T. Times that follow this line exactly stay as they are, bit for bit, and
    so do their values. Times that follow it within their own rounding are replaced by the line; values stay as they
    are. Samples missing from the line are interpolated.
 4. Only where times really jitter are signals interpolated, onto t0 + k*(median step).
@@ -32,7 +32,7 @@ LONGEST_STEP = 2.5
 EXACT = 1e-6
 #: Deviation from the line, as share of the sample period, below which interpolating would change nothing that matters.
 STEADY = 1e-3
-#: Rounded times q apart leave q/sqrt(12) of noise, which tilts a line fitted to n of them: their peak-to-peak deviation
+#: Times rounded to q have q/sqrt(12) of noise, which tilts a line fitted to n of them: their peak-to-peak deviation
 #: exceeds q by up to 2*3 standard deviations at its ends, 6*q*sqrt(3/(12*n)) = 3*q/sqrt(n).
 _SLOPE = 3.0
 #: Signals whose clock makes the time base, best first.
@@ -51,7 +51,7 @@ class TimeBase:
         sample_period: median step - s.
         jitter: largest deviation of a step (holes aside) from the sample period - share of the period.
         holes: (start, duration) of each stretch without samples - s.
-        duplicates: samples dropped because their time stood already in the recording.
+        duplicates: samples dropped because the recording already has their time.
         interpolated: samples placed between measured ones, inside steps too short to be a hole.
         resampled: whether signals were interpolated onto the regular base.
         steps: between which four of five steps are, where they are not regular - s.
@@ -177,7 +177,7 @@ def _on_foreign_base(
     """Values of a signal of another clock on the base, and where they are known."""
     same = other.time.size == clock.time.size and base.measured is None and not base.found.resampled
     if same and np.abs(other.time - clock.time).max() <= max(clock.quantum, other.quantum) * (1.0 + 1e-3):
-        return values, np.ones(time.size, dtype=bool)  # the same instants, stamped apart by their rounding
+        return values, np.ones(time.size, dtype=bool)  # the same instants, with time stamps that differ by rounding
     step = np.diff(other.time)
     reach = LONGEST_STEP * float(np.median(step))
     after = np.clip(np.searchsorted(other.time, time), 1, other.time.size - 1)

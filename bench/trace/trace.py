@@ -2,9 +2,9 @@
 
 Several recordings make one trace, one after the other with a hole between any two (`join`). What belongs to a recording
 stays its own where the trace is read: time since its start (`Trace.joined`), and with it what warms up or drifts, and
-the phase of mains hum. What belongs to the axis is shared: so is absolute position, as an encoder that keeps its zero
-gives it. One that starts anew in every recording shifts what is periodic in position, which then fits some of them and
-not the others.
+the phase of mains interference. What belongs to the axis is shared: so is absolute position, as an encoder that keeps
+its zero gives it. One that starts again in every recording shifts what is periodic in position, which then fits some
+of them and not the others.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Trace(Shown):
         signals: value of each signal by its name (see `bench.trace.signals`) - SI - (n,) each.
         units: SI unit of each signal.
         origin: file or simulation it came from.
-        metadata: what the source said about itself.
+        metadata: what the source stated about itself.
         time_base: what was found about the sample times, where a reader found something.
         notes: what a reader did, assumed or left out that the user should know.
         joined: time at which each recording starts - s - and its origin, where several make it (`join`).
@@ -133,7 +133,7 @@ class Trace(Shown):
             signals: name -> (n,) samples, or a data frame (pandas, polars, Arrow): `time`, and signals under the names
                 of `bench.trace.signals`. A name may carry its unit, `velocity [deg/s]`. Samples are copied.
             units: unit of each column whose name carries none; `time` among them. Where no column has one, SI is
-                assumed if physics agrees, and a note says so.
+                assumed if physics agrees, with a note.
             sample_period: where there is no `time` - s, or a text with its unit such as `1 ms`.
             columns: signal -> column with unit, as in a rig's `[trace.columns]`, for foreign names.
             origin: what messages call it.

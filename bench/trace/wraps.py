@@ -32,7 +32,7 @@ SURE, EXACT = 4.0, 3e-3
 TURNS, POWERS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0), range(8, 33)
 #: Number of steps processed at once: few enough for the processor's cache.
 PIECE = 1 << 16
-#: A position beyond it - rad (m) - is none, which the checks say; its differences and their sums would overflow.
+#: A position beyond it - rad (m) - is none, which the checks report; its differences and their sums would overflow.
 FARTHEST = 1e150
 #: Steps beyond this share of the period are ambiguous by one period.
 HALF = 0.45
@@ -111,7 +111,7 @@ class Unwrapping:
             time: s - (n,).
             speed: rad/s (m/s) - (n,) at the same times, where it is recorded.
             count: what one count of the file is worth - rad (m).
-            place: where sample i stands in the file, for messages.
+            place: where sample i is in the file, for messages.
 
         Raises:
             InputError: it spans more than its period, or moves by more than half of one a sample.

@@ -27,7 +27,7 @@ from bench.units import same_dimension
 def write(trace: Trace, path: str | Path, units: Mapping[str, str] | None = None) -> None:
     """Write a trace in the format its file's ending names: `.csv`, `.csv.gz`, `.parquet`, `.trace`.
 
-    Reading it back gives the same floats where `units` leaves SI units as they are. A Machine Expert trace keeps times
+    Reading it back gives the same floats where `units` keeps SI units. A Machine Expert trace keeps times
     to the microsecond and, as the lab does, angles in degrees and currents in mA.
 
     Args:

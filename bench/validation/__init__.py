@@ -1,1 +1,1 @@
-"""Monte Carlo on synthetic data: how often what the bench says of an axis holds."""
+"""Monte Carlo on synthetic data: how often results for an axis are right."""

@@ -25,7 +25,7 @@ TERMS = (INERTIA, VISCOUS, COULOMB)
 
 @dataclass(frozen=True)
 class Scored:
-    """One estimated quantity beside its true value.
+    """One estimated quantity with its true value.
 
     Attributes:
         by: identify or diagnose.
@@ -125,12 +125,13 @@ class Run:
 
     Attributes:
         index, plant, motion, kind, hidden, severity: as drawn.
-        noise: of speed and current, as white/hum.
+        noise: of speed and current, as white/mains.
         sample_period, duration: of the recording - s.
-        status: done; refused by `identify`, which tells what it knows all the same; failed where there is no recording.
+        status: done; refused by `identify`, which reports what it found all the same; failed where there is no
+            recording.
         reason: why it is not done.
         scored: quantities, by `identify` and by `diagnose`.
-        named: by `diagnose`, if it was asked.
+        named: by `diagnose`, if it was run.
     """
 
     index: int
@@ -298,7 +299,7 @@ def _of_effects(runs: Sequence[Run]) -> list[Coverage]:
 
 #: Verdicts, as the contract has them.
 EXPLAINED, UNEXPLAINED = "explained", "unexplained_remainder"
-#: What is hidden in a null; what is said instead of a name.
+#: What is hidden in a null; what is reported instead of a name.
 NOTHING, NOTHING_MISSING, REMAINDER, REFUSED = "nothing", "nothing missing", "only a remainder", "refused"
 
 
@@ -361,7 +362,7 @@ def _false(names: Sequence[Named]) -> Share:
 
 
 def given(named: Named) -> tuple[str, ...]:
-    """Names, or what was said instead."""
+    """Names, or what was reported instead."""
     if not named.verdict:
         return (REFUSED,)
     instead = REMAINDER if named.verdict == UNEXPLAINED else NOTHING_MISSING

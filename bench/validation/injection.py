@@ -3,7 +3,7 @@
 Had the axis had the effect and moved as it did, its drive would have had to give more torque, so an effect on the axis
 adds to the recorded effort; one of a sensor changes the signal that it reads. The formulas are those of the independent
 axis; the speed and acceleration that they ask for come from a local cubic through the raw samples, so that nothing is
-shared with what identification makes of the recording. What the recording has of its own stays in it: the truth of the
+shared with identification of the recording. What the recording has of its own stays in it: the truth of the
 effect is known, on the noise of a real machine.
 """
 
@@ -29,7 +29,7 @@ from bench.validation.independent.effects import KINDS, Effect
 from bench.validation.independent.rig import Axis
 from bench.validation.plan import HIDEABLE
 
-#: Width of the local cubic: samples at least, and time - s. Of a motion of 20 Hz, sampled at 1 kHz, it leaves 99 %.
+#: Width of the local cubic: samples at least, and time - s. Of a motion of 20 Hz, sampled at 1 kHz, it keeps 99 %.
 SAMPLES, WIDTH = 7, 12e-3
 #: Speed, over the noise of the cubic's speed, above which its sign is sure: noise alone passes it in 1 of 16,000.
 SURE = 4.0
@@ -52,9 +52,9 @@ class Host:
 
     Attributes:
         trace: with a position, or a velocity.
-        rig: of its axis, which says what drives it.
+        rig: of its axis, which states what drives it.
         axis: J, K_w, K_0, torque constant, peak current and the rest that effects refer to.
-        load: torque of what a gear carries, as far as the recording knows it - N*m (N) (m,); None if not at all.
+        load: torque of what a gear carries, as far as the recording has it - N*m (N) (m,); None if not at all.
         moved: the recording as the axis moved, where its sensors are known to err; None if they are not.
         lag: by which torque and motion are known to follow the reported effort - s.
     """
@@ -108,7 +108,7 @@ class StandIn:
 
 
 def stand_in(host: Host, trace: Trace | None = None) -> StandIn:
-    """The motion of a recording, or of what was made of it, by a local cubic through its samples."""
+    """The motion of a recording, or of a changed one, by a local cubic through its samples."""
     trace = trace or host.moved or host.trace
     position, velocity, acceleration, direction = np.concatenate([_motion(trace, p) for p in trace.segments], axis=1)
     effort, time = host.rig.effort(trace)[0], trace.time - trace.time[0]
@@ -243,7 +243,7 @@ def _reported(effect: Effect, seen: StandIn) -> Array:
     current = seen.acting_current
 
     def delivered(at: Array) -> Array:
-        """What one acts like; where the rig tells no peak current, the largest that is recorded is it."""
+        """What one acts like; where the rig has no peak current, the largest that is recorded is it."""
         peak = np.maximum(seen.peak_current, np.abs(at).max())
         return at * effect.torque_factor(replace(seen, acting_current=at, peak_current=peak))
 
@@ -288,7 +288,7 @@ def _read_otherwise(trace: Trace, effect: Effect) -> Trace:
 
 
 def driven(host: Host, what: str, effort: Array) -> Trace:
-    """The recording with another effort, in the signal that tells it."""
+    """The recording with another effort, in its signal."""
     trace, rig = host.trace, host.rig
     name = next(each for each in (rig.axis_kind.effort, "current", "voltage") if each in trace)
 
@@ -301,11 +301,11 @@ def driven(host: Host, what: str, effort: Array) -> Trace:
 
 
 def disturbance(host: Host, made: Trace, seen_as: Conditioning | None = None) -> tuple[float, float]:
-    """How much torque a change of a recording makes, and how much of it a fit without effects leaves - N*m (N).
+    """How much torque a change of a recording makes, and how much of it remains after a fit without effects - N*m (N).
 
     RMS of M - J*alpha - K_w*omega - K_0*sgn(omega) in `made` less in the recording: by the axis' own values at all
     samples in motion; and after J, K_w, K_0 and the shift of torque against speed are fitted to each, at the rows of
-    the balance and through its filter, as what a diagnosis leaves is measured. A change of the reported speed
+    the balance and through its filter, as the residual of a diagnosis is measured. A change of the reported speed
     alone is judged by that speed, though a position be recorded.
 
     Args:
@@ -330,7 +330,7 @@ def disturbance(host: Host, made: Trace, seen_as: Conditioning | None = None) ->
 
 
 def modelled(host: Host) -> Host:
-    """The axis alone, as it was found to move under J, K_w, K_0 and its load: what else a recording holds left out."""
+    """Only the axis, as it was found to move under J, K_w, K_0 and its load: without the rest of a recording."""
     seen, axis = stand_in(host), host.axis
     torque = axis.inertia * seen.acceleration + axis.viscous * seen.velocity + axis.coulomb * seen.direction
     plain = driven(host, "the axis", torque + (0.0 if host.load is None else host.load))
@@ -338,9 +338,9 @@ def modelled(host: Host) -> Host:
 
 
 def drawn(host: Host, kind: str, size: float, seed: int) -> Effect | None:
-    """An effect of a kind that leaves a wanted RMS beyond what J, K_w and K_0 take up, on the axis alone.
+    """An effect of a kind with a wanted RMS beyond what J, K_w and K_0 take up, on the axis alone.
 
-    An effect made of torque scales what else a recording holds, too, which shows nothing of it; the filter is the one
+    An effect of torque scales the rest of a recording, too, which shows nothing of it; the filter is the one
     of the recording, as coherence of motion and torque, which it is chosen by, is greater on the axis alone.
 
     Args:

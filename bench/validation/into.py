@@ -1,4 +1,4 @@
-"""What a diagnosis makes of known effects that are put into a recording: how large each has to be to be named."""
+"""The diagnosis of known effects that are put into a recording: how large each has to be to be named."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from bench.validation.independent.rig import Axis
 from bench.validation.injection import INJECTABLE, Host, disturbance, drawn, injected, stand_in
 
 #: What becomes of an effect. Right: named, and nothing else is that was not before; part: something else, too; flagged:
-#: not named, and a remainder is left or a refusal says why; missed: neither; wrong: not named, and something else is.
+#: not named, and there is a remainder or a refusal; missed: neither; wrong: not named, and something else is.
 RIGHT, PART, FLAGGED, MISSED, WRONG = FATES = ("right", "part", "flagged", "missed", "wrong")
 #: Effects whose torque a gear carries.
 LOADS = frozenset(name for name, kind in KINDS.items() if kind.transmitted)
-#: Strengths between which the least is sought, over what the recording leaves, and how often: its step is then 19 %.
+#: Strengths between which the least is sought, over the recording's residual, and how often: its step is then 19 %.
 SPAN, TRIALS = (0.1, 25.6), 5
 #: For one effect: ten times what five diagnoses of a large recording take - s.
 DEADLINE = 3600.0
@@ -43,8 +43,8 @@ class Own:
     Attributes:
         host: the recording, and its axis as diagnosed.
         names, verdict: of its own diagnosis.
-        taken: these names, and what it cannot tell from them.
-        left, unit: RMS that it leaves, noise included, and its unit.
+        taken: these names, and what it cannot distinguish from them.
+        left, unit: RMS residual, noise included, and its unit.
     """
 
     host: Host
@@ -70,10 +70,10 @@ def own(trace: Trace, rig: Rig) -> Own:
 
 
 def axis_of(found: Diagnosis, trace: Trace, rig: Rig) -> Axis:
-    """The axis as a diagnosis found it; half of its inertia is the load's where the rig does not tell the rotor's.
+    """The axis as a diagnosis found it; half of its inertia is the load's where the rig does not state the rotor's.
 
     Raises:
-        UndeterminedError: the diagnosis leaves the inertia open.
+        UndeterminedError: the diagnosis does not determine the inertia.
     """
     kind = rig.axis_kind
     if kind.inertia in found.refused:
@@ -109,7 +109,7 @@ def _moved(trace: Trace, found: Diagnosis) -> Trace | None:
 
 
 def _load(host: Host, found: Diagnosis) -> Array | None:
-    """Torque of the load that the rig knows, or that the diagnosis names - N*m (N) (m,)."""
+    """Torque of the load of the rig, or that the diagnosis names - N*m (N) (m,)."""
     known = host.rig.effort(host.trace)[0] - host.rig.own_effort(host.trace)[0]
     loads = [KINDS[one.name](**one.values) for one in found.effects if one.name in LOADS]
     if not loads and not known.any():
@@ -120,17 +120,17 @@ def _load(host: Host, found: Diagnosis) -> Array | None:
 
 @dataclass(frozen=True)
 class Injection:
-    """An effect put into a recording, and what the diagnosis made of it.
+    """An effect put into a recording, and its diagnosis.
 
     Attributes:
         effect, strength: its name, and the RMS torque that J, K_w and K_0 cannot take up of it over what the recording
-            leaves.
-        quantity, size, unit: what tells how large it is, the first quantity of its name.
+            residual.
+        quantity, size, unit: its size, the first quantity of its name.
         torque: RMS of all its torque - unit of `Own.left`.
         fate: one of `FATES`.
         names: given now, and not before.
         verdict, reason: of the diagnosis; why there is none.
-        scored: its quantities beside the truth, where it is named.
+        scored: its quantities with the truth, where it is named.
     """
 
     effect: str
@@ -157,7 +157,7 @@ def put_into(own: Own, name: str, strength: float, seed: int) -> Injection | Non
     Args:
         own: the recording.
         name: of the effect.
-        strength: over what the recording leaves.
+        strength: over the recording's residual.
         seed: of its other parameters.
     """
     effect = None if name in own.taken else drawn(own.host, name, strength * own.left, seed)
@@ -177,7 +177,7 @@ def put_into(own: Own, name: str, strength: float, seed: int) -> Injection | Non
 
 
 def fate(found: Diagnosis, effect: str, beside: Sequence[str]) -> tuple[str, tuple[str, ...]]:
-    """What becomes of an effect in a diagnosis, one of `FATES`, and the names given but for those of others beside."""
+    """What becomes of an effect in a diagnosis, one of `FATES`, and the names given but for those of other effects."""
     named = Named.of(found.verdict, found.effects, (*beside, effect))
     if effect not in named.missed:
         return PART if named.false else RIGHT, (effect, *named.false)
@@ -243,13 +243,13 @@ def inject(
     workers: int | None = None,
     progress: Callable[[float], None] = lambda share: None,
 ) -> Injections:
-    """Put known effects into a recording, each alone, and see what its diagnosis makes of them.
+    """Put known effects into a recording, one at a time, and diagnose it.
 
     Args:
         trace: the recording.
         rig: of its axis.
         names: of effects; all without.
-        strengths: over what the recording leaves; without, the least that is named is sought.
+        strengths: over the recording's residual; without, the least that is named is sought.
         seed: of their other parameters.
         workers: processes on this machine; None: one a core.
         progress: called with the share done.

@@ -100,7 +100,7 @@ class Hiding:
 
     Attributes:
         least, most: how many of the catalogue, drawn at random.
-        names: instead, each alone in turn, and after the last of them a run with nothing hidden.
+        names: instead, one at a time, and after the last of them a run with nothing hidden.
     """
 
     least: int = 0
@@ -149,7 +149,7 @@ class Plan:
     Attributes:
         seed: of all that is random.
         hiding: effects of the runs.
-        diagnose: whether `diagnose` is asked too, and not `identify` alone.
+        diagnose: whether `diagnose` is run too, and not only `identify`.
         population: that cases are drawn from.
     """
 
@@ -159,7 +159,7 @@ class Plan:
     population: Population = any_axis
 
     def case(self, index: int) -> Case:
-        """The case of an index; its effects are all as strong as one draw says."""
+        """The case of an index; its effects are all as strong as one draw."""
         rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(index,)))
         plain = self.population(index, rng)
         names = self.hiding.drawn(index, rng, plain.axis)
@@ -170,7 +170,7 @@ class Plan:
         return replace(plain, effects=effects, severity=severity)
 
 
-#: Signals that tell what moved an axis.
+#: Signals of what moved an axis.
 EFFORTS = {"current", "torque", "force"}
 
 
@@ -196,12 +196,13 @@ class OwnAxis:
 def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
     """The axis of a rig along a motion of its own.
 
-    What the rig does not say of the simulated axis and its sensors, in `[simulation]`, is taken from the recording.
+    What the rig does not state of the simulated axis and its sensors, in `[simulation]`, is taken from the recording.
 
     Args:
         rig: with `[drive]`; InputError where it or the recording lack something.
         profile: name of a motion (`bench.plant.profiles`), or what the recording is called.
-        recording: of the motion; None to take the named one. UndeterminedError where it does not tell what it has to.
+        recording: of the motion; None to take the named one. UndeterminedError where it does not determine what it has
+            to.
     """
     if rig.load is not None and rig.load.eccentric_mass is not None:
         raise InputError(f"{rig.source}: load.eccentric_mass", "found one", "allowed: none; the plants do not swing it")
@@ -231,7 +232,7 @@ def own_axis(rig: Rig, profile: str, recording: Trace | None) -> OwnAxis:
 
 
 def as_recorded(rig: Rig, recording: Trace) -> Simulation:
-    """Inertia and friction of an axis as a recording tells them; UndeterminedError where it does not."""
+    """Inertia and friction of an axis by a recording; UndeterminedError where it does not determine them."""
     found = identify(recording, rig)
     inertia, viscous, coulomb = (found[rig.axis_kind.parameter(term)].value for term in (INERTIA, VISCOUS, COULOMB))
     values = {

@@ -1,6 +1,6 @@
 """Validation: draw cases, carry them out wherever there are workers, and see how often results hold.
 
-A case is recorded by its plant, identified and, if wanted, diagnosed; results stand beside the truth.
+A case is recorded by its plant, identified and, if wanted, diagnosed; results are listed with the truth.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from bench.validation.plan import Case, Plan
 def record(cases: Sequence[Case], seed: int) -> list[Trace | BenchError]:
     """One recording a case, or why MuJoCo makes none.
 
-    Noise is drawn from the seed and a case's index: a recording does not depend on the cases beside it.
+    Noise is drawn from the seed and a case's index: a recording does not depend on other cases.
     """
     beside = [case for case in cases if case.plant == "independent"]
     integrated = integrate(
@@ -97,7 +97,7 @@ def pieces(count: int) -> list[range]:
 
 
 def carried_out(plan: Plan, indices: Sequence[int]) -> list[Run]:
-    """Runs of a plan, by their indices; each is the same whatever is simulated beside it."""
+    """Runs of a plan, by their indices; each is the same whatever else is simulated."""
     cases = [plan.case(index) for index in indices]
     return [judged(case, made, plan) for case, made in zip(cases, record(cases, plan.seed), strict=True)]
 
@@ -133,7 +133,7 @@ def diagnosed(run: Run, case: Case, trace: Trace) -> Run:
 
 
 def drawn(case: Case) -> Run:
-    """A run before anything is made of it."""
+    """A run before its evaluation."""
     sensors = case.sensors
     return Run(
         index=case.index,
@@ -177,7 +177,7 @@ def validate(
     """Carry out the first runs of a plan; the same for any number of workers.
 
     Args:
-        plan: that says what each run is.
+        plan: that defines each run.
         count: of runs.
         workers: processes on this machine; None: one a core.
         scheduler: address of a Dask cluster that does the work instead.

@@ -16,7 +16,7 @@ from bench.view.free_running import BARE, HELD, restarted
 
 #: Instants at most of which a motion is kept, to be drawn.
 INSTANTS = 1000
-#: How often a joint runs free anew - s -, and instants of the curve over the longest.
+#: How often a joint runs free again - s -, and instants of the curve over the longest.
 EVERY, POINTS = (0.5, 5.0), 100
 
 

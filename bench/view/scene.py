@@ -37,7 +37,7 @@ class Scene:
         axis, ghost: where the positions of both stand in `qpos`.
         middle, scale: of a slide, which is drawn in the middle of its rail, and smaller than it is where that is short.
         camera: name of it.
-        others: when, and where the other coordinates of a robot stood then - s, rad (m) - (n,), (n, nq).
+        others: when, and where the other coordinates of a robot were then - s, rad (m) - (n,), (n, nq).
     """
 
     model: mujoco.MjModel
@@ -74,7 +74,7 @@ class Scene:
     def of_robot(cls, robot: RobotAlong) -> Scene:
         """A robot with its meshes, and the measured one as its ghost."""
         (spec, _), (other, _) = read_spec(str(robot.mjcf)), read_spec(str(robot.mjcf))
-        carried = other.joint(robot.joint).parent.find_all("geom")  # the rest stands where it does in both
+        carried = other.joint(robot.joint).parent.find_all("geom")  # the rest is the same in both
         for geom in other.geoms:
             geom.material, geom.rgba = "", COLOUR if geom in carried else UNSEEN
         spec.attach(other, prefix=GHOST, frame=spec.worldbody.add_frame())

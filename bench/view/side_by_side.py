@@ -1,4 +1,4 @@
-"""A simulated axis, and a ghost beside it: the measured one, or the motion that a drive was asked for."""
+"""A simulated axis, and a ghost: the measured one, or the demanded motion."""
 
 from __future__ import annotations
 
@@ -86,10 +86,10 @@ class RobotAlong:
 
 
 def along_recording(model: str | Path, replayed: Replay) -> SideBySide:
-    """A model that was replayed along a recording, beside the measured axis.
+    """A model that was replayed along a recording, with the measured axis.
 
     Raises:
-        InputError: the model holds a torque balance alone, so that nothing moves.
+        InputError: the model is only a torque balance, so that nothing moves.
     """
     if not np.isfinite(replayed.position_simulated).any():
         allowed = "allowed: a model with [parameters], as diagnose writes it where MuJoCo can have the model"
@@ -108,7 +108,7 @@ def along_recording(model: str | Path, replayed: Replay) -> SideBySide:
 
 
 def along_profile(path: str | Path, rig: Rig, profile: str) -> SideBySide:
-    """A model under the drive of a rig along a profile, beside the motion that was asked for.
+    """A model under the drive of a rig along a profile, with the demanded motion.
 
     Raises:
         InputError: no model, one of another kind of axis, or a rig without drive.

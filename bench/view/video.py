@@ -94,7 +94,7 @@ def _renderer(model: mujoco.MjModel) -> Iterator[mujoco.Renderer]:
 
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # GLFW warns of what the error says
+            warnings.simplefilter("ignore")  # GLFW warns of what the error reports
             found = mujoco.Renderer(model, HEIGHT, WIDTH)
     except (ImportError, AttributeError, RuntimeError, mujoco.FatalError) as error:
         raise _unable() from error

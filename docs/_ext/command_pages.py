@@ -1,4 +1,4 @@
-"""The pages of the commands, as Markdown, from the definitions that the command line itself is made of."""
+"""The pages of the commands, as Markdown, from the definitions of the command line itself."""
 
 from __future__ import annotations
 

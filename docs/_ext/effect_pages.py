@@ -1,4 +1,4 @@
-"""The page of an effect, as Markdown: all of it is asked of the effect, or simulated with it."""
+"""The page of an effect, as Markdown: all of it comes from the effect, or simulated with it."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ DECLARED: tuple[tuple[Callable[[Effect], bool], str], ...] = (
 LETTERS: dict[str, str] = dict(zip(("alpha", "omega", "sigma", "phi", "mu", "tau", "pi"), "αωσφμτπ", strict=True))
 #: Gap over noise floor above which something is missing, as the verdict has it.
 SHOWS = 1.12
-#: Share of the squared gap from which another effect is named as a rival.
+#: Share of the squared gap from which another effect is named as an alternative.
 NEAR = 0.05
 
 
@@ -101,7 +101,7 @@ def as_markdown(block: str) -> str:
 
 
 def prose(text: str) -> str:
-    """Text of a docstring: formulas in it as they are printed, code as it stands, nothing else markup."""
+    """Text of a docstring: formulas in it as they are printed, code unchanged, nothing else markup."""
     parts = re.split(r"(`[^`]*`)", text)
     return "".join(part if part.startswith("`") else escaped(readable(part)) for part in parts)
 
@@ -181,7 +181,8 @@ def broken(line: str) -> list[str]:
 
 
 def rivals(effect: Effect, found: Signature | None) -> str:
-    """What would explain the same recording, what it cannot be distinguished from, and beside what it is not sought."""
+    """What would explain the same recording, what it cannot be distinguished from, and with what it is not searched
+    for."""
     others = {name: other for name, other in catalogue().items() if other is not effect}
     lags = [name for name, other in others.items() if isinstance(other, Lag)]
     lines = [] if found is None else [*ambiguous(effect, found.bare.scope)]
@@ -209,7 +210,7 @@ def replaced(effect: Effect) -> frozenset[str]:
 
 
 def explained(effect: Effect, found: Signature) -> str:
-    """Shares of the gap that it and its nearest rivals would take."""
+    """Shares of the gap that it and its nearest alternatives would explain."""
     itself = f"{words(effect.name)} by itself would take {share(found.shares.get(effect, 0.0))}"
     if type(effect).detect is not Effect.detect:
         itself = "it takes none, as single signals show it rather than the balance"
@@ -223,7 +224,7 @@ def explained(effect: Effect, found: Signature) -> str:
 
 
 def ambiguous(effect: Effect, scope: Scope) -> Iterable[str]:
-    """What recordings of some kinds cannot tell from it."""
+    """What recordings of some kinds cannot distinguish from it."""
     no_position = replace(scope, signals=scope.signals - {"position"}, source="velocity")
     kinds = (
         ("No recording distinguishes it from", scope),
@@ -244,7 +245,7 @@ def link(name: str) -> str:
 
 
 def motions(effect: Effect, found: Signature) -> str:
-    """How far it stands above noise in each motion, and what else a recording has to have."""
+    """How far it is above noise in each motion, and what else a recording has to have."""
     lines = ["| motion (`--profile`) | torque gap over noise floor | seen |", "|---|---:|---|"]
     for name in NAMES:
         seen = "by the signals" if name in found.detected else "by the gap" if found.motions[name] > SHOWS else "no"

@@ -16,7 +16,7 @@ import signature
 from bench.effects.catalogue import catalogue
 
 HERE = Path(__file__).resolve().parent
-#: What pages and pictures of effects are made from: a change in any makes all anew.
+#: What pages and pictures of effects are made from: a change in any renders all again.
 MADE_FROM = (*Path(bench.__file__).parent.rglob("*.py"), *HERE.glob("*.py"), signature.RIG)
 
 

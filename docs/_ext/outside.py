@@ -1,10 +1,10 @@
-"""Links to files beside the folder of pages, where a git host finds them, lead to the pages that include them."""
+"""Links to files outside the folder of pages, where a git host finds them, lead to the pages that include them."""
 
 from __future__ import annotations
 
 from sphinx.application import Sphinx
 
-#: Files beside the folder, and the page that includes each.
+#: Files outside the folder, and the page that includes each.
 INCLUDED = {"../CONTRIBUTING.md": "contributing.md", "../SECURITY.md": "security.md", "../CHANGELOG.md": "changelog.md"}
 
 
@@ -15,7 +15,7 @@ def lead_inside(app: Sphinx, name: str, source: list[str]) -> None:
 
 
 def lead_included(app: Sphinx, path: object, name: str, source: list[str]) -> None:
-    """Rewrite the links of an included file, which start from where it stands."""
+    """Rewrite the links of an included file, which start from its own folder."""
     for outside, page in INCLUDED.items():
         source[0] = source[0].replace(f"]({outside.removeprefix('../')})", f"]({page})")
     source[0] = source[0].replace("](docs/", "](")

@@ -33,7 +33,7 @@ from bench.validation.independent.effects import KINDS
 from bench.validation.plan import own_axis
 
 RIG = Path(__file__).resolve().parents[1] / "axis.toml"
-#: Strength of every effect, where 1 is drastic, and seed of what is drawn beside it: phases, instants, harmonics.
+#: Strength of every effect, where 1 is drastic, and seed of what else is drawn: phases, instants, harmonics.
 SEVERITY, SEED = 0.5, 14
 #: Length of the stretch of time that is drawn - s.
 STRETCH = 0.3
@@ -50,7 +50,7 @@ class Signature:
         bare: inertia, viscous and Coulomb friction fitted to the first; what they leave is the gap.
         motions: by name of the motion, RMS of the gap over its noise floor.
         detected: motions in which single signals show it.
-        shares: of the squared gap, what each effect of the catalogue and each rival from outside would take, were it
+        shares: of the squared gap, what each effect of the catalogue and each decoy model would explain, were it
             tried alone; the most first.
     """
 

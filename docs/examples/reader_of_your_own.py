@@ -1,6 +1,6 @@
 """A reader of your own: a drive's memory, `DUMP` and then records.
 
-Offered as an entry point, `bench.read` asks it, too: see CONTRIBUTING.md, "Add a reader".
+Offered as an entry point, `bench.read` tries it, too: see CONTRIBUTING.md, "Add a reader".
 """
 
 from pathlib import Path

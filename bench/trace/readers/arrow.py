@@ -1,6 +1,6 @@
 """Columns of Arrow, out of Parquet, a table, JSON or a data frame: numbers, or moments as times from the first of them.
 
-In Parquet a unit stands in the column's name, `velocity [deg/s]`, or in its field metadata under `unit`. A list of a
+In Parquet a unit is in the column's name, `velocity [deg/s]`, or in its field metadata under `unit`. A list of a
 number for each joint is a channel for each, `q[0]`, or `q.elbow` where the file names them; a line for each joint, with
 its name or number in a column, is the channels of each.
 """
@@ -88,7 +88,7 @@ PARQUET = FileFormat("Parquet", (".parquet", ".pq"), begins(MAGIC), _read)
 
 
 def channel_of(field: pa.Field, column: pa.ChunkedArray | pa.Array, path: str, start: int = 0) -> Channel:
-    """Channel of a column, or of a piece of it from sample `start` on; a defect where it holds anything but numbers."""
+    """Channel of a column, or of a piece of it from sample `start` on; a defect where it has anything but numbers."""
     name, unit = split_label(field.name)
     if unit is None and field.metadata and b"unit" in field.metadata:
         unit = field.metadata[b"unit"].decode("utf-8", errors="replace")
@@ -112,7 +112,7 @@ def channels_of_table(
 ) -> list[Channel]:
     """Channels of columns; of lists one for each place in them, called as those of a column are `known` to be.
 
-    A column of lists of names tells those of the same length, as does `lists` by the length.
+    A column of lists of names names those of the same length, as does `lists` by the length.
     """
     for _ in range(_DEEPEST):  # those in one another beyond it are no columns of numbers
         if any(pa.types.is_struct(kind) for kind in table.schema.types):
@@ -155,7 +155,7 @@ def _places(
 
 
 def is_numeric(kind: pa.DataType) -> bool:
-    """Whether a column holds numbers or moments, or lists of them; of others, texts and pictures, nothing is read."""
+    """Whether a column has numbers or moments, or lists of them; of others, texts and pictures, nothing is read."""
     if _is_list(kind):
         return is_numeric(kind.value_type)
     if pa.types.is_struct(kind):
@@ -165,7 +165,7 @@ def is_numeric(kind: pa.DataType) -> bool:
 
 
 def is_moment(kind: pa.DataType) -> bool:
-    """Whether a column holds moments, read as times from the first of them."""
+    """Whether a column has moments, read as times from the first of them."""
     return pa.types.is_timestamp(kind) or pa.types.is_duration(kind)
 
 

@@ -5,7 +5,7 @@ user learns why it is no trace of a motion.
 
 `<Trace><TraceConfiguration>...<Single Name="MicroSeconds" Type="bool">False</Single>...</TraceConfiguration>
 <TraceData><TraceRecord><TraceVariable VarName="PLC_PRG.x"><Values>1,2</Values><Timestamps>18,48</Timestamps>...`: one
-time vector per variable, in ms or us from the trace's start. No format has units; the bench's own files tell them in
+time vector per variable, in ms or us from the trace's start. No format has units; the bench's own files have them in
 the trace's comment, as `units: velocity [deg/s], current [mA]`.
 """
 
@@ -62,7 +62,7 @@ class _WithoutDoctype(ElementTree.TreeBuilder):
 def _parse(source: Source) -> ElementTree.Element:
     """Root element, without namespaces in any name; InputError where it is not well-formed, as a truncated file."""
     try:
-        text: str | bytes = source.content.decode("utf-8")  # a str, for the declaration may still say utf-16
+        text: str | bytes = source.content.decode("utf-8")  # a str, for the declaration may still be utf-16
     except UnicodeDecodeError:
         text = source.content
     try:
@@ -105,7 +105,9 @@ def _variable(element: ElementTree.Element, units: Mapping[str, str | None], tim
     values = _list(element, "Values", place, times.size)
     if values.size != times.size:
         found, allowed = f"found {values.size} values and {times.size} time stamps", "allowed: as many of both"
-        if times.size < values.size < 2 * times.size:  # some numbers have a decimal comma, and which cannot be told
+        if (
+            times.size < values.size < 2 * times.size
+        ):  # some numbers have a decimal comma, and which cannot be determined
             allowed += ", with decimal points, or with ; between numbers that have decimal commas"
         raise InputError(place, found, allowed)
     return Channel(name, units.get(name), values, path, time=Channel(f"{name} time stamps", time_unit, times, path))

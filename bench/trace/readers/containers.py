@@ -1,4 +1,4 @@
-"""What readers of containers share: libraries that are extras, damage, what libraries say, compressed blocks."""
+"""What readers of containers share: libraries that are extras, damage, messages of libraries, compressed blocks."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _EXTRAS = {
 
 
 def library(module: str, path: str, container: str) -> Any:  # noqa: ANN401
-    """A module of a library that reads a container; InputError says how to install it where it is not there."""
+    """A module of a library that reads a container; InputError with how to install it where it is not there."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
@@ -44,7 +44,7 @@ def library(module: str, path: str, container: str) -> Any:  # noqa: ANN401
 def reading(
     path: str, container: str, kinds: type[Exception] | tuple[type[Exception], ...] = Exception
 ) -> Iterator[None]:
-    """Within the block what a library raises says that the file is damaged; most raise many kinds of errors."""
+    """Within the block any error of a library means that the file is damaged; most raise many kinds of errors."""
     try:
         yield
     except InputError:
@@ -102,7 +102,7 @@ class _Kept(logging.Handler):
 
 @contextmanager
 def warnings_of(name: str) -> Iterator[dict[str, None]]:
-    """What a library's loggers have to say within the block, as the dictionary's keys, instead of on standard error."""
+    """The messages of a library's loggers within the block, as the dictionary's keys, instead of on standard error."""
     known = logging.Logger.manager.loggerDict
     loggers = [logging.getLogger(one) for one in known if one == name or one.startswith(f"{name}.")]
     before, kept = [(logger.handlers, logger.propagate) for logger in loggers], _Kept()
@@ -116,7 +116,8 @@ def warnings_of(name: str) -> Iterator[dict[str, None]]:
 
 
 def unpack(packed: bytes, size: int) -> bytes:
-    """Content of a packed block that declares `size` bytes; ValueError if it holds more, or its packing is unknown."""
+    """Content of a packed block that declares `size` bytes; ValueError if it contains more, or its packing is
+    unknown."""
     if packed.startswith(_ZLIB):
         content = zlib.decompressobj().decompress(packed, size + 1)
     elif packed.startswith(_ZSTD):

@@ -1,11 +1,11 @@
 """Readers of JSON: logs with a line for each sample, a list of samples or an object of columns; and BAM's recordings.
 
-Lists of a number for each joint are channels by their place, or by the names in a list of as many texts beside them, as
-a ROS joint state has it; what holds fields is `parent.field`.
+Lists of a number for each joint are channels by their place, or by the names in a list of as many texts next to them,
+as a ROS joint state has it; fields of an entry are `parent.field`.
 
 The BAM project records small servos: `entries` of position, speed, load and voltage. `load` is the share of the supply
 that the bridge applies, as a signed 16-bit number with 885 for full; so the motor's voltage is load/885 * input_volts
-(Robotis XL330 manual, present PWM; github.com/Rhoban/bam). Scalars beside the entries (mass, kp, ...) become metadata.
+(Robotis XL330 manual, present PWM; github.com/Rhoban/bam). Scalars next to the entries (mass, kp, ...) become metadata.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Reader of LeRobot's datasets, version 2 and 3: Parquet of lists, whose places `meta/info.json` names.
 
-https://huggingface.co/docs/lerobot/lerobot-dataset-v3: `features` tells of each column its `names`, a list or one under
+https://huggingface.co/docs/lerobot/lerobot-dataset-v3: `features` has for each column its `names`, a list or one under
 another key; the files of `data/` hold episodes one after another, each with times from zero. Units are stated nowhere.
 """
 
@@ -26,7 +26,7 @@ from bench.trace.source import FileFormat, Source
 BETWEEN = 10.0
 
 
-#: What tells of a dataset, from its root.
+#: The description of a dataset, from its root.
 _INFO = "meta/info.json"
 
 

@@ -63,7 +63,7 @@ def _read_bag(source: Source) -> Recording:
             pass  # an input from now on, which rosbags opens itself
 
     def messages() -> Iterator[_Logged]:
-        usual = typesys.get_typestore(typesys.Stores.LATEST)  # of a bag that holds no definitions
+        usual = typesys.get_typestore(typesys.Stores.LATEST)  # of a bag without definitions
         with highlevel.AnyReader([folder], default_typestore=usual) as bag:
             known = [one for one in bag.connections if one.msgtype in bag.typestore.types]
             for one, logged, data in bag.messages(known):
@@ -106,7 +106,7 @@ def _recording(
 
 
 MCAP = FileFormat("MCAP", (".mcap",), begins(b"\x89MCAP0\r\n"), _read)
-#: By its metadata.yaml, which says what files the bag has.
+#: By its metadata.yaml, which lists the files of the bag.
 BAG = FileFormat("ROS 2 bag", (), begins(b"rosbag2_bagfile_information:"), _read_bag)
 
 
@@ -165,7 +165,7 @@ def _fields(schema: str, message: Any) -> Iterator[tuple[str, float, str | None,
 
 
 def _stamp(message: Any, logged: int) -> int:  # noqa: ANN401
-    """Time of a message - ns: of its header where that tells one."""
+    """Time of a message - ns: of its header where that has one."""
     stamp = _part(_part(message, "header"), "stamp")
     seconds = _part(stamp, "sec")
     if not isinstance(seconds, int):
@@ -197,7 +197,7 @@ def _numbers(message: Any, path: str, depth: int) -> Iterator[tuple[str, float]]
 
 
 def _channel(topic: str, name: str, column: _Column, first: int, several: bool, path: str) -> Channel:
-    """Channel of a column; where several topics tell joint states, the topic stands before the joint."""
+    """Channel of a column; where several topics have joint states, the topic is put before the joint."""
     axis = column.axis
     label = f"{topic}.{name}"
     if axis is not None:

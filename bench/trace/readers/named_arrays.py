@@ -2,13 +2,13 @@
 
 Arrays of samples are channels, scalars and texts metadata.
 
-In HDF5 a dataset is named by its path with dots, its unit stands in an attribute `unit` or `units`. MATLAB stores
-matrices transposed there and says the class of a variable in `MATLAB_class`; structs are groups (MathWorks, "MAT-File
+In HDF5 a dataset is named by its path with dots, its unit is in an attribute `unit` or `units`. MATLAB stores
+matrices transposed there and gives the class of a variable in `MATLAB_class`; structs are groups (MathWorks, "MAT-File
 Versions").
 
 The structure of older MAT files is checked first, for scipy trusts its type codes and crashes the process on damaged
 ones. MAT-File Format (MathWorks, version 5): after a header of 128 bytes come elements, each a tag of type and length
-and then data; a matrix is an element made of elements: flags, dimensions, name, and data according to its class. They
+and then data; a matrix is an element of elements: flags, dimensions, name, and data according to its class. They
 carry no units.
 """
 
@@ -31,7 +31,7 @@ from bench.trace.channel import Channel, Recording
 from bench.trace.readers.containers import library, reading
 from bench.trace.source import FileFormat, Source
 
-#: Signals that a matrix may hold, beside its samples.
+#: Signals that a matrix may have, in addition to its samples.
 MOST_SIGNALS = 1000
 
 _NPY, _ZIP = b"\x93NUMPY", b"PK\x03\x04"
@@ -128,7 +128,7 @@ def _read_numpy(source: Source) -> Recording:
 
 
 def _array(loaded: np.lib.npyio.NpzFile, name: str) -> np.ndarray:
-    """An array of a zip; an empty one where it holds Python objects, which are not loaded, or another file."""
+    """An array of a zip; an empty one where it has Python objects, which are not loaded, or another file."""
     try:
         value = loaded[name]
     except ValueError as error:

@@ -1,8 +1,8 @@
 """Reader of tables in text, however they are laid out: one line of numbers per sample, and mostly names above them.
 
-The samples tell the layout: of the separators, the one that cuts the most numbers out of the last lines of the head.
-The first line that is like them begins the samples; above it stand, in this order and each if at all, a preamble, the
-header and a row of units.
+The samples determine the layout: of the separators, the one that cuts the most numbers out of the last lines of the
+head. The first line that is like them begins the samples; above it stand, in this order and each if at all, a
+preamble, the header and a row of units.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ HEAD, SHOWN, FEW = 1 << 18, 60, 8
 PROSE = 0.15
 #: Joints that take turns in the lines of a file, and the share of the lines in which they do.
 MOST_JOINTS, IN_TURN = 64, 0.9
-#: Of the kinds of columns; `list` is one of numbers; `exact` are epochs in ns with more digits than a float holds, and
+#: Of the kinds of columns; `list` is one of numbers; `exact` are epochs in ns with more digits than a float has, and
 #: seconds to the ns.
 TYPES = {"number": pa.float64(), "exact": pa.decimal128(30, 9), "text": pa.string(), "list": pa.string()}
 
@@ -70,8 +70,8 @@ class TableLayout:
         labels: of the columns, with their units.
         separator, decimal: characters between columns and in numbers; BLANKS: any run of them.
         start: line of the first samples, counted from 0.
-        kinds: of each column: `number`, `exact` (instants of more digits than a float holds), `text`.
-        head: lines above the samples, which a recorder that starts anew writes again.
+        kinds: of each column: `number`, `exact` (instants of more digits than a float has), `text`.
+        head: lines above the samples, which a recorder that starts again writes again.
     """
 
     labels: tuple[str, ...]
@@ -220,7 +220,7 @@ def _with_own_times(channels: Sequence[Channel]) -> tuple[tuple[Channel, ...], t
 def _of_joints(table: pa.Table, layout: TableLayout, path: str) -> tuple[Channel, ...] | None:
     """Channels of joints that take turns in the lines, `joint.column` or `joint`, with times of their own; else None.
 
-    A column of texts, or of such a name, tells the joint of each line.
+    A column of texts, or of such a name, names the joint of each line.
     """
     columns = list(zip(layout.labels, table.columns, layout.kinds, strict=True))
     for label, column, kind in columns:
@@ -289,7 +289,7 @@ def _arrow_table(text: bytes, kinds: Sequence[pa.DataType], layout: TableLayout,
 
 
 def parsed(text: bytes, line: int, layout: TableLayout, path: str) -> tuple[pa.Table, int | None, tuple[str, ...]]:
-    """Columns as their kinds say, all as text where a cell is not as its kind; and what the user should know.
+    """Columns by their kinds, all as text where a cell is not as its kind; and what the user should know.
 
     Between them the line of the first row, None where not every line from there on is a row; raises as `read_lines`.
     """
@@ -354,7 +354,7 @@ def _filled_rows(table: pa.Table) -> np.ndarray:
 
 
 def channel_of_cells(label: str, column: pa.ChunkedArray, decimal: str, path: str, line: int | None) -> Channel:
-    """Channel of a column as `parsed` returns it; a defect where it holds a cell that is no number."""
+    """Channel of a column as `parsed` returns it; a defect where it has a cell that is no number."""
     channel = Channel(*split_label(label), np.empty(0), path, line=line)
     if pa.types.is_string(column.type):
         return _of_text(channel, column, decimal)
@@ -467,7 +467,7 @@ def _one_blank(line: str) -> str:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell holds a number in any of the usual ways of writing one."""
+    """Whether a cell is a number in any of the usual ways of writing one."""
     return _NUMBER.fullmatch(cell) is not None or cell.lower() in _WORDS
 
 

@@ -1,10 +1,10 @@
 """Reader of TwinCAT Scope CSV: a header table keyed by its first cell, then columns of times and values.
 
-The row of names tells the layout: each cell `Name` stands over a time column, and the cells up to the next one over the
-channels sampled by it. Times are ms from the start, or Windows FILETIME. Separator (tab, semicolon, comma) and decimal
-mark depend on the export's settings. Channels end at different rows, and cells may be empty where a channel is sampled
-more slowly; `EOF` may close the file. An option of the export scales values before it, and the file does not tell
-whether that was done: where the header names a scaling, the unit is open (Beckhoff TE13xx, Export in csv).
+The row of names determines the layout: each cell `Name` is over a time column, and the cells up to the next one over
+the channels sampled by it. Times are ms from the start, or Windows FILETIME. Separator (tab, semicolon, comma) and
+decimal mark depend on the export's settings. Channels end at different rows, and cells may be empty where a channel is
+sampled more slowly; `EOF` may close the file. An option of the export scales values before it, and the file does not
+state whether that was done: where the header names a scaling, the unit is open (Beckhoff TE13xx, Export in csv).
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def _split(source: Source, separator: str) -> tuple[list[list[str]], list[bytes]
     rows = source.content.split(b"\n")
     for number, row in enumerate(rows):
         cells = [cell.strip() for cell in decode(row).split(separator)]
-        # the first time column may have ended or not begun: its cells are empty, yet the row holds numbers
+        # the first time column may have ended or not begun: its cells are empty, yet the row has numbers
         if any(_NUMBER.match(cell) for cell in cells) and (not cells[0] or _NUMBER.match(cells[0])):
             return header, rows[number:], number + 1
         if any(cells):

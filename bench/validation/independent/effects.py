@@ -79,7 +79,8 @@ class Effect(ABC):
     on_linear_axis: ClassVar[bool] = True
     #: Whether its resisting torque is one of a load that a gear transmits.
     transmitted: ClassVar[bool] = False
-    #: Name of the effect that no axis has beside it, or that no recording tells from it; one of the two says so.
+    #: Name of the effect that no axis has together with it, or that no recording distinguishes from it; one of the two
+    #: names it.
     never_beside: ClassVar[str] = ""
 
     def __init_subclass__(cls) -> None:
@@ -97,7 +98,7 @@ class Effect(ABC):
     @classmethod
     @abstractmethod
     def draw(cls, axis: Axis, severity: float, rng: np.random.Generator, duration: float) -> Self:
-        """An effect of this kind, as strong as `severity` (1: drastic) says, for a recording of `duration` - s."""
+        """An effect of this kind, as strong as by `severity` (1: drastic), for a recording of `duration` - s."""
 
     def quantities(self, axis: Axis) -> dict[str, float]:
         """Values of the quantities that the contract's effect of this name has."""
@@ -110,7 +111,7 @@ def phase(rng: np.random.Generator) -> float:
 
 
 def about(severity: float, rng: np.random.Generator) -> float:
-    """Severity with some spread, so that it does not tell the parameter."""
+    """Severity with some spread, so that it does not reveal the parameter."""
     return float(severity * rng.uniform(0.8, 1.25))
 
 

@@ -94,7 +94,7 @@ def move(
 
 
 class Plant:
-    """Axes with their effects. `demand` in, motion out; nothing here knows of a drive.
+    """Axes with their effects. `demand` in, motion out; nothing here depends on a drive.
 
     The step is drift, kick, drift: position-dependent torques act at the position half a step on, which makes the
     undamped axis symplectic and the whole second order; speed-dependent ones use the speed extrapolated to there. The

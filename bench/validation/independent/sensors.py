@@ -1,4 +1,4 @@
-"""What recording electronics add to the truth: noise, quantisation, hum, sampling."""
+"""What recording electronics add to the truth: noise, quantisation, mains interference, sampling."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Noise:
     Attributes:
         white: standard deviation - unit of the signal.
         coloured, correlation_time: standard deviation of a first-order Markov process and its time - unit, s.
-        hum, hum_frequency, hum_phase: amplitude of mains pick-up - unit, Hz, rad.
+        Amplitude of mains pick-up - unit, Hz, rad.
         resolution: the signal is rounded to multiples of it - unit.
     """
 
@@ -31,7 +31,7 @@ class Noise:
 
     @property
     def kind(self) -> str:
-        """hum, coarse, coloured or white: what it is beside white, if anything."""
+        """The kind of noise in addition to white, if any."""
         return "hum" if self.hum else "coarse" if self.resolution else "coloured" if self.coloured else "white"
 
 

@@ -36,7 +36,7 @@ class Drive:
         return np.where(free, demand, np.sign(demand) * axes.peak_current)
 
 
-#: What it leaves of the current is 2e-5 of its peak at most, with any effect of the catalogue but contacts and limits,
+#: Its share of the current is 2e-5 of its peak at most, with any effect of the catalogue but contacts and limits,
 #: after which runs part at any step (`tests/independent/test_step.py`) - s.
 LONGEST_STEP = 62.5e-6
 SIDE_BY_SIDE = 400
