@@ -36,14 +36,10 @@ def embedded() -> dict[str, Any]:
     return read_toml(LAB, "a rig file")
 
 
-def simulated_with(rig: Rig, **truth: float | str) -> Rig:
-    """The same axis with other true values, names as in `[simulation]`, SI; InputError where it cannot be simulated."""
-    return rig.model_copy(update={"simulation": rig.simulated.model_copy(update=truth)})
-
-
 def without_friction(rig: Rig) -> Rig:
-    """The same simulated axis with neither viscous nor Coulomb friction."""
-    return simulated_with(rig, viscous_friction_coefficient=0.0, coulomb_friction=0.0)
+    """The same simulated axis with neither viscous nor Coulomb friction; InputError where it cannot be simulated."""
+    none = {"viscous_friction_coefficient": 0.0, "coulomb_friction": 0.0}
+    return rig.model_copy(update={"simulation": rig.simulated.model_copy(update=none)})
 
 
 def torque_constant(rig: Rig) -> TorqueConstant:

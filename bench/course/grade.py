@@ -241,16 +241,12 @@ def write_grades(graded: GradedClass, out: Path) -> list[Path]:
 
 def class_document(graded: GradedClass) -> Document:
     """All students: what is right, what is wrong by how much, which mistakes; whose form is missing or not read."""
-    rows = []
-    for one in graded.students:
-        wrong = ", ".join(f"{answer.question.name} {answer.off}".strip() for answer in one.wrong)
-        rows.append((one.student, one.score, wrong, ", ".join(one.mistakes)))
     blocks: list[AnyPart] = []
     if graded.missing:
         blocks.append(Paragraph(text=f"No submission of: {', '.join(graded.missing)}."))
     if graded.unread:
         blocks.append(Points(items=tuple(map(str, graded.unread))))
-    blocks.append(table("Answers", ("student", "right", "wrong~", "mistakes~"), rows))
+    blocks.append(grades_table(graded))
     blocks.append(neighbours({one.page: f"student {one.student}" for one in graded.students}))
     return Document(
         title=TITLE,
@@ -298,10 +294,9 @@ def sheet_csv(graded: GradedClass) -> str:
 
 
 def grades_table(graded: GradedClass) -> Table:
-    """A row a student: answers that are right, and mistakes."""
+    """A row a student: how many answers are right, which are wrong and by how much, and known mistakes."""
     rows = []
     for one in graded.students:
-        unknown = ", ".join(answer.question.name for answer in one.wrong if not answer.mistake)
-        words = [*one.mistakes, *([f"wrong, not known why: {unknown}"] if unknown else [])]
-        rows.append((one.student, one.score, "; ".join(words)))
-    return table("Grades", ("student", "right", "mistakes~"), rows)
+        wrong = ", ".join(f"{answer.question.name} {answer.off}".strip() for answer in one.wrong)
+        rows.append((one.student, one.score, wrong, ", ".join(one.mistakes)))
+    return table("Grades", ("student", "right", "wrong~", "mistakes~"), rows)

@@ -202,7 +202,7 @@ def task_section(result: TaskResult) -> Section:
         return section(key, heading, Paragraph(text=f"Not done: {result.reason}"), *result.charts)
     solved = [f"{result.equation.text}{EQUATION}{result.equation.number}"] if result.equation else []
     said = (Paragraph(text=text) for text in (*solved, *result.findings))
-    numbers = _numbers_table(f"{heading}: numbers", result.numbers)
+    numbers = _numbers_table(f"Numbers of {heading.split(':')[0].lower()}", result.numbers)
     return section(key, heading, *said, *result.tables, numbers, *map(thinned, result.charts))
 
 

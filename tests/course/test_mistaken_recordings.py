@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from bench.assets import asset
+from bench.course import report as course_report
 from tests.course import mistakes
 from tests.course.mistakes import (
     BARE,
@@ -29,6 +30,13 @@ DRAWN = np.random.default_rng(25).choice(list(MISTAKES), COUNT)
 CASES = [(mistake, 0) for mistake in BEYOND_MENDING | MISTAKES]
 MORE = [*((mistake, 1) for mistake in BEYOND_MENDING), *((mistake, seed) for seed, mistake in enumerate(DRAWN, 1))]
 CASES += [pytest.param(*case, marks=pytest.mark.slow) for case in MORE]
+
+
+@pytest.fixture(autouse=True)
+def numbers_alone(monkeypatch):
+    """Neither PDF nor sources, which other tests read."""
+    monkeypatch.setattr(course_report, "no_typst", lambda: "left out")
+    monkeypatch.setattr(course_report, "write_sources", lambda *arguments: [])
 
 
 @pytest.fixture(scope="module")
@@ -66,10 +74,10 @@ def test_no_wrong_number_is_done(mistake, seed, recorded, truth, quick, tmp_path
         ((mistakes.the_same_file_twice, mistakes.scale_of_the_current), 1),
         ((mistakes.hole, mistakes.milliamperes_as_amperes), 1),
         ((mistakes.late, mistakes.columns_swapped), 1),
-        ((mistakes.columns_swapped, mistakes.amperes_as_milliamperes), 1),
+        pytest.param((mistakes.columns_swapped, mistakes.amperes_as_milliamperes), 1, marks=pytest.mark.slow),
         ((mistakes.files_swapped, mistakes.two_at_once), 1),
-        ((mistakes.the_same_file_twice, mistakes.peak_for_rms), 2),
-        ((mistakes.two_at_once, mistakes.sign), 1),
+        pytest.param((mistakes.the_same_file_twice, mistakes.peak_for_rms), 2, marks=pytest.mark.slow),
+        pytest.param((mistakes.two_at_once, mistakes.sign), 1, marks=pytest.mark.slow),
     ],
     ids=lambda value: " and ".join(one.__name__ for one in value) if isinstance(value, tuple) else "",
 )

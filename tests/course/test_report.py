@@ -23,7 +23,7 @@ from bench.errors import InputError
 from bench.report.document import Picture
 from bench.report.figures import drawn
 from bench.report.html import html
-from bench.report.terminal import rendered
+from bench.report.terminal import in_full, rendered
 from tests import command
 
 #: Labels of axes that the course asks for.
@@ -371,7 +371,8 @@ def test_the_advice_keeps_its_brackets_on_the_terminal():
 @pytest.mark.parametrize("width", [60, 80, 120])
 def test_no_number_of_a_task_is_cut_on_a_terminal(done, width):
     table = course_table([*done.values()])
-    shown = rendered(table, width).plain
+    with in_full():
+        shown = rendered(table, width).plain
     assert max(map(len, shown.splitlines())) <= width
     words = {word for row in table.rows for cell in row for word in cell.split(" ") if word}
     assert words <= set(re.split(r"[ \n]+", shown))
