@@ -116,7 +116,7 @@ def _scale(runs: Mapping[str, LabRun], rig: Rig) -> Iterator[Mistake]:
     if FASTEST in runs and peak is not None and (largest := float(runs[FASTEST].current.max())) > 0.0:
         factor = largest / peak / 1e3 ** round(math.log10(largest / peak) / 3.0)
         if 1.0 / SCALE < factor < SCALE and not FULL_CURRENT < factor < LARGEST_CURRENT:
-            words = f"the current is {factor:.3g} times what the drive's limit says: correct its scale"
+            words = f"the current is {factor:.3g} times the drive's limit: correct its scale"
             yield Mistake(kind="amplitude", words=words, undo=scaled(current=1.0 / factor))
 
 

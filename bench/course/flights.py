@@ -106,7 +106,7 @@ def read_flights(path: Path) -> Flights:
     notes: list[str] = []
     for name, content in _files(path):
         if _ABOUT.fullmatch(Path(name).stem):
-            notes.append(f"{Path(name).name} passed over, as its name says that it holds no flight.")
+            notes.append(f"{Path(name).name} passed over, as its name is that of a note.")
             continue
         found, has_units = (_of_mat if name.lower().endswith(".mat") else _of_text)(content, name)
         farthest = max(float(np.ptp(flight, axis=0).max()) for flight in found)

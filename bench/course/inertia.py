@@ -114,7 +114,7 @@ def load_inertia(
     rig, sources = recordings.rig, recordings.sources
     rotor, theory = rig.motor.rotor_inertia, rig.load.disk_inertia if rig.load else None
     if rotor is None:
-        return [], [f"J_load = J - J_motor is left open: {rig.source} gives no motor.rotor_inertia."]
+        return [], [f"J_load = J - J_motor is undetermined: {rig.source} gives no motor.rotor_inertia."]
     load, source = inertia - rotor, sources("motor", "rotor_inertia")
     true_load = None if true is None else true - rotor * KG_CM2
     numbers = [

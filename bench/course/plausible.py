@@ -147,7 +147,7 @@ def _of_signals(run: LabRun, rig: Rig) -> Iterator[str]:
             k = int(alone[0])
             which = f"one of {alone.size} samples" if alone.size > 1 else "a sample"
             where = f"{values[k]:.4g} {unit} at {run.time[k]:.4g} s"
-            yield f"{which} of the {signal}, {where}, stands alone, far from those beside it"
+            yield f"{which} of the {signal}, {where}, is isolated, far from its neighbours"
 
 
 def _of_balance(name: str, run: LabRun, rig: Rig) -> Iterator[str]:
@@ -169,7 +169,7 @@ def _of_balance(name: str, run: LabRun, rig: Rig) -> Iterator[str]:
     if abs(found.late) > LATE:
         yield f"its torque comes {found.late:+.1f} samples after the acceleration that it makes"
     if found.left > LEFT:
-        yield f"inertia and friction leave {found.left:.0%} of its torque unexplained, noise alone is below {LEFT:.0%}"
+        yield f"inertia and friction do not explain {found.left:.0%} of its torque; noise alone is below {LEFT:.0%}"
     friction = found.coulomb / found.torque
     if name == WITHOUT_FRICTION and friction > FRICTION:
         yield f"it shows friction, {found.coulomb:.3g} N*m, which was to be switched off"
