@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from copy import copy
+from operator import attrgetter
 
 import mujoco
 import numpy as np
 from mujoco import rollout
+from mujoco.batch import MODEL_FIELDS, Batch
 
 from bench.arrays import Array
 from bench.effects.mjcf import AXIS, BRISTLE_LEVELS, BRISTLES, DRIVE
@@ -23,6 +25,8 @@ Progress = Callable[[float], None]
 
 #: Bytes of inputs and states that a simulation keeps at once, however long it is.
 BLOCK_BYTES = 8 * 2**20
+#: Loops that take no more time side by side than one after the other.
+MANY = 3
 #: Ticks between two reports of progress.
 REPORT_EVERY = 1000
 
@@ -52,12 +56,28 @@ def run(plant: Plant, references: References, progress: Progress | None = None) 
 
 
 def run_loops(loops: Sequence[ClosedLoop]) -> list[States]:
-    """Motion of each loop at its own ticks, nan where it diverged; native ones run on all cores."""
-    native = [loop for loop in loops if loop.native]
+    """Motion of each loop of planned inputs, a step a tick, nan where it diverged.
+
+    Native ones run on all cores, others of the same effects and ticks side by side.
+    """
+    groups: dict[Hashable, list[int]] = {}
+    for index, loop in enumerate(loops):
+        names = (tuple(present.name for present in those) for those in (loop.axis.native, loop.axis.ticked))
+        groups.setdefault(loop.native or (loop.ticks, loop.every, loop.compiled.opt.timestep, *names), []).append(index)
+    found: dict[int, States] = {}
     with silenced():
+        for indices in groups.values():
+            group = [loops[index] for index in indices]
+            found |= zip(indices, _run_alike(group), strict=True)
+    return [found[index] for index in range(len(loops))]
+
+
+def _run_alike(loops: Sequence[ClosedLoop]) -> Iterable[States]:
+    """Those of one group."""
+    if loops[0].native:
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            found = pool.map(run_native, native)
-        return [next(found) if loop.native else run_ticked(loop) for loop in loops]
+            return list(pool.map(run_native, loops))
+    return run_side_by_side(loops) if len(loops) >= MANY else map(run_ticked, loops)
 
 
 def run_native(loop: ClosedLoop) -> States:
@@ -107,6 +127,51 @@ def run_ticked(loop: ClosedLoop, progress: Progress | None = None) -> States:
     return States(loop.time[::every], *recorded)
 
 
+def run_side_by_side(loops: Sequence[ClosedLoop]) -> list[States]:
+    """The same of loops with planned inputs, the same effects and the same ticks, all of them in each step."""
+    first, batch = loops[0], _batch_of(loops)
+    model, every = first.compiled, first.every
+    joint, actuator, half = model.joint(AXIS), model.actuator(DRIVE).id, model.opt.timestep / 2.0
+    dof, inputs = int(joint.dofadr[0]), slice(model.actuator_ctrladr[actuator], None)
+    position, velocity = batch.bind("qpos")[:, joint.qposadr[0]], batch.bind("qvel")[:, dof]
+    applied, setpoints = batch.bind("qfrc_applied")[:, dof], batch.bind("ctrl")[:, inputs]
+    effort = setpoints[:, model.actuator_ctrlnum[actuator] - 1]
+    bristles = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, BRISTLES)
+    level, armature = batch.expand("dof_frictionloss")[:, dof : dof + 1], batch.expand("dof_armature")[:, dof]
+    if bristles >= 0:
+        level = batch.expand("actuator_biasprm")[:, bristles, BRISTLE_LEVELS]
+    start, velocity[:], since, began = np.array([(o.position, o.velocity, o.since, o.began) for o in loops]).T
+    position[:], bare = start + half * velocity, armature.copy()
+    effects = SteppedEffects([loop.axis for loop in loops], model.opt.timestep, bristles >= 0)
+    memory, found = effects.start(velocity.copy()), np.empty((4, -(-first.ticks // every), len(loops)))
+    controllers = [loop.controller for loop in loops if not isinstance(loop.controller, FollowReferences)]
+    for k, planned in enumerate(_planned(controllers, first.ticks)):
+        here, speed, motor = position.copy(), velocity.copy(), planned[:, -2]
+        acts = effects.act(memory, since + first.time[k], here, speed, motor, began)
+        flows, acting, applied[:], friction, inertia, memory = acts
+        if friction is not None:
+            level[:] = friction[:, None]
+        if inertia is not None:
+            armature[:] = bare + inertia
+        setpoints[:, : planned.shape[1] - 2], effort[:] = planned[:, :-2], acting - planned[:, -1]
+        batch.step()
+        if k % every == 0:
+            found[:, k // every] = here - half * speed, speed, flows, acting
+    found[:, :, batch.bind("time") < 2.0 * half * (first.ticks - 0.5)] = np.nan
+    return [States(first.time[::every], *signals) for signals in found.transpose(2, 0, 1)]
+
+
+def _batch_of(loops: Sequence[ClosedLoop]) -> Batch:
+    """Simulations of the models of loops, which differ in numbers alone."""
+    models = [loop.compiled for loop in loops]
+    batch = Batch(models[0], len(models), 1)
+    for name in MODEL_FIELDS if any(model is not models[0] for model in models) else ():
+        values = [*map(attrgetter(name), models)]
+        if any(not np.array_equal(value, values[0]) for value in values):
+            batch.expand(name)[:] = values
+    return batch
+
+
 class _TickedAxis:
     """An axis that goes on tick by tick.
 
@@ -131,7 +196,7 @@ class _TickedAxis:
         if isinstance(loop.controller, FollowReferences):
             self._drive, self._planned = CascadeDrive(loop.controller, loop.axis), iter(())
         else:
-            self._drive, self._planned = None, _planned(loop.controller, loop.ticks)
+            self._drive, self._planned = None, _planned([loop.controller], loop.ticks)
         self._since, self._began = loop.since, loop.began
         self._effects = None if loop.axis.all_native else SteppedEffects([loop.axis], self._step, bristles >= 0)
         self._memory = self._effects and self._effects.start(loop.velocity)
@@ -145,7 +210,7 @@ class _TickedAxis:
         here, velocity = self._position.item(0), self._velocity.item(0)
         position, known = here - self._step / 2.0 * velocity, 0.0
         if self._drive is None:
-            self._setpoints[:], motor, known = next(self._planned)
+            *self._setpoints[:], motor, known = next(self._planned)[0].tolist()
             setpoint = motor
         else:
             setpoint, motor = self._drive.tick(k, position, velocity)
@@ -173,11 +238,10 @@ class _TickedAxis:
         return flows, acting
 
 
-def _planned(controller: PlannedInputs, ticks: int) -> Iterator[tuple[Array, float, float]]:
-    """Planned set-points, effort and known torque at each tick."""
-    for start, stop in _blocks(ticks, 64):
-        inputs = controller(start, stop)
-        yield from zip(inputs[:, :-2], inputs[:, -2].tolist(), inputs[:, -1].tolist(), strict=True)
+def _planned(controllers: Sequence[PlannedInputs], ticks: int) -> Iterator[Array]:
+    """Planned set-points, effort and known torque of loops (loops, inputs) at each tick."""
+    for start, stop in _blocks(ticks, 64 * len(controllers)):
+        yield from np.stack([planned(start, stop) for planned in controllers], axis=1)
 
 
 def _blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:

@@ -9,7 +9,7 @@ from bench.effects.present import Present
 from bench.errors import InputError, SimulationError
 from bench.plant.drive import Cascade
 from bench.plant.plant import Plant
-from bench.plant.run import run, run_loops, run_native, run_ticked
+from bench.plant.run import MANY, run, run_loops, run_native, run_ticked
 from tests.plant.test_drive import reversals
 
 
@@ -22,6 +22,33 @@ def test_native_and_ticked_loops_run_in_one_call(plant):
     expected = run_native(planned), run_ticked(rising), run_native(planned)
     for states, alone in zip(run_loops([planned, rising, planned]), expected, strict=True):
         np.testing.assert_array_equal(states.velocity, alone.velocity)
+
+
+def test_loops_side_by_side_move_as_each_alone_to_the_last_bit(plant):
+    """Of models that differ in all their numbers: friction in numbers, inertia over position, bristles, a spring."""
+    references, loops = reversals(duration=0.2), []
+    for k in range(MANY):
+        effects = [
+            Present.of("stribeck_friction", {"static_friction": 0.2 + 0.1 * k, "stribeck_velocity": 1.0 + k}),
+            Present.of(
+                "position_dependent_inertia", {"relative_amplitude": 0.1 * (1 + k), "harmonic": 1.0, "phase": 0.3 * k}
+            ),
+            Present.of("presliding_friction", {"bristle_stiffness": 50.0 + 9.0 * k, "bristle_damping": 0.02}),
+            Present.of("torsion_spring", {"stiffness": 0.1 * k, "reference": 0.2}),
+        ]
+        loops.append(dataclasses.replace(plant, axis=plant.axis.with_effects(effects)).native_loop(references))
+    for alone, beside in zip(map(run_ticked, loops), run_loops(loops), strict=True):
+        np.testing.assert_array_equal(np.stack(alone.signals), np.stack(beside.signals))
+    assert len({states.velocity[-1] for states in run_loops(loops)}) == MANY
+
+
+def test_one_that_diverges_leaves_those_beside_it(plant):
+    references, loops = reversals(duration=0.2), []
+    for pull in (0.1, 1e12, 0.2):
+        stribeck = Present.of("stribeck_friction", {"static_friction": 0.2, "stribeck_velocity": 1.0})
+        effects = [stribeck, Present.of("unbalance", {"amplitude": pull, "phase": 0.0})]
+        loops.append(dataclasses.replace(plant, axis=plant.axis.with_effects(effects)).native_loop(references))
+    assert [one.diverged for one in run_loops(loops)] == [False, True, False]
 
 
 def test_runs_again_the_same(plant):
