@@ -83,7 +83,6 @@ def robot(
             doc.file(JSON, "all results as numbers", robot_json(found, provenance) + "\n"),
         )
         sections.append(doc.section("model", "The model", doc.points(took), files, detail=True))
-    warnings = (f"{name}: {warning}" for name, joint in found.joints.items() for warning in joint.warnings)
     return doc.Document(
         title=title,
         subject=f"Joints of {title}",
@@ -92,8 +91,21 @@ def robot(
         answers={},
         sections=tuple(sections),
         origin=origin(provenance),
-        warnings=(*found.warnings, *warnings),
+        warnings=(*found.warnings, *_of_joints(found)),
     )
+
+
+def _of_joints(found: IdentifiedRobot) -> list[str]:
+    """Warnings of the joints, each once with the names of those that it concerns."""
+    concerned: dict[str, list[str]] = {}
+    for name, joint in found.joints.items():
+        for warning in joint.warnings:
+            concerned.setdefault(warning, []).append(name)
+    every = len(found.joints)
+    return [
+        f"{'all joints' if len(names) == every > 1 else ', '.join(names)}: {warning}"
+        for warning, names in concerned.items()
+    ]
 
 
 def _settled(found: IdentifiedRobot) -> int:
