@@ -123,7 +123,7 @@ ELSEWHERE = {
 
 def brief(line):
     """Monte Carlo with two recordings in the place of many; a draft is not written over the rig of the next command."""
-    return re.sub(r"--rigs \d+", "--rigs 2", line).replace("--draft rig.toml", "--draft draft.toml")
+    return re.sub(r"--rigs \d+", "--rigs 2 --workers 1", line).replace("--draft rig.toml", "--draft draft.toml")
 
 
 @pytest.mark.parametrize(

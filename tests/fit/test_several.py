@@ -168,7 +168,7 @@ def drawn(rng):
     return Truth(*values)
 
 
-@pytest.mark.parametrize("count", [2, 4])
+@pytest.mark.parametrize("count", [2, pytest.param(4, marks=pytest.mark.slow)])
 def test_the_next_recording_lies_where_it_was_expected_and_the_axis_in_the_joint_interval(count):
     rng, next_one, mean, narrow = np.random.default_rng(9), [], [], []
     for _ in range(100):
