@@ -38,7 +38,7 @@ LINES = (
     "check own.csv.gz --rig rig.toml --baseline axis.toml --update --without-names",
     "check other.csv.gz --rig rig.toml --baseline axis.toml",
     "friction run1.csv.gz --rig rig.toml",
-    "validate --rigs 2 --workers 1",
+    "validate --rigs 1 --workers 1",
     "fleet fleet.csv --out fleet --workers 1",
     "export found/model.toml --to drive --rig lab.toml --out tables --profile fast_reversals",
     "plan --rig lab.toml --out motion.csv",

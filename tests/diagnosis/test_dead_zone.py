@@ -35,7 +35,7 @@ BESIDE = {
 
 
 #: Gaps, and what is beside them, of the tests that are not slow: recorded together.
-USUAL = [(GAPS[1], ()), (GAPS[2], ()), (0.02, (BESIDE[0.02],))]
+USUAL = [(GAPS[2], ()), (0.02, (BESIDE[0.02],))]
 
 
 def recorded(wide, *beside):
@@ -46,9 +46,7 @@ def recorded(wide, *beside):
     return QUIET.record(effects, motion, SEED, dict.fromkeys(cases, 0))[wide, beside]
 
 
-@pytest.mark.parametrize(
-    "wide", [*GAPS[1:3], *(pytest.param(one, marks=pytest.mark.slow) for one in GAPS[:1] + GAPS[3:])]
-)
+@pytest.mark.parametrize("wide", [GAPS[2], *(pytest.param(one, marks=pytest.mark.slow) for one in GAPS[:2] + GAPS[3:])])
 def test_a_gap_is_found(wide):
     bare = fit_bare(Rows.of(recorded(wide), QUIET.rig))
     way = bare.scope.rms_speed * bare.scope.width

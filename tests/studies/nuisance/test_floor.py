@@ -17,7 +17,7 @@ CASES = (
 @pytest.fixture(scope="module")
 def scores(tmp_path_factory):
     drawn = [case for case in draw(1, 2) if case.name in CASES]
-    found = scored(tmp_path_factory.mktemp("nuisance"), drawn, jobs=2, show=False)
+    found = scored(tmp_path_factory.mktemp("nuisance"), drawn, jobs=1, show=False)
     print(f"\n{not_right(found)}")  # pytest -s
     return found
 
