@@ -1,15 +1,17 @@
 """Probabilities of sets of names, by hand: sums, what is chosen, what else it may be."""
 
 import math
-from types import SimpleNamespace
+from dataclasses import replace
 
 import pytest
 
-from bench.diagnosis import probability
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.probability import DETECTED, Contender, Probabilities, probabilities, weighed
 from bench.effects.rivals import RIVALS
-from bench.fit.hypothesis import Term
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Hypothesis, Term
+from bench.fit.rows import Rows
+from tests.diagnosis.constructed import RIG, moved, recorded
 from tests.diagnosis.hand_made import level, made, term
 
 SPRING, COGGING = term("torsion_spring"), term("cogging_torque", 6.0)
@@ -84,26 +86,28 @@ def test_what_no_catalogue_holds_gets_no_name():
     assert found.none > 0.99
 
 
-@pytest.mark.parametrize(("without", "counts"), [(2.1, 1.0), (1.9, 0.0)])
-def test_a_name_counts_that_what_no_catalogue_holds_cannot_make_up_for(monkeypatch, without, counts):
-    """The spring is in both sets, and as likely as both if without it twice as much is left beside the other one."""
+@pytest.mark.parametrize(("times", "counts"), [(1.01, 1.0), (0.99, 0.0)])
+def test_a_name_counts_that_what_no_catalogue_holds_cannot_make_up_for(times, counts):
+    """The spring is in both sets, and as likely as both if without it enough is left beside the other one."""
+    rows = Rows.of(recorded(moved(2.0), lambda motion: 0.01 * motion.position), RIG)
+    both, alone = (fit(rows, Hypothesis(terms)) for terms in ((SPRING, OUTSIDE), (OUTSIDE,)))
+    assert alone.chi > 1.2 * both.chi
+    policy = replace(POLICY, with_unknown=times * both.chi / alone.chi)
     weighs = POLICY.outside - POLICY.number
     every = [
         contender(0.0, 9.0),
         contender(-5.0, 0.0, COGGING, SPRING, numbers=3),
-        contender(-5.0, 0.0, SPRING, OUTSIDE, numbers=2, outside=True),
+        Contender(both, -5.0, 0.0, 0.0, 2, True),
     ]
-    less = SimpleNamespace(chi=without * every[-1].fitted.chi)
-    monkeypatch.setattr(probability, "fit", lambda rows, hypothesis, start=None: less)
-    found = probabilities(every, frozenset(), POLICY)
-    (both,) = (share for names, share in found.sets.items() if names)
-    beside = counts * both * math.exp(-weighs)
-    assert found.names == pytest.approx({"torsion_spring": both + beside, "cogging_torque": both}, rel=1e-6)
-    assert found.none == pytest.approx(1.0 - both, abs=1e-6)
+    found = probabilities(every, frozenset(), policy)
+    (chosen,) = (share for names, share in found.sets.items() if names)
+    beside = counts * chosen * math.exp(-weighs)
+    assert found.names == pytest.approx({"torsion_spring": chosen + beside, "cogging_torque": chosen}, rel=1e-6)
+    assert found.none == pytest.approx(1.0 - chosen, abs=1e-6)
     assert found.instead_of("torsion_spring") == pytest.approx({None: found.none - beside})
     assert found.instead_of("cogging_torque") == pytest.approx({None: found.none})
     left = found.without(frozenset({"torsion_spring"}))
-    assert left.names == pytest.approx({"cogging_torque": both})
+    assert left.names == pytest.approx({"cogging_torque": chosen})
 
 
 def test_sets_that_a_recording_cannot_tell_apart_count_as_one():
