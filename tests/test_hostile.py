@@ -12,6 +12,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from bench.bounds import Bounds, bounded
+from bench.cli import app
+from bench.cli.common import guarded
 from bench.course.flights import read_flights
 from bench.errors import InputError
 from bench.plant.mjcf_file import read_mjcf
@@ -241,13 +243,25 @@ def test_an_option_raises_the_bound_and_lowers_it(tmp_path):
             pass
 
 
-def test_a_fault_of_the_bench_is_never_taken_for_bad_input(monkeypatch):
-    def fails(*_):
-        raise TypeError("nobody\nforesaw \x1b[31m this")
+@contextlib.contextmanager
+def failing(fault):
+    """`bench` has a command that ends in a fault."""
 
-    monkeypatch.setattr("bench.trace.read.read_recording", fails)
+    def fails() -> None:
+        """Fail."""
+        raise fault
+
+    app.command("fails")(guarded(fails))
+    try:
+        yield
+    finally:
+        app.registered_commands.pop()
+
+
+def test_a_fault_of_the_bench_is_never_taken_for_bad_input():
     for more in ([], ["--debug"]):
-        status, _, err = bench("inspect", "x.csv", *more)
+        with failing(TypeError("nobody\nforesaw \x1b[31m this")):
+            status, _, err = bench("fails", *more)
         lines = err.splitlines()
         assert status == 70
         assert "a fault of the bench itself" in lines[-1] and "TypeError: nobody foresaw" in lines[-1]
@@ -256,12 +270,9 @@ def test_a_fault_of_the_bench_is_never_taken_for_bad_input(monkeypatch):
         assert ("--debug" in lines[-1]) is (not more)
 
 
-def test_out_of_memory_is_one_line(monkeypatch):
-    def fails(*_):
-        raise MemoryError
-
-    monkeypatch.setattr("bench.trace.read.read_recording", fails)
-    status, _, err = bench("inspect", "x.csv")
+def test_out_of_memory_is_one_line():
+    with failing(MemoryError()):
+        status, _, err = bench("fails")
     assert status == 70
     assert err == "bench: out of memory; give less at a time, or a machine with more\n"
 
