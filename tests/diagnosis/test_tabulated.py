@@ -19,6 +19,7 @@ from bench.report.diagnosis import diagnosis
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from tests.shared import SHARED, needs_shared
+from tests.sines import sines
 
 INERTIA, VISCOUS, COULOMB, PERIOD, NOISE = 2e-3, 1e-3, 0.05, 1e-3, 2e-3
 RIG = Rig.of({"name": "axis", "kind": "rotary"})
@@ -37,11 +38,7 @@ def stiff_speed(velocity):
 def recorded(extra, duration=20.0, seed=0):
     """A recording of the axis with an `extra` torque, of time, position and speed."""
     rng, time = np.random.default_rng(seed), PERIOD * np.arange(round(duration / PERIOD))
-    waves = [(2.2, 0.31, 0.3), (1.1, 0.83, 1.1), (0.35, 1.9, 2.0)]  # amplitude - rad -, frequency - Hz -, phase
-    angle = [(a, 2.0 * np.pi * f, 2.0 * np.pi * f * time + p) for a, f, p in waves]
-    position = np.sum([a * np.sin(at) for a, _, at in angle], axis=0)
-    velocity = np.sum([a * w * np.cos(at) for a, w, at in angle], axis=0)
-    acceleration = np.sum([-a * w**2 * np.sin(at) for a, w, at in angle], axis=0)
+    position, velocity, acceleration = sines(time, [(2.2, 0.31, 0.3), (1.1, 0.83, 1.1), (0.35, 1.9, 2.0)])
     torque = INERTIA * acceleration + VISCOUS * velocity + COULOMB * np.sign(velocity) + extra(time, position, velocity)
     signals = {
         "time [s]": time,

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tests.sines import sines
+
 MASS, LENGTH, GRAVITY = 2.0, 0.3, 9.81
 ARMATURE, VISCOUS, COULOMB = 0.25, 2.0, 1.5
 PERIOD, SECONDS, NOISE = 2e-3, 6.0, (2e-5, 3e-3, 0.02)
@@ -31,12 +33,7 @@ class Swung(NamedTuple):
 def swung(ahead: float = 0.0) -> Swung:
     """By Lagrange's equation of a pendulum, a time `ahead` - s."""
     time = PERIOD * np.arange(round(SECONDS / PERIOD)) + ahead
-    angle, speed, acceleration = np.zeros((3, time.size))
-    for size, frequency, phase in ((0.9, 0.4, 0.0), (0.35, 1.1, 1.0), (0.1, 2.3, 2.0)):
-        omega = 2.0 * np.pi * frequency
-        angle += size * np.sin(omega * time + phase)
-        speed += size * omega * np.cos(omega * time + phase)
-        acceleration -= size * omega**2 * np.sin(omega * time + phase)
+    angle, speed, acceleration = sines(time, [(0.9, 0.4, 0.0), (0.35, 1.1, 1.0), (0.1, 2.3, 2.0)])
     link = MASS * LENGTH**2 * acceleration + MASS * GRAVITY * LENGTH * np.sin(angle)
     return Swung(time, angle, speed, link, ARMATURE * acceleration + VISCOUS * speed + COULOMB * np.sign(speed))
 

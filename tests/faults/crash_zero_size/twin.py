@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.sines import sines
+
 MASS, LEVER, RADIUS = 0.17, 0.14, 0.001
 ARMATURE, VISCOUS, COULOMB, FOLLOWS = 0.0018, 0.008, 0.01, 0.15
 ROBOT = f"""<mujoco><option gravity="0 0 -9.81"/><worldbody><body name="l">
@@ -15,12 +17,7 @@ ROBOT = f"""<mujoco><option gravity="0 0 -9.81"/><worldbody><body name="l">
 
 def write(folder: Path) -> None:
     time = np.arange(0.0, 30.0, 0.005)
-    position, velocity, acceleration = np.zeros((3, time.size))
-    for amplitude, frequency, phase in ((1.0, 0.3, 0.0), (0.62, 1.1, 0.7), (0.33, 2.3, 2.1)):
-        omega = 2.0 * np.pi * frequency
-        position += amplitude * np.sin(omega * time + phase)
-        velocity += amplitude * omega * np.cos(omega * time + phase)
-        acceleration -= amplitude * omega**2 * np.sin(omega * time + phase)
+    position, velocity, acceleration = sines(time, [(1.0, 0.3, 0.0), (0.62, 1.1, 0.7), (0.33, 2.3, 2.1)])
     inertia = ARMATURE + MASS * (LEVER**2 + 0.4 * RADIUS**2)
     load = inertia * acceleration + VISCOUS * velocity + MASS * 9.81 * LEVER * np.sin(position)
     transmitted = load + COULOMB * np.sign(velocity)

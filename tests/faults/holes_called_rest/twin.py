@@ -4,15 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.sines import sines
+
 
 def write(folder: Path) -> None:
     time, rng = np.arange(0.0, 8.0, 0.005), np.random.default_rng(1)
-    position, velocity, acceleration = np.zeros((3, time.size))
-    for amplitude, frequency, phase in ((1.0, 0.3, 0.0), (0.6, 1.1, 0.7), (0.3, 2.3, 2.1)):
-        omega = 2.0 * np.pi * frequency
-        position += amplitude * np.sin(omega * time + phase)
-        velocity += amplitude * omega * np.cos(omega * time + phase)
-        acceleration -= amplitude * omega**2 * np.sin(omega * time + phase)
+    position, velocity, acceleration = sines(time, [(1.0, 0.3, 0.0), (0.6, 1.1, 0.7), (0.3, 2.3, 2.1)])
     torque = 0.005 * acceleration + 0.01 * velocity + 0.05 * np.sign(velocity) + 0.003 * rng.normal(size=time.size)
     columns = np.column_stack([time, position, velocity + 0.02 * rng.normal(size=time.size), torque])
     head = "time [s],position [rad],velocity [rad/s],torque [N*m]"

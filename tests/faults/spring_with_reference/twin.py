@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.sines import sines
+
 INERTIA, VISCOUS, COULOMB = 0.4, 1.2, 1.5
-#: Frequency - Hz -, amplitude - rad - and phase - rad - of the position's sines.
-SINES = (0.23, 0.6, 0.3), (0.61, 0.3, 1.1), (1.3, 0.12, 2.0)
+SINES = (0.6, 0.23, 0.3), (0.3, 0.61, 1.1), (0.12, 1.3, 2.0)
 TORQUES = {
     "spring": lambda position: 15.0 * (position - 0.3),
     "unbalance": lambda position: 6.0 * np.sin(position + 0.4),
@@ -19,10 +20,7 @@ TORQUES = {
 def write(folder: Path) -> None:
     """`spring.csv`, `unbalance.csv`, `offset.csv` and `rig.toml`."""
     time, rng = np.arange(0.0, 10.0, 2e-3), np.random.default_rng(5)
-    rates = [(2.0 * np.pi * frequency, amplitude, phase) for frequency, amplitude, phase in SINES]
-    position = sum(a * np.sin(r * time + p) for r, a, p in rates)
-    speed = sum(a * r * np.cos(r * time + p) for r, a, p in rates)
-    acceleration = sum(-a * r**2 * np.sin(r * time + p) for r, a, p in rates)
+    position, speed, acceleration = sines(time, SINES)
     bare = INERTIA * acceleration + VISCOUS * speed + COULOMB * np.sign(speed)
     header = "time [s],position [rad],velocity [rad/s],torque [N*m]"
     for name, torque_of in TORQUES.items():
