@@ -1,10 +1,12 @@
 """`bench lab`, run once for all tests that read its tasks, its report or what it prints."""
 
+import shutil
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 
+from bench.assets import asset
 from bench.course import course as course_module
 from bench.course import report as course_report
 from bench.course import tracking
@@ -43,6 +45,13 @@ def done(lab):
     missed = [task for task in lab.results if task.reason is not None]
     assert not missed, [f"{task.key}: {task.reason}" for task in missed]
     return {task.key: task for task in lab.results}
+
+
+def as_a_student_has_them(folder):
+    """The course's recordings and flights, without any truth beside them, in a folder that is made; the folder."""
+    return shutil.copytree(
+        asset("data", "traces"), folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("*truth.json")
+    )
 
 
 #: Tasks of which nothing depends on the folder but time: the simulation of the winding.

@@ -459,12 +459,22 @@ def test_what_fits_nothing_is_not_known(four, tmp_path):
     assert "1e+08 times" in (tmp_path / "out" / "grades.html").read_text(encoding="utf-8")
 
 
+def grade_texts(folder, known, forms):
+    """What the command prints of forms, by their names, of the students of a truth; grades are in `out`."""
+    (folder / "in").mkdir()
+    for name, text in forms.items():
+        (folder / "in" / name).write_text(text, encoding="utf-8")
+    truth = sealed(folder / "truth.json", known)
+    return bench("lab", "--grade", folder / "in", "--truth", truth, "--out", folder / "out")
+
+
+def a_form(student, rows="J,1,"):
+    return f"quantity,value,unit\nstudent,{student},\n{rows}\n"
+
+
 def test_two_forms_of_one_student_leave_the_others_alone(tmp_path, known):
-    (tmp_path / "in").mkdir()
-    for name, student in (("a", "07"), ("b", "7"), ("c", "08")):
-        (tmp_path / "in" / f"{name}.csv").write_text(f"quantity,value,unit\nstudent,{student},\nJ,1,\n")
-    truth = sealed(tmp_path / "truth.json", {**known, "08": known["07"]})
-    ended = bench("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
+    forms = {"a.csv": a_form("07"), "b.csv": a_form("7"), "c.csv": a_form("08")}
+    ended = grade_texts(tmp_path, {**known, "08": known["07"]}, forms)
     assert ended.status == 1
     assert "found 2 of student 07" in ended.err
     assert "08" in ended.out
@@ -555,11 +565,7 @@ def sealed(path, known):
     ],
 )
 def test_units_are_checked(tmp_path, known, rows, verdict, word):
-    (tmp_path / "in").mkdir()
-    (tmp_path / "in" / "a.csv").write_text(f"quantity,value,unit\nstudent,7,\n{rows}\n", encoding="utf-8")
-    truth = sealed(tmp_path / "truth.json", known)
-    status, _, _ = bench("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
-    assert status == 0
+    assert grade_texts(tmp_path, known, {"a.csv": a_form("7", rows)}).status == 0
     with (tmp_path / "out" / "grades.csv").open(encoding="utf-8") as file:
         found = {row["quantity"]: row["verdict"] for row in csv.DictReader(file)}
     assert found[rows.split(",")[0]] == verdict
@@ -569,22 +575,18 @@ def test_units_are_checked(tmp_path, known, rows, verdict, word):
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("a.csv", "quantity,value,unit\nstudent,7,\nJay,1,\n", ["line 3", "Jay", "not asked for"]),
-        ("a.csv", "quantity,value,unit\nstudent,7,\nJ,about 3,\n", ["line 3", "about 3"]),
+        ("a.csv", a_form("7", "Jay,1,"), ["line 3", "Jay", "not asked for"]),
+        ("a.csv", a_form("7", "J,about 3,"), ["line 3", "about 3"]),
         ("a.csv", "quantity,value,unit\nJ,3,\n", ["student", "missing"]),
-        ("a.csv", "quantity,value,unit\nstudent,99,\nJ,3,\n", ["99", "07"]),
-        ("a.csv", "quantity,value,unit\nstudent,7,\nJ,3,\nJ,4,\n", ["twice"]),
-        ("a.csv", "quantity,value,unit\nstudent,7,\nJ,22,4,kg*cm**2\n", ["line 3", "cells"]),
-        ("a.csv", "quantity,value,unit\nstudent,7,\nJ,1e999,\n", ["line 3", "1e999"]),
+        ("a.csv", a_form("99", "J,3,"), ["99", "07"]),
+        ("a.csv", a_form("7", "J,3,\nJ,4,"), ["twice"]),
+        ("a.csv", a_form("7", "J,22,4,kg*cm**2"), ["line 3", "cells"]),
+        ("a.csv", a_form("7", "J,1e999,"), ["line 3", "1e999"]),
         ("a.json", '{"student": "7", "answers": {"J": {"value": 1}, "J": {"value": 2}}}', ["'J'", "twice"]),
     ],
 )
 def test_a_bad_form_is_reported_and_the_others_are_graded(tmp_path, known, name, text, words):
-    (tmp_path / "in").mkdir()
-    (tmp_path / "in" / name).write_text(text)
-    (tmp_path / "in" / "good.csv").write_text("quantity,value,unit\nstudent,7,\nJ,1,\n")
-    truth = sealed(tmp_path / "truth.json", known)
-    status, out, err = bench("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
+    status, out, err = grade_texts(tmp_path, known, {name: text, "good.csv": a_form("7")})
     assert (status, err.count("\n")) == (1, 1)
     for word in words:
         assert word in err
@@ -608,12 +610,9 @@ def test_what_is_marked_by_hand_has_a_sheet_and_is_asked_for_in_the_form(four, t
 
 @pytest.mark.parametrize("name", ["7", "07", "student-07", "Student 7"])
 def test_a_student_is_called_by_the_number_or_as_the_own_folder(tmp_path, known, name):
-    (tmp_path / "in").mkdir()
-    (tmp_path / "in" / "a.csv").write_text(f"quantity,value,unit\nstudent,{name},\nJ,1,\n")
-    truth = sealed(tmp_path / "truth.json", known)
-    status, out, _ = bench("lab", "--grade", tmp_path / "in", "--truth", truth, "--out", tmp_path / "out")
-    assert status == 0
-    assert "07" in out
+    ended = grade_texts(tmp_path, known, {"a.csv": a_form(name)})
+    assert ended.status == 0
+    assert "07" in ended.out
 
 
 def test_a_changed_truth_and_missing_ones_are_refused(tmp_path, known):
@@ -630,7 +629,7 @@ def test_a_changed_truth_and_missing_ones_are_refused(tmp_path, known):
         assert (status, err.count("\n")) == (2, 1), err
         assert word in err
     truth.write_text(truth.read_text().replace('"J": 1.0', '"J": 2.0'))
-    (tmp_path / "in" / "good.csv").write_text("quantity,value,unit\nstudent,7,\nJ,1,\n")
+    (tmp_path / "in" / "good.csv").write_text(a_form("7"))
     status, _, err = bench("lab", "--grade", tmp_path / "in", "--truth", truth)
     assert status == 2
     assert "seal" in err

@@ -1,18 +1,17 @@
 """Questions of the colloquium: figures against numpy's, an integrator's and closed forms, and who is asked what."""
 
 import re
-import shutil
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from bench.assets import asset
 from bench.course.colloquium import TEXTS, figures, questions
 from bench.course.recordings import LabRecordings
 from bench.errors import InputError
 from tests.command import bench
+from tests.course.conftest import as_a_student_has_them
 from tests.course.test_class import RPM, Student
 
 RIG = """[motor]
@@ -28,8 +27,7 @@ rotor_inertia = "0.25 kg*cm**2"
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """The lab's axis as a student has it."""
-    where = tmp_path_factory.mktemp("class") / "student-01"
-    shutil.copytree(asset("data", "traces"), where, ignore=shutil.ignore_patterns("*truth.json"))
+    where = as_a_student_has_them(tmp_path_factory.mktemp("class") / "student-01")
     (where / "rig.toml").write_text(RIG)
     return where
 

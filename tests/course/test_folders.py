@@ -14,7 +14,7 @@ from bench.course.recordings import LabRecordings
 from bench.errors import InputError
 from bench.trace.read import read
 from tests.command import bench
-from tests.course.conftest import SLOW
+from tests.course.conftest import SLOW, as_a_student_has_them
 
 TRACES = asset("data", "traces")
 SI = "time [s];velocity [rad/s];current [A]"
@@ -221,11 +221,7 @@ STATES = [
 
 @pytest.mark.parametrize(("state", "missing", "words"), STATES, ids=lambda value: getattr(value, "__name__", ""))
 def test_a_students_folder(state, missing, words, tmp_path, quick, done):
-    folder = tmp_path / "data"
-    folder.mkdir()
-    for name in NAMES:
-        shutil.copy(TRACES / f"{name}.trace", folder)
-    shutil.copytree(TRACES / "catapult", folder / "catapult", ignore=shutil.ignore_patterns("*.json"))
+    folder = as_a_student_has_them(tmp_path / "data")
     state(folder)
     printed = bench("lab", "--data", folder, "--out", tmp_path / "out")
     assert printed.status == (1 if missing >= RECORDED else 0), printed.err
@@ -272,9 +268,7 @@ def test_flights_of_several_kinds_are_one_and_the_same(tmp_path):
 
 def test_a_rig_without_simulation_loses_no_section(tmp_path):
     """What is simulated runs on the embedded example then; a rig that can be simulated is its own."""
-    for path in asset("data", "traces").glob("*.trace"):
-        shutil.copy(path, tmp_path)
-    a_full_rig(tmp_path)
+    a_full_rig(as_a_student_has_them(tmp_path))
     assert LabRecordings.in_folder(tmp_path).example == lab_rig()
     assert LabRecordings.in_folder(tmp_path).rig.motor.rotor_inertia == pytest.approx(0.3e-4)
     text = asset("data", "rigs", "lab.toml").read_text(encoding="utf-8").replace("22.5 kg*cm**2", "30 kg*cm**2")
@@ -308,10 +302,7 @@ def test_lengths_beyond_a_throw_need_a_unit_in_both_columns(tmp_path, head, refu
 @pytest.fixture
 def own(tmp_path):
     """A folder with the course's recordings."""
-    for name in NAMES:
-        shutil.copy(TRACES / f"{name}.trace", tmp_path)
-    shutil.copytree(TRACES / "catapult", tmp_path / "catapult")
-    return tmp_path
+    return as_a_student_has_them(tmp_path)
 
 
 def reason(folder, name):

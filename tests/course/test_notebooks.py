@@ -12,10 +12,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from bench.assets import asset
 from bench.course.notebooks import TEXTS, notebook, write_notebooks
 from bench.errors import InputError
 from tests.command import bench
+from tests.course.conftest import as_a_student_has_them
 
 SIGNALS = """omega, current = to_si(degrees_per_second, milliamperes)
 alpha = num_derivative(omega, T)
@@ -164,9 +164,7 @@ MISTAKES = [
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    where = tmp_path_factory.mktemp("student")
-    shutil.copytree(asset("data", "traces"), where, dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.json"))
-    return where
+    return as_a_student_has_them(tmp_path_factory.mktemp("student"))
 
 
 def printed(folder, text):

@@ -16,6 +16,7 @@ from bench.course.recordings import LabRecordings
 from bench.errors import InputError
 from bench.trace.read import read
 from bench.trace.write import write
+from tests.course.conftest import as_a_student_has_them
 
 TRACES = asset("data", "traces")
 NAMES = ("JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc")
@@ -29,10 +30,7 @@ OF_THE_RECORDING = {
 @pytest.fixture
 def folder(tmp_path):
     """A student's folder: the recordings without any truth beside them."""
-    for name in NAMES:
-        shutil.copy(TRACES / f"{name}.trace", tmp_path)
-    shutil.copytree(TRACES / "catapult", tmp_path / "catapult", ignore=shutil.ignore_patterns("*.json"))
-    return tmp_path
+    return as_a_student_has_them(tmp_path)
 
 
 #: Tasks that recordings matter to, and quick ones that they do not; the others simulate for seconds.
