@@ -38,7 +38,7 @@ LINES = (
     "check own.csv.gz --rig rig.toml --baseline axis.toml --update --without-names",
     "check other.csv.gz --rig rig.toml --baseline axis.toml",
     "friction run1.csv.gz --rig rig.toml",
-    "validate --rigs 1 --workers 1",
+    "validate --rigs 1 --workers 1 --seed 4",
     "fleet fleet.csv --out fleet --workers 1",
     "export found/model.toml --to drive --rig lab.toml --out tables --profile fast_reversals",
     "plan --rig lab.toml --out motion.csv",
@@ -123,7 +123,7 @@ def folder_of_files(folder):
     (folder / "foreign.csv").write_text("\n".join([head, *rows]) + "\n")
     (folder / "robot.xml").write_text(MJCF)
     write_log(folder / "log.csv", log())
-    time = np.arange(0.0, 8.0, 0.02)
+    time = np.arange(0.0, 4.0, 0.02)
     goal = 0.5 * np.sign(np.sin(2.0 * time)) + 0.1 * np.sin(5.0 * time)
     late = np.convolve(goal, np.exp(-time / 0.08))[: time.size] / np.exp(-time / 0.08).sum()
     table = np.column_stack([time, goal, np.round(late, 3)])
