@@ -98,8 +98,9 @@ def glitches(values: Array, smooth: bool) -> NDArray[np.int64]:
     expected = np.array([-1.0, 4.0, 4.0, -1.0]) / 6.0 @ around if smooth else np.median([*around, values], axis=0)
     off = np.abs(values - expected)
     off[[0, 1, -2, -1]] = 0.0
-    usual = np.quantile(np.abs(np.diff(values)), 0.98) * (1.0 if smooth else STEP)
-    found = np.flatnonzero(off > max(GLITCH * 1.4826 * float(np.median(off)), usual))
+    found = np.flatnonzero(off > GLITCH * 1.4826 * float(np.median(off)))
+    if found.size:
+        found = found[off[found] > np.quantile(np.abs(np.diff(values)), 0.98) * (1.0 if smooth else STEP)]
     # the cubic of its neighbours is off, too, by less
     return found[[off[k] == off[max(k - 2, 0) : k + 3].max() for k in found]] if found.size else found
 
