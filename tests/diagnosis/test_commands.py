@@ -195,8 +195,8 @@ def test_slow_motion_under_noisy_torque_is_given_no_name(bench, seed):
 @pytest.mark.parametrize(
     ("trace", "words"),
     [
-        (run_of(duration=0.05), ["run.csv holds 50 samples", "0.53 s at least"]),
-        (run_of(duration=0.3), ["run.csv holds 300 samples", "0.53 s at least"]),
+        (run_of(duration=0.05), ["run.csv contains 50 samples", "0.53 s at least"]),
+        (run_of(duration=0.3), ["run.csv contains 300 samples", "0.53 s at least"]),
         (moving(lambda t: 0.02 * np.sin(9.0 * t)), ["no filtered sample", "speeds well above 0.1"]),
         (moving(lambda t: 0.5 * np.sin(9.0 * t) * np.cos(2.0 * t)), ["noise of the velocity", "or a finer velocity"]),
         (run_of(torque_noise=3.0), ["torque varies", "its noise", "more than"]),

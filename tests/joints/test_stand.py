@@ -56,7 +56,7 @@ def test_a_mesh_that_is_not_there_matters_to_bodies_that_move_only(tmp_path):
     path = tmp_path / "robot.xml"
     path.write_text(text.format(base.format('<geom size="0.1"/>')), encoding="utf-8")
     assert Robot.of(path, "elbow").inertia > 0.0
-    assert "left out of robot.xml: shell" in read_mjcf(path)[1][0]
+    assert "omitted from robot.xml: shell" in read_mjcf(path)[1][0]
     path.write_text(text.format(base.format('<geom type="mesh" mesh="shell"/>')), encoding="utf-8")
     with pytest.raises(InputError, match="the inertia of 'arm' is computed from it"):
         Robot.of(path, "elbow")
