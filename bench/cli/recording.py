@@ -188,6 +188,7 @@ def robot(
     ] = None,
     without: Annotated[list[str] | None, Option(help="Effect not to try. Repeatable.")] = None,
     stand: Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")] = False,
+    grade: Annotated[bool, Option("--grade", help="Hold the MJCF's own values against the logs.")] = False,
     json: common.JsonOption = None,
 ) -> None:
     """Identify every joint of a robot from its logs, find missing effects, and write its MJCF with all of them."""
@@ -206,8 +207,9 @@ def robot(
     options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded), "stand": stand}
     basis = provenance(rig, logs, options, holdout, mjcf)
     folder = out if found.answered else None
-    document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder)
-    common.deliver(document, lambda: robot_json(found, basis), json, folder)
+    held = found.grade if grade else None
+    document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder, held)
+    common.deliver(document, lambda: robot_json(found, basis, held), json, folder)
     if not found.answered:  # the first reason
         first = next(iter(found.joints.values()))
         if first.failed:

@@ -11,6 +11,7 @@ from bench.effects.present import named
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.export.mjcf import Armature, robot_with
 from bench.jobs.process import Failure
+from bench.joints.grade import GradedJoint, graded
 from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
 from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
 from bench.names import meant, nearest
@@ -58,6 +59,11 @@ class IdentifiedRobot(Shown):
         """Of the joints that have one, by name."""
         models = {name: joint.model for name, joint in self.joints.items()}
         return {name: model for name, model in models.items() if model is not None}
+
+    @property
+    def grade(self) -> dict[str, GradedJoint]:
+        """The joints as the MJCF states them, each held against the logs."""
+        return graded(self.mjcf, self.joints, self.stand)
 
     def with_joints(self, out: Path) -> tuple[str, tuple[str, ...]]:
         """Text of the MJCF with the models of the joints and the rest of it, and what went onto each in sentences.

@@ -414,7 +414,9 @@ class File(Part):
 #: Media types of files to take along, by the endings of their names.
 MEDIA = {
     "json": "application/json",
+    "md": "text/markdown",
     "py": "text/x-python",
+    "svg": "image/svg+xml",
     "toml": "application/toml",
     "xml": "application/xml",
 }

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
+from bench.joints.grade import GradedJoint
 from bench.joints.identified import EFFECTS, IdentifiedJoint
 from bench.joints.robot import IdentifiedRobot
 from bench.names import readable, words
@@ -18,6 +19,7 @@ from bench.parameter import Parameter
 from bench.plant.model_file import joints_toml
 from bench.report import document as doc
 from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names
+from bench.report.grade import grade_json, grade_section
 from bench.report.numbers import interval, sentence, unit_text
 from bench.report.parts import origin, parameters_table
 from bench.report.serial import as_json, picked, serialised
@@ -30,8 +32,10 @@ MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
 SHOWN = ("motion", "where", "parameters", "notes", "checks")
 
 
-def robot_json(found: IdentifiedRobot, provenance: Mapping[str, Any] | None = None) -> str:
-    """The robot as the contract's JSON."""
+def robot_json(
+    found: IdentifiedRobot, provenance: Mapping[str, Any] | None = None, grade: Mapping[str, GradedJoint] | None = None
+) -> str:
+    """The robot as the contract's JSON, with its grade where that is asked for."""
     payload = found.payload and {
         **picked(found.payload, "body", "mass"),
         "center_of_mass": {
@@ -51,7 +55,7 @@ def robot_json(found: IdentifiedRobot, provenance: Mapping[str, Any] | None = No
         "warnings": found.warnings,
         "provenance": provenance,
     }
-    return serialised(content)
+    return serialised(content if grade is None else content | {"grade": grade_json(grade)})
 
 
 def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
@@ -68,11 +72,19 @@ def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
 
 
 def robot(
-    found: IdentifiedRobot, title: str, provenance: Mapping[str, Any] | None = None, out: Path | None = None
+    found: IdentifiedRobot,
+    title: str,
+    provenance: Mapping[str, Any] | None = None,
+    out: Path | None = None,
+    grade: Mapping[str, GradedJoint] | None = None,
 ) -> doc.Document:
-    """The document of a robot that `title` names; of one that goes into a folder, with its MJCF, models and JSON."""
+    """The document of a robot that `title` names; of one that goes into a folder, with its MJCF, models and JSON.
+
+    `grade`: of its MJCF, where that is asked for.
+    """
     motions = {name: joint.motion for name, joint in found.joints.items() if joint.motion is not None}
     sections = [doc.section("joints", "Joints", *_tables(found))]
+    sections += [] if grade is None else [grade_section(grade, readable(found.mjcf.name))]
     sections += [moving_section(found.mjcf, motions)] if motions else []
     sections += [_of_joint(k, joint, found) for k, joint in enumerate(found.joints.values(), 1)]
     if out is not None:
@@ -80,7 +92,7 @@ def robot(
         files = doc.downloads(
             doc.file(MJCF, "the MJCF with the joints as found", text),
             doc.file(EFFECTS_FILE, "models of all joints, for bench.Effects", joints_toml(found.models)),
-            doc.file(JSON, "all results as numbers", robot_json(found, provenance) + "\n"),
+            doc.file(JSON, "all results as numbers", robot_json(found, provenance, grade) + "\n"),
         )
         sections.append(doc.section("model", "The model", doc.points(took), files, detail=True))
     return doc.Document(
