@@ -75,3 +75,10 @@ def quick(monkeypatch):
         return whole(replace(result, charts=()))
 
     monkeypatch.setattr(course_report, "task_section", undrawn)
+
+
+@pytest.fixture
+def numbers_alone(monkeypatch, quick):
+    """The same without PDF and sources."""
+    monkeypatch.setattr(course_report, "no_typst", lambda: "left out")
+    monkeypatch.setattr(course_report, "write_sources", lambda *arguments: [])

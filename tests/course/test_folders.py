@@ -220,7 +220,8 @@ STATES = [
 
 
 @pytest.mark.parametrize(("state", "missing", "words"), STATES, ids=lambda value: getattr(value, "__name__", ""))
-def test_a_students_folder(state, missing, words, tmp_path, quick, done):
+def test_a_students_folder(state, missing, words, tmp_path, request, done):
+    request.getfixturevalue("quick" if missing else "numbers_alone")  # sources leave out what is missing
     folder = as_a_student_has_them(tmp_path / "data")
     state(folder)
     printed = bench("lab", "--data", folder, "--out", tmp_path / "out")

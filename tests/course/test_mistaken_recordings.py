@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from bench.assets import asset
-from bench.course import report as course_report
 from tests.course import mistakes
 from tests.course.mistakes import (
     BARE,
@@ -25,18 +24,14 @@ from tests.course.mistakes import (
 
 TRACES = asset("data", "traces")
 COUNT = 20
-#: Every mistake once, and more that are drawn.
+#: Every mistake once, and more that are drawn; slow are those too that are another one the other way round.
 DRAWN = np.random.default_rng(25).choice(list(MISTAKES), COUNT)
-CASES = [(mistake, 0) for mistake in BEYOND_MENDING | MISTAKES]
-MORE = [*((mistake, 1) for mistake in BEYOND_MENDING), *((mistake, seed) for seed, mistake in enumerate(DRAWN, 1))]
+REVERSE = [mistakes.radians_as_degrees, mistakes.turns_as_radians, mistakes.ms_as_seconds]
+REVERSE += [mistakes.amperes_as_milliamperes, mistakes.one_sample_at_zero]
+CASES = [(mistake, 0) for mistake in BEYOND_MENDING | MISTAKES if mistake not in REVERSE]
+MORE = [(mistake, 0) for mistake in REVERSE] + [(mistake, 1) for mistake in BEYOND_MENDING]
+MORE += [(mistake, seed) for seed, mistake in enumerate(DRAWN, 1)]
 CASES += [pytest.param(*case, marks=pytest.mark.slow) for case in MORE]
-
-
-@pytest.fixture(autouse=True)
-def numbers_alone(monkeypatch):
-    """Neither PDF nor sources, which other tests read."""
-    monkeypatch.setattr(course_report, "no_typst", lambda: "left out")
-    monkeypatch.setattr(course_report, "write_sources", lambda *arguments: [])
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +52,7 @@ def truth():
 
 
 @pytest.mark.parametrize(("mistake", "seed"), CASES, ids=lambda value: getattr(value, "__name__", str(value)))
-def test_no_wrong_number_is_done(mistake, seed, recorded, truth, quick, tmp_path):
+def test_no_wrong_number_is_done(mistake, seed, recorded, truth, numbers_alone, tmp_path):
     of = Folder(dict(recorded[0]), list(recorded[1]))
     mistake(of, np.random.default_rng(seed))
     of.write(tmp_path / "data")
@@ -81,7 +76,7 @@ def test_no_wrong_number_is_done(mistake, seed, recorded, truth, quick, tmp_path
     ],
     ids=lambda value: " and ".join(one.__name__ for one in value) if isinstance(value, tuple) else "",
 )
-def test_two_mistakes_are_both_named(pair, seed, recorded, truth, quick, tmp_path):
+def test_two_mistakes_are_both_named(pair, seed, recorded, truth, numbers_alone, tmp_path):
     """One in what the other hides: a file that stands twice, a hole, exchanged columns, exchanged files."""
     of, random = Folder(dict(recorded[0]), list(recorded[1])), np.random.default_rng(seed)
     for mistake in pair:
@@ -93,7 +88,7 @@ def test_two_mistakes_are_both_named(pair, seed, recorded, truth, quick, tmp_pat
     assert [mistake.__name__ for mistake in pair if MISTAKES[mistake] not in reasons] == [], reasons
 
 
-def test_what_is_right_is_done_in_the_courses_words(recorded, truth, quick, tmp_path):
+def test_what_is_right_is_done_in_the_courses_words(recorded, truth, numbers_alone, tmp_path):
     """Speeds of a resolution of 0.02 rad/s, and a current of 10 mA, as drives have them, are fine enough."""
     of = Folder(dict(recorded[0]), list(recorded[1]))
     of.tables = {name: np.round(rows / [1e-3, 0.02, 0.01]) * [1e-3, 0.02, 0.01] for name, rows in of.tables.items()}
