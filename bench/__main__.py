@@ -80,7 +80,7 @@ def main() -> None:
     try:
         for name in ("SIGINT", "SIGTERM", "SIGHUP"):
             number = getattr(signal, name, None)  # Windows has no SIGHUP
-            if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # as nohup leaves it
+            if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # as with nohup
                 signal.signal(number, _stop)
         from bench.allocation import keep_freed_memory
         from bench.cli import main as run

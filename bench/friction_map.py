@@ -113,7 +113,7 @@ def friction_map(recordings: Sequence[Given], rig: GivenRig | None = None, units
     gated = [passed(trace, rig, STEADY_CHECKS) for trace in traces]
     velocity, effort, unit = _points([one.trace for one in gated], rig)
     total = float(effort @ effort)
-    plain = _fitted("", (), velocity, effort)
+    plain = _best_fit("", (), velocity, effort)
     if plain.theta[0] * (velocity @ velocity) + plain.theta[1] * np.abs(velocity).sum() < 0.0:
         found = "found friction that drives the axis: torque and motion have opposite signs"
         allowed = "allowed: both counted the same way (a leading - in the rig's [trace.columns] turns one)"
@@ -190,11 +190,11 @@ def bent_curve(name: str, velocity: Array, effort: Array) -> FrictionCurve:
     """The curve with an effect of speed alone, its shape the physically allowed one of least residual."""
     shapes = len(catalogue()[name].shapes)
     if not shapes:
-        return _fitted(name, (), velocity, effort)
+        return _best_fit(name, (), velocity, effort)
     reach = float(np.log(np.abs(velocity).min())), float(np.log(0.5 * np.abs(velocity).max()))
 
     def curve(logarithms: Array) -> FrictionCurve:
-        return _fitted(name, tuple(np.exp(np.atleast_1d(logarithms)).tolist()), velocity, effort)
+        return _best_fit(name, tuple(np.exp(np.atleast_1d(logarithms)).tolist()), velocity, effort)
 
     return curve(scipy.optimize.brute(lambda x: curve(x).squares, (reach,) * shapes, Ns=60, finish=None))
 
@@ -211,7 +211,7 @@ def _columns(name: str, shape: tuple[float, ...], velocity: Array) -> Array:
     return np.column_stack(columns)
 
 
-def _fitted(name: str, shape: tuple[float, ...], velocity: Array, effort: Array) -> FrictionCurve:
+def _best_fit(name: str, shape: tuple[float, ...], velocity: Array, effort: Array) -> FrictionCurve:
     table = _columns(name, shape, velocity)
     constant = bool(np.ptp(table[:, 3:], axis=0).all())
     if not constant:  # as the effect has one

@@ -17,7 +17,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.files import read_text
 from bench.names import cell
 
-#: What Python says of an integer beyond 4300 digits is advice to a programmer.
+#: Python's message on an integer beyond 4300 digits is advice to a programmer.
 TOO_MANY_DIGITS = "contains an integer of thousands of digits"
 #: Levels of JSON; Arrow takes gigabytes for hundreds of them.
 _DEEPEST = 64
@@ -41,7 +41,7 @@ def read_toml(path: str | Path, kind: str, schema: str | None = None) -> dict[st
 def parse_toml(text: str, where: object, kind: str = "TOML") -> dict[str, Any]:
     """Tables of a TOML text; `kind` as of `read_toml`.
 
-    InputError: it is no TOML, is nested too deep, or holds a number of too many digits; names `where`.
+    InputError: it is no TOML, is nested too deep, or has a number of too many digits; names `where`.
     """
     allowed = f"allowed: {kind} in UTF-8 TOML"
     long = _CHAIN.search(text)

@@ -238,12 +238,12 @@ def _robot(
     with_assets: bool,
 ) -> tuple[str, list[str]]:
     """Text of an MJCF or URDF with models of joints, and what went onto them."""
-    from bench.export.mjcf import ArmatureShare, armature_of, joint_alone, robot_with
+    from bench.export.mjcf import ArmatureShare, armature_of, robot_with, single_joint
     from bench.export.urdf import is_urdf, urdf_with
 
     if robot is None:
         name, lone = next(iter(models.items()))
-        text, carried = joint_alone(lone, name)
+        text, carried = single_joint(lone, name)
         return text, list(carried.lines)
     if not joint and list(models) == [ALONE]:  # of a lone model, whose joint nobody has named
         models = {"": models[ALONE]}

@@ -36,7 +36,7 @@ MARGIN = 2.0
 class Worked:
     """A student's recordings that are worked out in one way after the other: what no way changes is done once.
 
-    Whatever is asked of it raises InputError where a file is missing or cannot be read.
+    All of it raises InputError where a file is missing or cannot be read.
     """
 
     recordings: LabRecordings
@@ -52,7 +52,7 @@ class Worked:
 
     @cached_property
     def corner(self) -> float:
-        """Of the fastest run, read from the torque's top on, whatever is made of it - rad/s; NaN where it has none."""
+        """Of the fastest run, read from the torque's top on, whatever it is used for - rad/s; NaN where it has none."""
         run = self.recordings.fastest
         start = int(np.argmax(run.torque > AT_THE_TOP * run.torque.max()))
         try:
@@ -64,11 +64,11 @@ class Worked:
         """Every quantity of the form, in its unit, in one way; those are left out that it gives no value of."""
         recordings, rig = self.recordings, self.recordings.rig
         found, corner = {**self.unchanged}, self.corner * way.velocity * RPM * way.rpm
-        run, rotor = _seen(recordings.without_friction, rig, way), motor_value(rig, "rotor_inertia")
+        run, rotor = _read(recordings.without_friction, rig, way), motor_value(rig, "rotor_inertia")
         inertia, found["alpha_max"], _ = mean_inertia(run.acceleration, run.torque)
         found["J_without_friction"] = inertia * KG_CM2
         found["J_load_without_friction"] = (inertia - rotor) * KG_CM2
-        run = _seen(recordings.with_friction, rig, way)
+        run = _read(recordings.with_friction, rig, way)
         with suppress(UndeterminedError):  # as with speeds so small by a wrong unit that none reaches the threshold
             (inertia, viscous, coulomb), error = _balance(run, way)
             found |= {"J": inertia * KG_CM2, "K_fric_w": viscous, "K_fric_0": coulomb, "E": error}
@@ -77,7 +77,7 @@ class Worked:
         return found | ({"corner": corner} if math.isfinite(corner) else {})
 
 
-def _seen(run: LabRun, rig: Rig, way: Way) -> LabRun:
+def _read(run: LabRun, rig: Rig, way: Way) -> LabRun:
     """The run with speed, acceleration and torque as one way makes them."""
     velocity = run.velocity * way.velocity
     alpha = (METHODS | LATE_METHODS).get(way.method, num_derivative)(velocity, run.sample_period)
@@ -115,7 +115,7 @@ def every_mistake(worked: Worked) -> list[tuple[tuple[str, ...], dict[str, float
 
 
 def tolerances(worked: Worked) -> dict[str, float]:
-    """Shares by which right answers may be off on these recordings, by how far right ways are apart on them."""
+    """Shares by which right answers may be off on these recordings, by how far right ways differ on them."""
     others = [worked.answers(way) for way in RIGHT_WAYS]
     right = {name: value for name, value in worked.answers().items() if value}
     return {name: MARGIN * max(abs(other[name] / value - 1.0) for other in others) for name, value in right.items()}

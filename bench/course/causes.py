@@ -111,7 +111,8 @@ def _causes(runs: Mapping[str, LabRun], choices: Sequence[Sequence[str]], rig: R
 
 
 def _scale(runs: Mapping[str, LabRun], rig: Rig) -> Iterator[Mistake]:
-    """A scale of the current of its own, which the run-up's largest current tells, whatever power of 1000 it is in."""
+    """A scale of the current of its own, which the run-up's largest current determines, whatever power of 1000 it is
+    in."""
     peak = rig.motor.peak_current
     if FASTEST in runs and peak is not None and (largest := float(runs[FASTEST].current.max())) > 0.0:
         factor = largest / peak / 1e3 ** round(math.log10(largest / peak) / 3.0)

@@ -35,7 +35,7 @@ GRAVITY, RING, FASTER = 9.81, 0.02, 60.0
 
 @dataclass(frozen=True)
 class AskedQuestion:
-    """What a student is asked, with the own figures, and what the examiner expects."""
+    """The questions to a student, with the own figures, and what the examiner expects."""
 
     name: str
     text: str
@@ -58,7 +58,7 @@ def questions(recordings: LabRecordings, number: int) -> list[AskedQuestion]:
 
 
 def figures(recordings: LabRecordings) -> dict[str, float]:
-    """Every figure that a question or an answer holds, by its name there, in its unit there."""
+    """Every figure in a question or an answer, by its name there, in its unit there."""
     worked = Worked(recordings)
     right = worked.answers()
     same = {"J": "J", "K_w": "K_fric_w", "K_0": "K_fric_0", "M_max": "M_max", "kT_stall": "kT_stall"}
@@ -74,7 +74,7 @@ def figures(recordings: LabRecordings) -> dict[str, float]:
 
 
 def _of_ways(worked: Worked, right: dict[str, float]) -> dict[str, float]:
-    """What other ways make of the answers: shares off."""
+    """The answers of other ways: shares off."""
     ways = {
         "late": Way(width=WIDTH - 1, set_back=WIDTH // 2 - 1),
         "bare": Way(width=1, set_back=0),
@@ -141,7 +141,7 @@ def _of_torque(recordings: LabRecordings, right: dict[str, float]) -> dict[str, 
 
 
 def _of_corner(rig: Rig, corner: float) -> dict[str, float]:
-    """What a corner - rad/s - says of the winding, by the course's circuit."""
+    """The winding by a corner - rad/s -, by the course's circuit."""
     motor, sheet = circuit(rig), peak_curve(rig.motor, MAINS, rig.source)
     share = (sheet.no_load_speed - corner) / (sheet.no_load_speed - sheet.corner_speed)
     kelvin = motor.temperature_coefficient

@@ -20,7 +20,7 @@ class Task:
     """A task of the course.
 
     Attributes:
-        key: its number, or a name for what stands around the tasks.
+        key: its number, or a name for what surrounds the tasks.
         title: of it.
         do: does it; raises BenchError where something is missing.
         needs: recordings, or nothing but the rig.
@@ -40,7 +40,7 @@ class Task:
         return replace(found, key=self.key, title=found.title or self.title, equation=EQUATIONS.get(self.key))
 
 
-#: Tasks in their order, and what stands around them.
+#: Tasks in their order, and what surrounds them.
 TASKS = (
     Task("1", "Catapult", catapult.path),
     Task("2", "Backward difference", inertia.backward_difference_of_a_sine, "rig"),

@@ -1,4 +1,4 @@
-"""What a student's answers of a task tell of how they were made, and how much likelier that is than the next.
+"""What a student's answers of a task show of how they were made, and how much likelier that is than the next.
 
 Each explanation has figures of its own for the answers; an answer lies about its figure as right ones do about theirs,
 or, seldom, anywhere. Where none does, each answer is right or anything: "not known".
@@ -43,7 +43,7 @@ class Explanation:
         names: of the mistakes, two where both were made; or NOT_KNOWN.
         odds: against the next explanation.
         next: its names.
-        given: answers that it gives, by their names: of others it says nothing.
+        given: answers that it gives, by their names: of others it gives nothing.
     """
 
     names: tuple[str, ...]
@@ -69,17 +69,17 @@ class Explanation:
 
 @dataclass(frozen=True)
 class GradedAnswer:
-    """One answer and what is to be said of it.
+    """One answer and its assessment.
 
     Attributes:
-        question: what was asked.
+        question: the wanted quantity.
         given: as it was handed in.
         value: the same in the form's unit; NaN without one.
         expected: what the course's way gives on the student's recordings, in that unit.
         verdict: right, wrong, in a unit of another dimension, not answered, or not judged.
         tolerance: share by which a right answer may be off.
         explained: how the task's answers were made, where that gives this one and it is wrong; None otherwise.
-        note: what is to be said of an answer that is right in one of two ways; empty otherwise.
+        note: the remark on an answer that is right in one of two ways; empty otherwise.
     """
 
     question: Question
@@ -111,7 +111,7 @@ class GradedAnswer:
 
     @property
     def remark(self) -> str:
-        """What the student reads beside it."""
+        """What the student reads with it."""
         if self.explained is not None and self.mistake:
             why = " ".join(WHY[name] for name in self.explained.names if name in WHY)
             return f"{self.mistake}: {why}" if why else self.mistake
@@ -157,7 +157,7 @@ def explanation(
     Args:
         answers: of the task.
         known: of the student's own recordings: `expected`, and `mistakes` with their figures.
-        elsewhere: mistakes that the student's other tasks tell.
+        elsewhere: mistakes that the student's other tasks show.
     """
     if all(answer.verdict != "wrong" for answer in answers):
         return None

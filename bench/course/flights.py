@@ -31,7 +31,7 @@ from bench.units import convert
 TEXTS = (".csv", ".txt", ".dat", ".tsv")
 ENDINGS = (*TEXTS, ".mat")
 NAMES = ("catapult", "katapult", "flights", "fluege", "flüge")
-#: Files that tell about the tables beside them.
+#: Files that describe the tables next to them.
 _ABOUT = re.compile(r"(read[ _-]?me|lies[ _-]?mich|license|notes?|notiz(en)?|info|hinweise?)\b.*", re.IGNORECASE)
 #: Lengths without a unit are metres; no ball of the lab flies further than this - m.
 FARTHEST = 20.0

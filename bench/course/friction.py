@@ -122,7 +122,7 @@ class EquationOfMotion:
 def identify_friction(run: LabRun) -> EquationOfMotion:
     """The course's least squares on the fast samples of a recording.
 
-    Raises UndeterminedError where they do not tell inertia and friction apart, or torque and acceleration are opposed.
+    Raises UndeterminedError where they do not separate inertia and friction, or torque and acceleration are opposed.
     """
     samples = in_step(run).at(remaining(run))
     weaker = 0.5 * (1.0 - abs(float(np.mean(np.sign(samples.velocity)))))
@@ -152,7 +152,7 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
         f"M_est is drawn for all {run.time.size} samples. M - M_est is {left:.3g} N·m RMS, "
         f"{left / rms(run.torque):.2%} of the torque; over the fitted samples {left_of_fitted:.3g} N·m.",
-        *_beside_task_6(loads, recordings),
+        *_difference_from_task_6(loads, recordings),
     )
     numbers = (
         Number("J", found.inertia * KG_CM2, "kg·cm²", true, half=half[0] * KG_CM2),
@@ -167,8 +167,8 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
     return TaskResult(findings, numbers, (torque_chart(title, run, estimated, name, "M_est"),))
 
 
-def _beside_task_6(loads: list[Number], recordings: LabRecordings) -> tuple[str, ...]:
-    """How far J_load is off that of task 6; nothing where that could not be done, which its own place says."""
+def _difference_from_task_6(loads: list[Number], recordings: LabRecordings) -> tuple[str, ...]:
+    """How far J_load is off that of task 6; nothing where that could not be done, which is reported there."""
     try:
         before = inertia_without_friction(recordings)
     except BenchError:

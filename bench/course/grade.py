@@ -33,10 +33,10 @@ from bench.structured import csv_of_texts, parse_json
 TITLE = "Industrial Drives, Part 2: grades"
 #: Schema of the truth of a class.
 SEALED = "bench.lab.class/3"
-#: Which acceleration of task 9 is right: as the text says, half a sample late, or synchronised with the speed.
+#: Which acceleration of task 9 is right: as in the text, half a sample late, or synchronised with the speed.
 Acceleration = Literal["either", "text", "synchronised"]
 AS_THE_TEXT = (
-    "Right, as the text says: the backward difference (16) is half a sample late, and J·α of that half sample counts "
+    "Right, as in the text: the backward difference (16) is half a sample late, and J·α of that half sample counts "
     "as friction. Synchronised by half a sample more it would be {}."
 )
 SYNCHRONISED = "The text's acceleration is asked for: the backward difference (16) without a further half sample."
@@ -125,14 +125,15 @@ def grade_class(
         if len(paths) > 1:
             del graded[student]
             found = f"found {len(paths)} of student {student} ({', '.join(paths)})"
-            unread.append(InputError(submissions, found, "leave one of them"))
+            unread.append(InputError(submissions, found, "keep one of them"))
     students = tuple(one for _, one in sorted(graded.items()))
     alike = suspicions({one.student: one.answers for one in students}, known)
     return GradedClass(students, tuple(unread), tuple(sorted(set(known) - set(forms))), tuple(alike))
 
 
 def seal(content: Mapping[str, Any], key: str) -> str:
-    """Code by which a truth's content can be told from a changed one, by whoever has the key (HMAC-SHA-256)."""
+    """Code by which a truth's content can be distinguished from a changed one, by whoever has the key
+    (HMAC-SHA-256)."""
     return hmac.digest(key.encode(), json.dumps(content, sort_keys=True).encode(), "sha256").hex()
 
 
@@ -146,7 +147,7 @@ def read_truth_of_class(path: Path, key: Path | None = None) -> Mapping[str, Any
 
     Raises InputError where there is no such file, one that was changed, or another key.
     """
-    advice = "give the file that bench lab --record FOLDER --students N wrote beside FOLDER"
+    advice = "give the file that bench lab --record FOLDER --students N wrote next to FOLDER"
     try:
         content = parse_json(read_text(path, "a truth of a class"), path)
     except InputError as error:
@@ -161,7 +162,7 @@ def read_truth_of_class(path: Path, key: Path | None = None) -> Mapping[str, Any
 
 
 def grade(submission: Submission, known: Mapping[str, Any], acceleration: Acceleration = "either") -> GradedStudent:
-    """Grade every quantity of a student's form by what `read_truth_of_class` knows; InputError without the student."""
+    """Grade every quantity of a student's form by `read_truth_of_class`; InputError without the student."""
     if submission.student not in known:
         allowed = f"allowed: {', '.join(sorted(known))}"
         raise InputError(f"{submission.source}: student", f"found '{submission.student}'", allowed)
@@ -173,7 +174,7 @@ def grade(submission: Submission, known: Mapping[str, Any], acceleration: Accele
     sure = [{*one.names} - {NOT_KNOWN} if one is not None and one.odds >= SURE else set() for one in explanations]
     answers = []
     for of_task, found, alone in zip(tasks, explanations, sure, strict=True):
-        if found is not None and not alone:  # what a task leaves open the others may settle
+        if found is not None and not alone:  # what a task does not decide the others may settle
             found = explanation(of_task, of_student, set().union(*sure))
         given = found.given if found is not None else ()
         answers += [
@@ -259,7 +260,7 @@ def class_document(graded: GradedClass) -> Document:
 
 
 def student_document(one: GradedStudent) -> Document:
-    """One student's answers, each with what is to be said of it; what is wrong is marked."""
+    """One student's answers, each with its assessment; what is wrong is marked."""
     rows = [(a.question.task, a.question.name, a.as_given, a.verdict, a.remark) for a in one.answers]
     wrong = [place for place, answer in enumerate(one.answers) if answer in one.wrong]
     answers = table("Answers", ("task", "quantity", "your answer", "verdict", "remark~"), rows, wrong)

@@ -82,7 +82,7 @@ def four_signals(run: LabRun) -> dict[str, tuple[slice, Array]]:
 
 
 def half_width(value: float, std_error: float, name: str, run: LabRun) -> float:
-    """Half width of 95 % of a quantity of a balance, in its unit: by noise, and by what another filter makes of it.
+    """Half width of 95 % of a quantity of a balance, in its unit: by noise, and by the change with another filter.
 
     On 40 recorded axes the truth lay within it each time; by the standard error of J in task 9 alone 13 times, as
     smoothing of alpha shifts it by more than noise does.
@@ -104,7 +104,7 @@ def require_positive(inertia: float) -> None:
 def load_inertia(
     inertia: float, half: float, recordings: LabRecordings, true: float | None
 ) -> tuple[list[Number], list[str]]:
-    """J_load = J - J_motor beside the theory of the disk, as far as the rig tells them, and what is to be said of it.
+    """J_load = J - J_motor and the theory of the disk, as far as the rig has them, with remarks.
 
     Args:
         inertia, half: J, and within how much it is known - kg*m**2.
@@ -132,7 +132,7 @@ def load_inertia(
 
 
 def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
-    """Task 6: alpha_max, J from samples with |alpha| >= alpha_max/4, J_load = J - J_motor beside theory.
+    """Task 6: alpha_max, J from samples with |alpha| >= alpha_max/4, J_load = J - J_motor and its theory.
 
     Raises UndeterminedError where the axis never accelerates, or torque and acceleration oppose each other.
     """
@@ -153,7 +153,7 @@ def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
         "In which unit? N·m over rad/s² is N·m·s² = kg·m², as the radian counts as 1; 1 kg·m² = 10⁴ kg·cm².",
         f"M - J·α is {left:.3g} N·m RMS, {left / rms(run.torque[taken]):.1%} of the torque of "
         f"these samples. M/α itself scatters by {float(np.std(ratio) / abs(np.mean(ratio))):.1%} from sample to "
-        "sample, most of it noise that the difference makes of the speed.",
+        "sample, most of it noise of the differentiated speed.",
         *of_load,
     )
     numbers = (
@@ -167,7 +167,7 @@ def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
 
 
 def torque_chart(title: str, run: LabRun, modelled: Array, name: str, symbol: str) -> Chart:
-    """A modelled torque (n,) - N*m - over the measured one, and what it leaves; `symbol` stands for it there."""
+    """A modelled torque (n,) - N*m - over the measured one, and its residual, labelled `symbol`."""
     measured, over_it = curve(run.time, run.torque, "measured torque M", "wide"), curve(run.time, modelled, name)
     return chart(
         title,

@@ -1,4 +1,4 @@
-"""A notebook for each task: its text, cells to fill in, and checks of what a result must fulfil, without telling it.
+"""A notebook for each task: its text, cells to fill in, and checks of what a result must fulfil, without giving it.
 
 Each is written from a text in `data/lab/notebooks`, Markdown with three kinds of code: `python given` is there,
 `python check` checks, and `python yours NAME` is to be filled in. `python yours NAME FILE` writes the
@@ -48,7 +48,7 @@ def signals(run):
 
 
 def write_notebooks(folder: Path) -> list[Path]:
-    """Write `task01.ipynb`, ... into a student's folder, beside the recordings.
+    """Write `task01.ipynb`, ... into a student's folder, next to the recordings.
 
     Raises InputError where one of them is there, as it may hold a student's work.
     """
@@ -106,15 +106,15 @@ def own(name: str, function: str = "") -> Callable[..., Any]:
 
 
 def check(what: str, holds: Callable[..., object], *values: object) -> bool | None:
-    """Print whether a condition holds.
+    """Print whether a condition is met.
 
     Args:
         what: must hold, in words.
-        holds: asked with the values.
+        holds: called with the values.
         values: of the student; `...` where a cell is not filled in yet.
 
     Returns:
-        Whether it holds; None while a value or a function is open.
+        Whether it is met; None while a value or a function is open.
     """
     if any(value is ... for value in values):
         print(f"open: {what}")
@@ -124,7 +124,7 @@ def check(what: str, holds: Callable[..., object], *values: object) -> bool | No
     except NotYetError as missing:
         print(f"open: {what} ({missing})")
         return None
-    except Exception as error:  # a student's code may raise anything: the condition does not hold, and why is said
+    except Exception as error:  # a student's code may raise anything: the condition is not met
         print(f"not yet: {what} ({type(error).__name__}: {error})")
         return False
     print(f"{'ok' if found else 'not yet'}: {what}")

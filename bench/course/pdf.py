@@ -22,7 +22,7 @@ TEMPLATE = asset("data", "lab", "report.typ")
 #: Fonts that matplotlib brings along: TrueType, which is searched and copied from.
 FONTS = Path(get_data_path()) / "fonts" / "ttf"
 #: Width of a diagram - inch, height of what it has on a screen, its most - inch, and size of a legend's letters, of
-#: which four entries stand beside each other - points.
+#: which four entries are next to each other - points.
 WIDTH, SHARE, MOST, LEGEND = 6.7, 0.64, 3.6, 6.2
 #: Sections of the first page; room above and below a row of a table that is signed, and of others - points.
 FRONT, SIGNED, ROW = 2, 9.0, 3.4

@@ -4,9 +4,9 @@ The corner is the speed at which torque starts to decline, as full voltage no lo
 
     L*dIq/dt + R*Iq = U - Ke*omega  beyond it,  so  Iq = top*(omega_0 - omega)/(omega_0 - omega_c), late by tau = L/R
 
-At the corner itself Iq is constant, dIq/dt = 0: U = R*top + Ke*omega_c holds with inductance and without. So inductance
-moves what follows, the fall, and not the corner: it keeps the current up for about tau, in which speed rises by
-alpha*tau.
+At the corner itself Iq is constant, dIq/dt = 0: U = R*top + Ke*omega_c is valid with inductance and without. So
+inductance moves what follows, the fall, and not the corner: it keeps the current up for about tau, in which speed
+rises by alpha*tau.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def datasheet_curve(rig: Rig) -> tuple[Array, Array]:
 
 
 def over_speed(recordings: LabRecordings) -> TaskResult:
-    """Draw the measured torque over the speed beside the datasheet's curve, and tell both at the drawing's speeds."""
+    """Draw the measured torque over the speed with the datasheet's curve, and list both at the drawing's speeds."""
     run, rig, sources = recordings.fastest, recordings.rig, recordings.sources
     kept, found = run_up(run, rig)
     speed, torque = kept.velocity * RPM, kept.torque
@@ -155,8 +155,8 @@ def over_speed(recordings: LabRecordings) -> TaskResult:
     read = [Number(f"M_max at {n:.0f} rpm, datasheet", value, "N·m", source=source) for n, value in sheet.items()]
     read += [Number(f"M_max at {n:.0f} rpm", value, "N·m") for n, value in measured.items() if math.isfinite(value)]
     findings = (
-        f"The torque starts to decline at {corner:.0f} rpm, {corner - corner_of_datasheet:+.0f} rpm from "
-        "the datasheet's corner; task 11 says why. The corner is found by least squares on the current from its top to "
+        f"The torque starts to decline at {corner:.0f} rpm, {corner - corner_of_datasheet:+.0f} rpm from the "
+        "datasheet's corner; task 11 gives the reason. It is found by least squares on the current from its top to "
         "half of it: constant, then falling in proportion to speed with a lag, as the motor's circuit has it.",
         *run.notes,
         *_speeds_findings(kept),
@@ -208,7 +208,7 @@ def _end_findings(kept: LabRun, found: Decline, measured: Mapping[float, float])
 
 
 def operating_range(recordings: LabRecordings) -> TaskResult:
-    """The recording with friction in the speed-torque diagram, and the reserve that it leaves."""
+    """The recording with friction in the speed-torque diagram, and its reserve."""
     run = recordings.with_friction
     found = in_range(recordings.rig, run.velocity, run.torque, "recording with friction")
     numbers = tuple(Number(name, value, unit) for name, (value, unit) in found.numbers.items())

@@ -1,10 +1,10 @@
-"""Whether a recording can be of the lab's axis: what it says is held against motor, disk, and the other recordings.
+"""Whether a recording can be of the lab's axis: it is compared with motor, disk, and the other recordings.
 
     M(t + late) = J*alpha + K_w*omega + K_0*sgn(omega)
 
 with every column through one filter, so that nothing is late by filtering. On 27 recordings of the class's axes J
-came out within 0.02 %, `late` within 0.055 samples, and 0.2 to 0.4 % of the torque were left; limits have room for a
-real axis.
+came out within 0.02 %, `late` within 0.055 samples, and 0.2 to 0.4 % of the torque were unexplained; limits have room
+for a real axis.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ WIDTH, SLOW = 2.0, 0.13
 FASTEST_SPEED, LARGEST_CURRENT, FULL_CURRENT = 1.05, 1.03, 0.95
 #: J_load over the disk's theory: hub, coupling and bolts are 10 to 20 % more.
 OVER_THEORY = (0.85, 1.35)
-#: Samples that torque may come after acceleration; share of the torque that may be left; of it that friction has.
+#: Samples that torque may come after acceleration; share of the torque that may be unexplained; of it that friction
+#: has.
 LATE, LEFT, FRICTION = 0.4, 0.05, 0.015
 #: J of one recording against the others', that of two of one motion, whose currents are alike, so that kT cannot part
 #: them; and the share of a recording that holes may cut off where they cut no run-up.
@@ -48,7 +49,7 @@ GLITCH, STEP = 10.0, 2.0
 
 @dataclass(frozen=True)
 class TorqueBalance:
-    """What a recording says by itself.
+    """Properties of a recording by itself.
 
     Attributes:
         inertia: J - kg*m**2.

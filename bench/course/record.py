@@ -108,12 +108,12 @@ def _write(path: Path, time: Array, velocity: Array, current: Array) -> None:
 
 
 def record_class(folder: Path, students: int, seed: int, progress: Progress = lambda share: None) -> list[Path]:
-    """Simulate every student's axis and write folders `student-01`, ..., and the truth beside the folder of them all.
+    """Simulate every student's axis and write folders `student-01`, ..., and the truth next to the folder of them all.
 
     Args:
         folder: of the class, new or empty; InputError where it is not.
         students: how many; InputError below one.
-        seed: of everything drawn, with a random salt that the truth alone keeps: who knows the seed draws other axes.
+        seed: of everything drawn, with a random salt that only the truth contains: the seed alone draws other axes.
         progress: called with the share done.
 
     Returns:

@@ -54,7 +54,7 @@ class LabRecordings:
         if folder is None:
             return cls(asset("data", "traces"), lab_rig(), Sources.of(None), synthetic=True)
         if not folder.is_dir():
-            raise InputError(folder, "no such folder", "give the folder that holds the course's recordings")
+            raise InputError(folder, "no such folder", "give the folder with the course's recordings")
         own = folder / "rig.toml"
         if not own.exists():
             return cls(folder, lab_rig(), Sources.of(None))
@@ -78,19 +78,19 @@ class LabRecordings:
 
     @cached_property
     def flights(self) -> Flights:
-        """The catapult's experiments, with the throw's truth where that lies beside them.
+        """The catapult's experiments, with the throw's truth where that is next to them.
 
         Raises InputError as `read_flights`, and where they are no flights of one throw.
         """
         path = find_flights(self.folder)
         found = read_flights(path)
         if wrong := contradiction(found.points):
-            raise InputError(path, wrong, "correct or leave out what is wrong: all points go into one path")
+            raise InputError(path, wrong, "correct or omit what is wrong: all points go into one path")
         return replace(found, truth=read_truth(path / "truth.json"))
 
     @property
     def example(self) -> Rig:
-        """A rig that can be simulated: the recorded axis where its rig file says how, else the lab's."""
+        """A rig that can be simulated: the recorded axis where its rig file states how, else the lab's."""
         given = self.sources.given
         return self.rig if "simulation" in given and "drive" in given else lab_rig()
 
@@ -116,7 +116,7 @@ class LabRecordings:
         return run
 
     def files(self, name: str) -> tuple[Path, list[Path]]:
-        """File of a recording, whatever its ending, the case of its letters, and what else its name says; and others.
+        """File of a recording, whatever its ending, the case of its letters, and the rest of its name; and others.
 
         `MaxAcc_Gruppe7.trace` and `MaxAcc (1).trace` serve where there is no plain `MaxAcc.trace`. Raises InputError
         where there is none, or several.
@@ -138,7 +138,7 @@ class LabRecordings:
         raise InputError(self.folder / f"{name}.trace", missing, f"found: {', '.join(others) or 'no recording'}")
 
     def run(self, name: str) -> LabRun:
-        """A recording in SI units as it is, with its truth where that lies beside it.
+        """A recording in SI units as it is, with its truth where that is next to it.
 
         Raises InputError where there is no such file, it is no recording, or a signal is missing in it.
         """

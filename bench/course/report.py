@@ -59,7 +59,7 @@ class Cover:
 
     @classmethod
     def in_folder(cls, folder: Path | None) -> Cover:
-        """From `group.toml` in a folder; blank without one. Raises InputError where it does not say it as it should."""
+        """From `group.toml` in a folder; blank without one. Raises InputError where its content is wrong."""
         path = folder / FILE if folder is not None else None
         if path is None or not path.exists():
             return cls()
@@ -207,7 +207,7 @@ def task_section(result: TaskResult) -> Section:
 
 
 def _numbers_table(caption: str, numbers: Sequence[Number]) -> Table:
-    """Every number with its unit and source; beside it how well it is known and its truth, where any is."""
+    """Every number with its unit and source; with how well it is known and its truth, where any is."""
     halves = ("± (95 %)>",) if any(number.half is not None for number in numbers) else ()
     truths = ("truth>", "error>") if any(number.truth is not None for number in numbers) else ()
     columns = ("quantity", "value>", *halves, "unit", *truths, "from")
@@ -215,7 +215,7 @@ def _numbers_table(caption: str, numbers: Sequence[Number]) -> Table:
 
 
 def _cells(number: Number, columns: Iterable[str]) -> list[str]:
-    """What stands of a number in columns of a table, empty where it is not known."""
+    """A number in the columns of a table, empty where it is not known."""
     half, truth = number.half, number.truth
     cells = {"quantity": number.name, "value>": f"{number.value:.5g}", "unit": number.unit, "from": number.source}
     cells["± (95 %)>"] = "" if half is None else f"{half:.2g}"
@@ -225,7 +225,7 @@ def _cells(number: Number, columns: Iterable[str]) -> list[str]:
 
 
 def course_table(results: Sequence[TaskResult]) -> Table:
-    """Every number with its unit, beside its truth where that is known; of what was not done, what is missing."""
+    """Every number with its unit, with its truth where that is known; of what was not done, what is missing."""
     rows: list[tuple[str, ...]] = []
     marked, columns = [], ("quantity", "value>", "truth>", "error>", "unit")
     for result in results:

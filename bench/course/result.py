@@ -1,4 +1,4 @@
-"""What a task of the course comes to: numbers with units, diagrams as data, and what they say."""
+"""The result of a task of the course: numbers with units, diagrams as data, and findings."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ class TaskResult:
     Attributes:
         findings: a paragraph each; the first answers the task.
         numbers, charts: results and diagrams.
-        key: number of the task in the course, or a name for what stands around the tasks.
+        key: number of the task in the course, or a name for what surrounds the tasks.
         title: of the task.
         reason: why it could not be done; None where it was.
-        tables: beside that of the numbers, and the numbers that stand in them.
+        tables: in addition to that of the numbers, and their numbers.
         equation: that the task solves.
     """
 

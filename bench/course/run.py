@@ -56,7 +56,7 @@ class LabRun:
 
 
 def made_run(velocity: Array, current: Array, sample_period: float, rig: Rig) -> LabRun:
-    """Run of a speed - rad/s - and a current - A - (n,), a period - s - apart; InputError without a torque constant."""
+    """Run of a speed - rad/s - and a current - A - (n,), with a period - s -; InputError without a torque constant."""
     return LabRun(
         time=sample_period * np.arange(velocity.size, dtype=np.float64),
         velocity=velocity,

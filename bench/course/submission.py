@@ -1,4 +1,4 @@
-"""What a student is asked and hands in: the form to be filled in, as CSV, or the same as JSON."""
+"""What a student hands in: the form to be filled in, as CSV, or the same as JSON."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _FORM = re.compile(r'\W*"?(quantity|student(?!\W*task)|schema)', re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 #: A student is called by the number alone, or as the own folder is.
 _NAMED = re.compile(r"^student[ _-]*(?=\w)", re.IGNORECASE)
-#: Where a row stands, and its quantity, value and unit as they were written.
+#: The place of a row, and its quantity, value and unit as they were written.
 Entry = tuple[str, str, str, str]
 
 
@@ -40,9 +40,9 @@ class Question:
         name: of the quantity in the form.
         unit: as pint reads it; of the form, answers in another one are converted.
         tolerance: share by which a right answer may be off at least: rounding, and other ways to read a drawing. What
-            noise and other filters make of it on a student's own recordings may be more. None where they make any
+            its change by noise and other filters on a student's own recordings may be more. None where they make any
             value; it then only helps to recognise a mistake.
-        near_zero: what stands for the value in that share where it is zero.
+        near_zero: what replaces the value in that share where it is zero.
     """
 
     task: str
@@ -87,7 +87,7 @@ BY_HAND = {
 
 @dataclass(frozen=True)
 class GivenAnswer:
-    """A value and its unit, empty where the form's own was left."""
+    """A value and its unit, empty where the form's own is unchanged."""
 
     value: float
     unit: str
@@ -111,7 +111,7 @@ def readings(given: GivenAnswer, question: Question) -> list[float]:
     except UnitError as error:
         if "may mean" not in error.found:
             raise ValueError(error.found) from error
-        # the radian counts as 1, so N*m*s and 1/s**2 are right for what is asked per radian; of a speed both are read
+        # the radian counts as 1, so N*m*s and 1/s**2 are right for what is wanted per radian; of a speed both are read
         radians = given.value * float(convert(np.ones(1), unit, si)[0]) / to_si
         return [2.0 * math.pi * radians, radians] if question.unit == "rpm" else [radians]
     return [given.value * scale.factor / to_si]
@@ -119,7 +119,7 @@ def readings(given: GivenAnswer, question: Question) -> list[float]:
 
 @dataclass(frozen=True)
 class Submission:
-    """Answers of a student by the names of the form; what was left blank is not among them."""
+    """Answers of a student by the names of the form; what is blank is not among them."""
 
     student: str
     answers: dict[str, GivenAnswer]
@@ -155,7 +155,7 @@ def _is_form(path: Path) -> bool:
 def read_submission(path: Path) -> Submission:
     """A filled form.
 
-    Raises InputError where a row cannot be read, a quantity is not asked for or given twice, or there is no student.
+    Raises InputError where a row cannot be read, a quantity is not in the form or given twice, or there is no student.
     """
     text = source_of(path, read_bytes(path, "a filled form")).text()
     entries = _of_json(text, path) if path.suffix.lower() == ".json" else _of_csv(text, path)
@@ -167,7 +167,7 @@ def read_submission(path: Path) -> Submission:
             continue
         if written.lower() not in names:
             allowed = [*names.values()]
-            found = f"'{written}' is not asked for{nearest(written, allowed)}"
+            found = f"'{written}' is not in the form{nearest(written, allowed)}"
             raise InputError(where, found, f"allowed: {', '.join(allowed)}")
         name = names[written.lower()]
         if value.strip() and name in answers:

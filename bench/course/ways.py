@@ -70,7 +70,7 @@ LATE_METHODS: dict[str, Callable[[Array, float], Any]] = {
         np.gradient(speed, period), WIDTH, origin=-1
     ),
 }
-#: Ways that are right, too: what they give apart from RIGHT is no mistake.
+#: Ways that are right, too: what they give in addition to RIGHT is no mistake.
 RIGHT_WAYS = (
     *(Way(width=width, set_back=width // 2) for width in (2, 6, 8)),
     *(Way(method=method) for method in METHODS),

@@ -6,8 +6,8 @@ inductance and temperature:
 
     U = R(T)*Iq + L*dIq/dt + Ke*omega, |U| <= U_max;    J*alpha = kT(Iq)*Iq - K_w*omega - K_0*sgn(omega)
 
-dcmotor's torque is Ke*Iq; what the iron's saturation takes of it, (Ke - kT(Iq))*Iq, is applied beside it in each step.
-The drive asks for the current that its velocity loop wants, at most peak current, and its current loop sets the
+dcmotor's torque is Ke*Iq; what the iron's saturation takes of it, (Ke - kT(Iq))*Iq, is applied in addition in each
+step. The drive asks for the current that its velocity loop wants, at most peak current, and its current loop sets the
 voltage U = R(T)*I_set + Ke*omega + L/T_c*(I_set - Iq).
 """
 

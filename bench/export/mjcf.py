@@ -178,7 +178,7 @@ def _beside(spec: mujoco.MjSpec, one: AddedBody, path: Path) -> str:
     return f"{one.joint}: its link has {share:.4g} times the MJCF's inertia about its centre"
 
 
-def joint_alone(stored: StoredModel, name: str) -> tuple[str, Carried]:
+def single_joint(stored: StoredModel, name: str) -> tuple[str, Carried]:
     """Text of an MJCF with one body on a joint, whose values are a default class; it attaches to any body."""
     spec, model, mounting = mujoco.MjSpec(), stored.model, stored.mounting
     spec.modelname = name

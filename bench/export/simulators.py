@@ -1,7 +1,7 @@
 """A model as other simulators take a joint: for each of them a file as it documents it, and what that cannot carry.
 
 All values are on the joint's side of a gear, as `bench.export.mjcf` has them, but where a simulator has the gear too.
-Effects give the part that MuJoCo has natively, by building the axis with each alone; for their friction in
+Effects give the part that MuJoCo has natively, by building the axis with one at a time; for their friction in
 others' words (`bench.effects.torque.FrictionLaw`).
 """
 

@@ -263,7 +263,7 @@ def lay_out(
     held_by = np.array(owners, dtype=object)
     effort = seen.kept(effort_of, lag=late)[:, 0] if late else seen.effort
     if (moving or late) and seen.stretches[0].signals.known:
-        # as the motion shows it, whose lag is undone; all of it of an effort that was made anew
+        # as the motion shows it, whose lag is undone; all of it of an effort that was computed again
         known = seen.kept(known_of, lag=moving)[:, 0]
         effort = effort - (known if late else known - seen.kept(known_of)[:, 0])
     rescaling = np.flatnonzero(np.isin(held_by, hypothesis.having(lambda effect: effect.rescales_torque)))

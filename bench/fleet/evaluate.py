@@ -248,7 +248,7 @@ def _looked_at(storages: Sequence[str], limits: Bounds, asked: tuple[str, str]) 
 def _planned(
     place: str, mark: str | Plain, axis: str, rig: tuple[Rig, str] | Plain, options: Plain
 ) -> PlannedRecording:
-    """A recording with all that its result depends on: beside trace, axis and rig the version and the options."""
+    """A recording with all that its result depends on: trace, axis, rig, version and the options."""
     basis: Plain = {"version": __version__, "rig_sha256": None, "options": options}
     if isinstance(rig, dict):
         return PlannedRecording("", None, rig, basis)

@@ -85,7 +85,7 @@ def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str,
 
 
 def _left(fitted: Balanced, factors: Array) -> float:
-    """Share of the effort that the balance does not explain in the windows, their effort times factors (n,); 0 leaves
+    """Share of the effort that the balance does not explain in the windows, their effort times factors (n,); 0 omits
     one out."""
     used = factors != 0.0
     effort, basis = (fitted.effort * factors)[used], basis_of(fitted.columns[used])

@@ -35,7 +35,7 @@ NEXT = {
 }
 #: Margins to which the chart reaches at least, so that one is seen, and at most, so that small differences are.
 LEAST, MOST = 2.0, 8.0
-#: Characters of what a state is based on, and of a title made of file names.
+#: Characters of what a state is based on, and of a title of file names.
 LONG = 600
 
 

@@ -107,7 +107,7 @@ def drawing(part: doc.Drawable) -> tuple[float, Callable[..., None]]:
             legends = sum(-(-len(names) // across(names)) for names in named)
             return max(3.0, 0.8 + STACKED * len(part.panels)) + LINE * legends, _stacked
         case doc.Chart():
-            return 0.4 + ROW * (-(-len(part.panels) // ACROSS) if len(part.panels) > 1 else 1.6), _beside
+            return 0.4 + ROW * (-(-len(part.panels) // ACROSS) if len(part.panels) > 1 else 1.6), _side_by_side
 
 
 def _write(figure: Figure | SubFigure, table: doc.Table) -> None:
@@ -146,7 +146,7 @@ def _extent(time: Array, low: Array, high: Array) -> list[Array]:
     return thinned(time, low)
 
 
-def _beside(figure: Figure | SubFigure, chart: doc.Chart) -> None:
+def _side_by_side(figure: Figure | SubFigure, chart: doc.Chart) -> None:
     """Panels next to each other on one y scale, under one legend."""
     across = min(len(chart.panels), ACROSS)
     rows = -(-len(chart.panels) // across)

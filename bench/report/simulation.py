@@ -112,8 +112,8 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         InputError: the model cannot be read.
     """
     title, effort = f"{readable(model.name)} along {along}", effort_word(replayed.effort_unit)
-    torque = _left(replayed.torque, replayed.torque_simulated)
-    speed = _left(replayed.velocity, replayed.velocity_simulated)[1]
+    torque = _residual(replayed.torque, replayed.torque_simulated)
+    speed = _residual(replayed.velocity, replayed.velocity_simulated)[1]
     line, moves = (
         f"The model does not explain {share(torque[0])} of the {effort}",
         "The model contains no motion, only torque.",
@@ -147,7 +147,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
     )
 
 
-def _left(measured: Array, simulated: Array) -> tuple[float, float]:
+def _residual(measured: Array, simulated: Array) -> tuple[float, float]:
     """Share of a signal that is residual, and its RMS; nan where the model predicts nothing."""
     known = np.isfinite(simulated) & np.isfinite(measured)
     if not known.any():

@@ -131,7 +131,7 @@ def draft(inspection: Inspection, motor: str | None = None, axis: str | None = N
 def drafted(recording: Recording, axis: str | None = None) -> tuple[Rig, str, str]:
     """The rig that a recording, or one axis of several in it, drafts: its text too, and what it assumes, in a line.
 
-    InputError where the recording leaves open what only the user can state.
+    InputError where the user has to state something.
     """
     from bench.trace.inspect import inspect_recording
 

@@ -220,7 +220,7 @@ class ColumnName:
     """What the words of a column's name mean.
 
     Attributes:
-        told: signals of its words, more than one where they leave it open.
+        told: signals of its words, more than one where they are ambiguous.
         letter: of LETTERS, where no word names a signal.
         setpoint, measured: whether a word states it.
         foreign, supply: whether it is of something else than the axis, or of its supply.

@@ -47,7 +47,7 @@ class Signature:
         present: the effect with its values.
         text: the same as the command line takes it.
         affected, plain: recordings with the effect and without it, under the same drive along the same motion.
-        bare: inertia, viscous and Coulomb friction fitted to the first; what they leave is the gap.
+        bare: inertia, viscous and Coulomb friction fitted to the first; their residual is the gap.
         motions: by name of the motion, RMS of the gap over its noise floor.
         detected: motions in which single signals show it.
         shares: of the squared gap, what each effect of the catalogue and each decoy model would explain, were it

@@ -7,13 +7,13 @@ from mujoco.batch import Batch
 import bench
 from bench.assets import asset
 from bench.effects.present import parse_effect
-from bench.export.mjcf import joint_alone
+from bench.export.mjcf import single_joint
 
 rig = bench.load_rig(asset("data", "rigs", "sh30701p.toml"))
 hidden = [parse_effect("stribeck_friction:static_friction=0.17,stribeck_velocity=3")]
 found = bench.diagnose(bench.simulate(rig, "identification", effects=hidden).trace, rig)
 
-text, _ = joint_alone(found.model, "elbow")
+text, _ = single_joint(found.model, "elbow")
 model = mujoco.MjModel.from_xml_string(text)
 batch = Batch(model, 100)
 copies = bench.Effects(found.model, joint="elbow").on(batch)

@@ -5,14 +5,14 @@ import mujoco
 import bench
 from bench.assets import asset
 from bench.effects.present import parse_effect
-from bench.export.mjcf import joint_alone
+from bench.export.mjcf import single_joint
 
 rig = bench.load_rig(asset("data", "rigs", "sh30701p.toml"))
 hidden = [parse_effect("stribeck_friction:static_friction=0.17,stribeck_velocity=3")]
 run = bench.simulate(rig, "identification", effects=hidden).trace
 found = bench.diagnose(run, rig)
 
-text, carried = joint_alone(found.model, "elbow")  # an MJCF with this one joint, to attach to any body
+text, carried = single_joint(found.model, "elbow")  # an MJCF with this one joint, to attach to any body
 print("\n".join(carried.lines))
 
 model = mujoco.MjModel.from_xml_string(text)

@@ -433,7 +433,7 @@ def test_the_texts_acceleration_is_right_unless_the_teacher_asks_for_a_synchroni
             verdicts[acceleration, student] = of_student["K_fric_w"]
             if (acceleration, student) == ("either", "01"):
                 page = (tmp_path / "out" / "students" / "student-01.html").read_text(encoding="utf-8")
-                assert "as the text says" in page
+                assert "as in the text" in page
                 assert 'class="marked"' not in page
     assert verdicts == {
         ("either", "01"): "right",

@@ -12,7 +12,7 @@ from bench.effects.signals import AxisState
 from bench.effects.tabulated import NAMES, NODES, TABLES
 from bench.errors import InputError
 from bench.export.feedforward import feedforward
-from bench.export.mjcf import joint_alone
+from bench.export.mjcf import single_joint
 from bench.export.simulators import TARGETS, simulator_file
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import StoredModel, load_model, model_toml, model_xml
@@ -117,7 +117,7 @@ def test_friction_of_a_table_holds_and_never_drives():
 
 def test_every_export_carries_a_table_or_says_that_it_does_not():
     stored = with_all()
-    texts = [model_xml(stored), "\n".join(joint_alone(stored, "joint")[1].lines)]
+    texts = [model_xml(stored), "\n".join(single_joint(stored, "joint")[1].lines)]
     texts += ["\n".join(simulator_file(to, {"joint": stored}, "xl330" if to == "bam" else None)[1]) for to in TARGETS]
     for text in texts:
         assert all(name in text for name in TABLES)

@@ -14,10 +14,10 @@ from bench.export.mjcf import (
     ArmatureShare,
     armature_of,
     commented,
-    joint_alone,
     link_inertia,
     onto,
     robot_with,
+    single_joint,
 )
 from bench.plant.mjcf_file import read_mjcf
 from bench.plant.model_file import model_xml
@@ -180,7 +180,9 @@ FLYING = """<mujoco><worldbody><body name="drone"><freejoint/><geom size=".1"/>
   <body name="boom" pos="0 0 .2"><joint name="tilt"/><geom size=".05"/></body></body></worldbody></mujoco>"""
 
 
-@pytest.mark.parametrize("text", [model_xml, lambda model: joint_alone(model, "axis")[0]], ids=["model.xml", "snippet"])
+@pytest.mark.parametrize(
+    "text", [model_xml, lambda model: single_joint(model, "axis")[0]], ids=["model.xml", "snippet"]
+)
 @pytest.mark.filterwarnings("ignore:Attach conflict")
 def test_files_attach_to_a_moving_body(text):
     """The child's timestep is not the parent's, which MuJoCo says and keeps."""
@@ -209,27 +211,27 @@ def test_files_open_whatever_the_inertia(inertia, motor):
     """MuJoCo wants A + B >= C of every body, and its own files hold six digits."""
     parameters = replace(PARAMETERS, inertia=inertia, motor_inertia=motor * inertia, viscous_friction_coefficient=0.0)
     model = stored(parameters=parameters)
-    for text in (model_xml(model), joint_alone(model, "axis")[0]):
+    for text in (model_xml(model), single_joint(model, "axis")[0]):
         opened = mujoco.MjModel.from_xml_string(text)
         assert opened.dof_M0[0] == pytest.approx(inertia, rel=2e-3)
 
 
 def test_the_snippet_has_its_values_in_a_class():
-    text, _ = joint_alone(stored(COGGING, gear_ratio=2.0, load_mass=0.9), "axis")
+    text, _ = single_joint(stored(COGGING, gear_ratio=2.0, load_mass=0.9), "axis")
     assert '<default class="the_axis">' in text
     assert '<joint name="axis" class="the_axis"' in text
     model = mujoco.MjModel.from_xml_string(text)
     assert model.dof_armature[0] == pytest.approx(4e-4)
     np.testing.assert_allclose(model.body("load").inertia, [3.6e-3, 1.8e-3, 1.8e-3], rtol=2e-4)
     assert model.body("load").mass[0] == 0.9
-    assert "as a placeholder: give the body its own" in joint_alone(stored(), "axis")[0]
+    assert "as a placeholder: give the body its own" in single_joint(stored(), "axis")[0]
 
 
 @pytest.mark.parametrize("known", [{"motor_inertia": 1e-4}, {"motor_inertia": 0.0}, {"link_inertia": 0.02}], ids=str)
 def test_the_snippet_has_the_models_inertia_once(known):
     parameters = replace(PARAMETERS, motor_inertia=known.get("motor_inertia", 0.0))
     whole = stored(parameters=parameters, gear_ratio=10.0, link_inertia=known.get("link_inertia", 0.0))
-    model = mujoco.MjModel.from_xml_string(joint_alone(whole, "axis")[0])
+    model = mujoco.MjModel.from_xml_string(single_joint(whole, "axis")[0])
     assert model.dof_M0[0] == pytest.approx(PARAMETERS.inertia * 100.0)
 
 
@@ -249,7 +251,9 @@ def test_a_robot_in_a_file_keeps_its_meshes(tmp_path):
     assert mujoco.MjModel.from_xml_path(str(out)).dof_frictionloss[0] == pytest.approx(0.08)
 
 
-@pytest.mark.parametrize("text", [model_xml, lambda model: joint_alone(model, "axis")[0]], ids=["model.xml", "snippet"])
+@pytest.mark.parametrize(
+    "text", [model_xml, lambda model: single_joint(model, "axis")[0]], ids=["model.xml", "snippet"]
+)
 def test_no_actuator_is_of_a_kind_that_only_mujoco_has(text):
     """mujoco_warp 4.0.0 refuses the gain of a PID."""
     model = mujoco.MjModel.from_xml_string(text(stored(COGGING, OFFSET)))

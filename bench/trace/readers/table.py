@@ -99,13 +99,13 @@ def _read(source: Source) -> Recording:
         layout = _layout_of(source)
     if layout is None:
         raise _no_table(source)
-    _require_apart(layout, source.path)
+    _require_separate(layout, source.path)
     samples = utf8(source.content).split(b"\n", layout.start)[-1]
     channels, found = read_lines(samples, layout.start + 1, layout, source.path)
     return Recording(channels, TABLE.format, source.path, notes=(*notes, *found))
 
 
-def _require_apart(layout: TableLayout, path: str) -> None:
+def _require_separate(layout: TableLayout, path: str) -> None:
     """InputError where decimal commas stand between commas, so that lines have more cells than there are names."""
     width = len(layout.labels)
     names = max((len(cells_of(line, ",")) for line in layout.head), default=0)

@@ -81,7 +81,7 @@ class Effect(ABC):
     transmitted: ClassVar[bool] = False
     #: Name of the effect that no axis has together with it, or that no recording distinguishes from it; one of the two
     #: names it.
-    never_beside: ClassVar[str] = ""
+    excludes: ClassVar[str] = ""
 
     def __init_subclass__(cls) -> None:
         cls.name = re.sub(r"\B([A-Z])", r"_\1", cls.__name__).lower()
@@ -220,7 +220,7 @@ class DirectionalLoadFriction(Effect):
     K_m motor_coefficient, load_ratio K_e/K_m. Duclusaud et al., arXiv 2410.08650 (2024).
     """
 
-    never_beside: ClassVar[str] = LoadDependentFriction.name
+    excludes: ClassVar[str] = LoadDependentFriction.name
     motor_coefficient: float
     load_ratio: float
 
@@ -277,7 +277,7 @@ class FrictionWarmup(Effect):
 class TorqueOffset(Effect):
     """Constant resisting torque - N*m."""
 
-    never_beside: ClassVar[str] = DirectionDependentFriction.name
+    excludes: ClassVar[str] = DirectionDependentFriction.name
     transmitted: ClassVar[bool] = True
     torque: float
 
@@ -382,7 +382,7 @@ class Backlash(Effect):
     gap - rad, contact_stiffness k - N*m/rad, contact_damping d - N*m*s/rad.
     """
 
-    never_beside: ClassVar[str] = ElasticCoupling.name
+    excludes: ClassVar[str] = ElasticCoupling.name
     gap: float
     contact_stiffness: float
     contact_damping: float
@@ -567,7 +567,7 @@ class TorqueConstantDrift(Effect):
 class VelocityFilterLag(Effect):
     """Reported speed v follows the sensed one: T*dv/dt = w - v; T time_constant - s."""
 
-    never_beside: ClassVar[str] = CurrentLoopLag.name
+    excludes: ClassVar[str] = CurrentLoopLag.name
     time_constant: float
 
     @classmethod
@@ -617,5 +617,5 @@ def any_effects(
     allowed = [name for name, kind in CATALOGUE.items() if (kind.on_linear_axis or not linear) and name not in without]
     while True:
         names = tuple(str(name) for name in rng.choice(allowed, count, replace=False))
-        if not any(KINDS[name].never_beside in names for name in names):
+        if not any(KINDS[name].excludes in names for name in names):
             return names

@@ -17,7 +17,7 @@ class Noise:
     Attributes:
         white: standard deviation - unit of the signal.
         coloured, correlation_time: standard deviation of a first-order Markov process and its time - unit, s.
-        Amplitude of mains pick-up - unit, Hz, rad.
+        hum, hum_frequency, hum_phase: amplitude of mains pick-up - unit, Hz, rad.
         resolution: the signal is rounded to multiples of it - unit.
     """
 

@@ -34,7 +34,7 @@ from bench.baseline.check import Allowed, compare
 from bench.baseline.observe import Observed
 from bench.baseline.state import read_baseline
 from bench.errors import BenchError
-from bench.export.mjcf import joint_alone, link_inertia
+from bench.export.mjcf import link_inertia, single_joint
 from bench.files import write_text
 from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.fleet import tabulate
@@ -197,7 +197,7 @@ def rig(data: bytes) -> None:
 
 
 def model(data: bytes) -> None:
-    joint_alone(load_model(written("model.toml", data)), "joint")
+    single_joint(load_model(written("model.toml", data)), "joint")
 
 
 def mjcf(data: bytes) -> None:

@@ -85,7 +85,7 @@ def itself(source: Source) -> Known | str:
 def possible(effect: str, own: Known) -> bool:
     """Whether an axis can have an effect beside what it has, and show it: one coupling, one friction by its load."""
     beside = {effect, *own.beside}
-    return not beside >= OPPOSED and not any(KINDS[name].never_beside in beside for name in beside)
+    return not beside >= OPPOSED and not any(KINDS[name].excludes in beside for name in beside)
 
 
 def draw(sources: Sequence[str], effects: Sequence[str], seed: int) -> list[Case]:

@@ -11,7 +11,7 @@ def test_four_to_six_effects_that_an_axis_can_have_together():
     drawn = draw(1, 30)
     names = [{effect.name for effect in case.hidden.effects} for case in drawn]
     assert {len(those) for those in names} == set(range(MANY[0], MANY[1] + 1))
-    assert not any(CATALOGUE[name].never_beside in those for those in names for name in those)
+    assert not any(CATALOGUE[name].excludes in those for those in names for name in those)
     assert all(SEVERITY[0] <= s <= SEVERITY[1] for place in range(30) for s in severities_of(1, place, 6))
 
 

@@ -5,7 +5,7 @@
   const figures = (value, unit) => (Number.isNaN(value) ? "not known" : value.toPrecision(4).replace(/-/g, "−") + " " + unit);
 
   // a frame: three rows of turn and place
-  const STANDS = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
+  const FIXED = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
   const within = (a, b) => [0, 4, 8].flatMap((r) => [0, 1, 2, 3].map((c) =>
     a[r] * b[c] + a[r + 1] * b[c + 4] + a[r + 2] * b[c + 8] + (c === 3 ? a[r + 3] : 0)));
   const turned = ([w, x, y, z], [a, b, c]) => [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), a,
@@ -58,10 +58,10 @@
         return values[k] + share * (values[k + 1] - values[k]);
       };
       bodies.forEach((body, b) => {
-        let here = b === 0 ? STANDS : within(found[body.parent], turned(body.turn, body.place));
+        let here = b === 0 ? FIXED : within(found[body.parent], turned(body.turn, body.place));
         for (const { of, axis, anchor, slides, zero } of body.joints) {
-          const apart = of > 0 && others.length ? pose(others[of - 1]) : 0; // where it is not known, as measured
-          const by = of === null ? 0 : (of === 0 ? own / ratio : pose(this.poses[of - 1]) + times * (apart || 0)) - zero;
+          const ahead = of > 0 && others.length ? pose(others[of - 1]) : 0; // where it is not known, as measured
+          const by = of === null ? 0 : (of === 0 ? own / ratio : pose(this.poses[of - 1]) + times * (ahead || 0)) - zero;
           here = within(here, slides ? turned([1, 0, 0, 0], axis.map((x) => x * by)) : about(axis, anchor, by));
         }
         found.push(here);
@@ -120,10 +120,10 @@
       if (this.robot) this.robot.frame(this.data, this.position);
       this.last = this.data.count - 1;
       this.at = 0; // in instants
-      this.from = null; // moment and instant from which it plays; null while it stands
+      this.from = null; // moment and instant from which it plays; null while it pauses
       for (const name of ["stage", "readout", "play"]) this[name] = figure.querySelector("." + name);
       for (const name of ["simulated", "ghost"]) this[name] = this.stage.querySelector("." + name);
-      this.told = figure.querySelector("output.slowed");
+      this.label = figure.querySelector("output.slowed");
       this.instant = figure.querySelector("[name=instant]");
       this.slowed = figure.querySelector("[name=slowed]");
       this.times = figure.querySelectorAll("[type=radio]");
@@ -158,8 +158,8 @@
 
     tempo() {
       const slowed = SLOWED[Number(this.slowed.value)];
-      this.told.value = slowed === 1 ? "real time" : slowed + " times slower";
-      this.slowed.setAttribute("aria-valuetext", this.told.value);
+      this.label.value = slowed === 1 ? "real time" : slowed + " times slower";
+      this.slowed.setAttribute("aria-valuetext", this.label.value);
       this.perSecond = 1 / (slowed * this.data.step);
       if (this.from !== null) this.from = [performance.now(), this.at];
     }
@@ -195,19 +195,19 @@
     draw() {
       const { start, step, unit, turns, ghost } = this.data, time = start + step * this.at;
       const run = this.run ? Number(this.run.value) : 0;
-      const at = this.read(this.position), apart = this.read(this.runs[run]);
+      const at = this.read(this.position), ahead = this.read(this.runs[run]);
       const times = Number([...this.times].find((one) => one.checked).value);
-      if (this.robot) this.robot.draw(time, at + times * apart, at, this.others[run], times);
+      if (this.robot) this.robot.draw(time, at + times * ahead, at, this.others[run], times);
       else {
         this.put(this.ghost, at);
-        this.put(this.simulated, at + times * apart);
+        this.put(this.simulated, at + times * ahead);
       }
       const seconds = time.toFixed(Math.min(6, Math.max(3, Math.ceil(-Math.log10(step))))) + " s";
       this.instant.value = Math.round(this.at);
       this.instant.setAttribute("aria-valuetext", seconds);
-      const degrees = turns && !Number.isNaN(apart) ? " (" + ((apart * 180) / Math.PI).toPrecision(3).replace(/-/g, "−") + "°)" : "";
-      const texts = ["at " + seconds, ghost + " " + figures(at, unit), "simulated " + figures(at + apart, unit),
-        "simulated less " + ghost + " " + figures(apart, unit) + degrees];
+      const degrees = turns && !Number.isNaN(ahead) ? " (" + ((ahead * 180) / Math.PI).toPrecision(3).replace(/-/g, "−") + "°)" : "";
+      const texts = ["at " + seconds, ghost + " " + figures(at, unit), "simulated " + figures(at + ahead, unit),
+        "simulated less " + ghost + " " + figures(ahead, unit) + degrees];
       this.readout.replaceChildren(...texts.map((text) => Object.assign(document.createElement("span"), { textContent: text })));
       window.dispatchEvent(new CustomEvent("instant", { detail: time }));
     }

@@ -9,7 +9,7 @@
   const line = uPlot.paths.linear();
   const shown = (value, unit) => (value == null ? "–" : Number(value.toPrecision(4)) + (unit ? " " + unit : ""));
 
-  const labels = (u, splits, axis, space, step) => { // with as many digits as tell them apart
+  const labels = (u, splits, axis, space, step) => { // with as many digits as distinguish them
     let digits = 0;
     while (digits < 15 && Math.abs(Math.round(step * 10 ** digits) / (step * 10 ** digits) - 1) > 1e-6) digits++;
     const text = (value) => (digits > 4 ? value.toExponential(Math.max(0, Math.floor(Math.log10(Math.abs(value)) + digits))) : value.toFixed(digits));
@@ -104,7 +104,7 @@
       window.addEventListener("beforeprint", () => this.build(true)); // before pages are counted, whose heights are these
     }
 
-    point(time) { // the cursor of all panels, for whoever tells a time; beyond what is in sight it is gone
+    point(time) { // the cursor of all panels, for other parts that have a time; beyond what is in sight it is gone
       for (const plot of this.plots) {
         const left = plot.valToPos(time, "x");
         plot.setCursor(left < 0 || left > plot.over.clientWidth ? { left: -10, top: -10 } : { left, top: 0 });
@@ -133,7 +133,7 @@
       const curves = this.curves(panel), last = k === this.data.panels.length - 1;
       const colours = curves.map((c) => colour(panel.first && c.choice === 0 && this.choice > 0 ? "first" : c.role));
       const axis = { stroke: colour("soft"), grid: { stroke: colour("rule"), width: 1 }, ticks: { stroke: colour("rule"), width: 1 }, font: "12px system-ui, sans-serif" };
-      const tell = (u) => this.tell(u, readout, panel, curves, colours);
+      const readOut = (u) => this.readOut(u, readout, panel, curves, colours);
       const plot = new uPlot({
         width: this.place.clientWidth || 600,
         height: (this.paper ? HEIGHT.paper : k === 0 ? HEIGHT.first : HEIGHT.other) + (last ? 38 : 0),
@@ -150,7 +150,7 @@
           bind: { dblclick: () => () => { this.show(...this.whole); return null; } } },
         hooks: {
           drawSeries: [(u, i) => { if (barred[i]) bars(u, i, colours[i - 1]); }],
-          setCursor: [tell],
+          setCursor: [readOut],
           setSelect: [(u) => {
             if (u.select.width < 4) return;
             const at = (pixel) => (u.posToVal(pixel, "x") - this.data.start) / this.data.step;
@@ -161,12 +161,12 @@
         },
       }, [[], ...curves.map(() => [])], this.place);
       sync.sub(plot);
-      Object.assign(plot, { curves, tell: () => tell(plot) });
-      plot.tell();
+      Object.assign(plot, { curves, readOut: () => readOut(plot) });
+      plot.readOut();
       return plot;
     }
 
-    tell(u, readout, panel, curves, colours) {
+    readOut(u, readout, panel, curves, colours) {
       const at = u.cursor.idx;
       const name = document.createElement("b");
       name.textContent = panel.label + (panel.unit ? " / " + panel.unit : "");
@@ -214,7 +214,7 @@
       for (const plot of this.plots) {
         const columns = plot.curves.map((curve) => (plain ? this.values(curve, from, to) : this.extremes(curve, from, to, size)));
         plot.batch(() => { plot.setData([x, ...columns], false); plot.setScale("x", scale); });
-        plot.tell();
+        plot.readOut();
       }
       const digits = Math.min(9, Math.max(0, Math.ceil(-Math.log10(step))));
       const [first, last] = [Math.max(a, 0), Math.min(b, this.data.count - 1)].map((k) => Number((start + step * k).toFixed(digits)));
