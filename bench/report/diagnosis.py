@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import compress
 from pathlib import Path
 from typing import Any
 
@@ -272,7 +273,7 @@ def _answers(found: Diagnosis) -> dict[str, str]:
     return {
         "What was missing?": f"{sentence('; '.join(missing)) or 'No effect of the catalogue.'}{_tabulated(found)}",
         "How sure?": _sure(found),
-        "Does it move like the axis now?": _moves(found),
+        "Does it move like the axis now?": moves(found),
         f"{sentence(words(inertia))}?": f"{brief(value)} (95 %)"
         if value
         else f"Not determined together with the missing effects: {found.refused[of_axis]}",
@@ -346,7 +347,7 @@ def _chances(shares: Mapping[str, float]) -> str:
     return ", ".join(f"{words(name)}: {chance(share)}" for name, share in ranked[:MOST_SHOWN] if share > LEAST_SHOWN)
 
 
-def _moves(found: Diagnosis) -> str:
+def moves(found: Diagnosis) -> str:
     """Whether the simulation moves as the axis does: wholly only where nothing speaks against the model."""
     gap = found.velocity
     if gap.final is None:
@@ -445,7 +446,7 @@ def _notes(found: Diagnosis) -> list[str]:
 
 
 def _suspects(found: Diagnosis) -> doc.Section:
-    rows = (
+    rows = [
         (
             words(one.effect.name),
             "yes" if one.accepted else "no",
@@ -454,14 +455,20 @@ def _suspects(found: Diagnosis) -> doc.Section:
             reason(one.reason),
         )
         for one in found.considered
-    )
+    ]
     caption = (
-        "Every effect of the catalogue: the share of the squared gap that it explains as the only effect, the share of "
+        "Effects of the catalogue: the share of the squared gap that each explains as the only effect, the share of "
         "the squared residual that it explains in addition to those found, and why it was or was not added"
     )
     headings = ("effect", "added", "probability>", "of the gap>", "of the residual>", "reason~")
-    marked = (k for k, one in enumerate(found.considered) if one.accepted)
-    return doc.section("suspects", "Suspects", doc.table(caption, headings, rows, marked), detail=True)
+    shown = [one.accepted or one.probability > LEAST_SHOWN for one in found.considered]
+    likely, rest = (list(compress(rows, kept)) for kept in (shown, [not kept for kept in shown]))
+    marked = (k for k, one in enumerate(compress(found.considered, shown)) if one.accepted)
+    tables = [doc.table(caption, headings, likely, marked)] if likely else []
+    if rest:
+        limit = f"{len(rest)} effects with a probability of at most {share(LEAST_SHOWN)}"
+        tables.append(doc.table(limit, headings, rest).model_copy(update={"folded": True}))
+    return doc.section("suspects", "Suspects", *tables, detail=True)
 
 
 def _next(found: Diagnosis) -> doc.Section:

@@ -123,6 +123,7 @@ class Table(Part):
         links: where the names of rows lead to, a page each, "" for none; () without.
         sketches: what is drawn small into the second cell of each row, without axes; () without.
         sought: whether a reader can seek rows by words.
+        folded: whether a page shows only its caption until a reader opens it.
     """
 
     kind: Literal["table"] = "table"
@@ -133,6 +134,7 @@ class Table(Part):
     links: tuple[Address, ...] = ()
     sketches: tuple[tuple[Series, ...], ...] = ()
     sought: bool = False
+    folded: bool = False
 
     @model_validator(mode="after")
     def _is_whole(self) -> Table:

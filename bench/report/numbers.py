@@ -13,6 +13,8 @@ SPACE = "\N{NO-BREAK SPACE}"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 #: Values outside of these are written with a power of ten.
 SMALL, LARGE = 1e-2, 1e5
+#: The same of half an interval that contains zero.
+SMALL_HALF = 1e-4
 #: Digits behind the point, where an interval is next to nothing.
 MOST_DECIMALS = 9
 #: Shares below it are not distinguished.
@@ -49,7 +51,8 @@ def interval(found: Parameter, unit: bool = True) -> str:
     if not math.isfinite(half) or half <= 0.0:
         return f"{number(found.value, digits=5)}{SPACE}{shown}".strip()
     size = abs(found.value)
-    power = 3 * math.floor(math.log10(size) / 3) if size > 0.0 and not SMALL <= size < LARGE else 0
+    small, size = (SMALL, size) if size > half else (SMALL_HALF, half)
+    power = 3 * math.floor(math.log10(size) / 3) if not small <= size < LARGE else 0
     scale = 10.0**power
     decimals = min(max(0, 1 - math.floor(math.log10(half / scale))), MOST_DECIMALS)
     value = f"{found.value / scale:.{decimals}f}".replace("-", "−")

@@ -18,9 +18,9 @@ from bench.names import readable, words
 from bench.parameter import Parameter
 from bench.plant.model_file import joints_toml
 from bench.report import document as doc
-from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names
+from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names, moves
 from bench.report.grade import grade_json, grade_section
-from bench.report.numbers import interval, sentence, unit_text
+from bench.report.numbers import interval, number, sentence, unit_text
 from bench.report.parts import origin, parameters_table
 from bench.report.serial import as_json, picked, serialised
 from bench.report.simulation import moving_section
@@ -28,6 +28,8 @@ from bench.report.verdict import reasons
 
 SCHEMA = "bench.robot/1"
 MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
+#: Joints that an answer lists.
+SUMMARISED = 3
 #: Sections of a diagnosis that a robot's page has of each joint.
 SHOWN = ("motion", "where", "parameters", "notes", "checks")
 
@@ -100,7 +102,7 @@ def robot(
         subject=f"Joints of {title}",
         verdict=_verdict(found),
         tone="refused" if not found.answered else "sure" if _settled(found) == len(found.joints) else "open",
-        answers={},
+        answers=_answers(found),
         sections=tuple(sections),
         origin=origin(provenance),
         warnings=(*found.warnings, *_of_joints(found)),
@@ -118,6 +120,37 @@ def _of_joints(found: IdentifiedRobot) -> list[str]:
         f"{'all joints' if len(names) == every > 1 else ', '.join(names)}: {warning}"
         for warning, names in concerned.items()
     ]
+
+
+def _answers(found: IdentifiedRobot) -> dict[str, str]:
+    """What was missing, how sure and how large, whether the joints move like the robot, and what to record next."""
+    known = {name: joint.diagnosis for name, joint in found.joints.items() if joint.diagnosis is not None}
+    if not known:
+        return {}
+    named = {name: one for name, one in known.items() if one.effects}
+    sizes = {
+        name: f"{number(one.torque.identify[0], digits=3)} to {number(one.torque.identify[1], one.torque.unit, 3)}"
+        for name, one in (named or known).items()
+        if one.torque.identify is not None
+    }
+    missing = {
+        name: f"{', '.join(words(effect.effect.name) for effect in one.effects)}." for name, one in named.items()
+    }
+    later = {name: text for name, joint in found.joints.items() for _, text in _open(joint) if text}
+    return {
+        "What was missing?": _by_joint(missing) or "No missing effect found.",
+        "How sure?": _by_joint({name: likely_names(one) for name, one in (named or known).items()}),
+        "RMS torque gap, before and after?": _by_joint({name: f"{text}." for name, text in sizes.items()}),
+        "Does it move like the robot now?": _by_joint({name: moves(one) for name, one in (named or known).items()}),
+        "What next?": _by_joint(later) or "No further recording is needed.",
+    }
+
+
+def _by_joint(texts: Mapping[str, str]) -> str:
+    """Texts of the first joints, and how many more there are."""
+    shown = [f"{name}: {text}" for name, text in [*texts.items()][:SUMMARISED]]
+    more = len(texts) - len(shown)
+    return " ".join([*shown, *([f"{more} more joints are listed below."] if more > 0 else [])])
 
 
 def _settled(found: IdentifiedRobot) -> int:

@@ -22,6 +22,7 @@ def plain(text):
         (123456.0, 789.0, "N", "(123.46 ± 0.79)·10³ N"),
         (2.0, 150.0, "rad/s**2", "2 ± 150 rad/s²"),
         (0.0, 0.1, "N", "0.00 ± 0.10 N"),
+        (-0.000274, 0.00349, "kg*m**2", "−0.0003 ± 0.0035 kg·m²"),
     ],
 )
 def test_a_value_has_as_many_digits_as_its_interval(value, half, unit, text):
