@@ -143,7 +143,7 @@ MISTAKES: tuple[Mistake, ...] = (
     ),
     Mistake(
         name=HALF_SAMPLE,
-        why="The mean was set back by its own delay alone: the backward difference is half a sample late besides, and "
+        why="The mean was set back by its own delay alone: the backward difference is half a sample late, too, and "
         "J·α of that half sample appears as friction.",
         ways=(
             *(Way(width=width, set_back=(width - 1) // 2) for width in (3, 5, 7)),

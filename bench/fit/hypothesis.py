@@ -122,7 +122,7 @@ class Hypothesis:
 
     Attributes:
         terms: in the order in which they were added.
-        hum, mains interference: frequencies of the mains in this recording's sensors - Hz.
+        hum: frequencies of the mains in this recording's sensors - Hz.
         step: between the values of the effort, if its last digit matters; else 0 - N*m (N).
         shift: by which the torque is taken late, in addition to the small one that is fitted - s.
     """

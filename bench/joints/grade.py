@@ -1,4 +1,4 @@
-"""A published MJCF held against a log, joint by joint: what it states, what the log tells, and what it lacks."""
+"""A published MJCF compared with a log, joint by joint: what it states, what the log shows, and what it lacks."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Stated:
 
     @property
     def near(self) -> bool | None:
-        """Whether the MJCF agrees with the log; None where the log does not tell."""
+        """Whether the MJCF agrees with the log; None where the log does not determine it."""
         if self.found is None:
             return None
         (low, high), beyond = self.found.ci95, NEAR * abs(self.found.value)
@@ -52,13 +52,13 @@ class GradedJoint:
 
     @property
     def agrees(self) -> bool | None:
-        """Whether all that the log tells is near, and nothing is missing; None where it tells nothing."""
+        """Whether all that the log determines is near, and no effect is missing; None where it determines nothing."""
         near = [each.near for each in self.numbers.values() if each.near is not None]
         return all(near) and not self.lacks if near else None
 
 
 def graded(mjcf: Path, joints: Mapping[str, IdentifiedJoint], stand: bool) -> dict[str, GradedJoint]:
-    """Joints of an MJCF, with a floating base fixed or not, by what logs told of them."""
+    """Joints of an MJCF, with a floating base fixed or not, by their logs."""
     model = read_mjcf(mjcf, stand)[0].compile()
     found = {}
     for name, joint in joints.items():

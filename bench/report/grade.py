@@ -51,7 +51,7 @@ def grade_json(grade: Mapping[str, GradedJoint]) -> dict[str, Any]:
 
 
 def _counts(grade: Mapping[str, GradedJoint]) -> tuple[int, int]:
-    """Of joints that agree, and of those of which the log tells anything."""
+    """Of joints that agree, and of those that the log determines."""
     told = [joint.agrees for joint in grade.values() if joint.agrees is not None]
     return sum(told), len(told)
 
@@ -78,7 +78,7 @@ def _lacks(joint: GradedJoint) -> str:
 
 
 def _badge(grade: Mapping[str, GradedJoint]) -> str:
-    """An SVG of two fields, what is said and of how many joints."""
+    """An SVG of two fields, the result and the number of joints."""
     agree, told = _counts(grade)
     colour = next(colour for least, colour in COLOURS.items() if agree >= least * told) if told else "#5f6368"
     said, width = _share(grade), [int(LETTER * len(text)) + 14 for text in (LABEL, _share(grade))]
