@@ -24,10 +24,9 @@ INTRODUCTION = """# Benchmarks
     python -m tests.studies.benchmarks --out docs
 
 measures what follows (`pip install -e '.[dev,benchmarks]'`). With names, as in
-`python -m tests.studies.benchmarks sysid --out docs`, it measures some of it anew and leaves the rest as it is. Ways
-that are held against each other are measured within one run, in turn, so that they share what else the machine does;
-times are medians, and a ratio is the median of the ratios within each round. A time of one machine says little about
-another, a ratio more.
+`python -m tests.studies.benchmarks sysid --out docs`, it measures some of it again and does not change the rest. What
+is compared is measured within one run, in turn, so that both share what else the machine does; times are medians, and
+a ratio is the median of the ratios within each round. Ratios are valid for other machines more than times are.
 """
 
 
@@ -42,11 +41,11 @@ def measured_by(module: str) -> list[Table]:
 Benchmarks = Mapping[str, tuple[str, Callable[[], list[Table]]]]
 #: Headings of the page's sections in their order, and what measures them, by the names of the command line.
 BENCHMARKS: Benchmarks = {
-    "sysid": ("Identification beside mujoco.sysid", partial(measured_by, "beside_sysid")),
+    "sysid": ("Identification compared with mujoco.sysid", partial(measured_by, "beside_sysid")),
     "before": ("CPU time of an identification against an earlier version", partial(measured_by, "beside_before")),
     "starting": ("CPU time of whole commands against an earlier version", partial(measured_by, "starting")),
-    "stepping": ("Simulation beside bare stepping", partial(measured_by, "beside_stepping")),
-    "reading": ("Reading beside pyarrow", partial(measured_by, "beside_pyarrow")),
+    "stepping": ("Simulation compared with bare stepping", partial(measured_by, "beside_stepping")),
+    "reading": ("Reading compared with pyarrow", partial(measured_by, "beside_pyarrow")),
     "diagnosing": ("CPU time of a diagnosis", partial(measured_by, "diagnosing")),
 }
 
