@@ -95,4 +95,7 @@ CASES = [
     "bench identify pushed.csv --rig rig.toml",
     "bench list effects coging_torque",
     "bench list rigs sh30701",
+    "bench list effects --out list.toml",
+    "bench rigs",
+    "bench export found/model.toml --to drive --out tables",
 ]
