@@ -37,7 +37,7 @@ def pinned(name):
     return exact
 
 
-OPTIONAL = ("mcap", "tdms", "hdf5", "mdf", "video", "lab")
+OPTIONAL = ("mcap", "tdms", "hdf5", "mdf", "video", "lab", "cluster")
 
 
 def test_lower_bounds_are_the_oldest_versions_that_are_tested():

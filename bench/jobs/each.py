@@ -10,6 +10,7 @@ from queue import Empty, SimpleQueue
 from statistics import median
 from threading import Thread
 
+from bench.errors import InputError
 from bench.jobs.process import LOOK, Failure, Item, Limits, Result, WorkerProcess
 
 #: Time that a process takes to start and to load the bench - s (1 to 2 s measured).
@@ -40,13 +41,16 @@ def each(
         starts: time that a process takes to start - s; one more starts where it saves more.
 
     Raises:
-        InputError: no Dask scheduler answers at the address.
+        InputError: no Dask scheduler answers at the address, or Dask is not installed.
     """
     limits = limits or Limits()
     numbered = deque(enumerate(items))
     if scheduler is not None and numbered:
-        from bench.jobs.on_dask import on_dask  # Dask: a second
-
+        try:
+            from bench.jobs.on_dask import on_dask  # Dask: a second
+        except ModuleNotFoundError as error:
+            found = "found, but Dask is not installed"
+            raise InputError("--scheduler", found, "install it: pip install 'servobench[cluster]'") from error
         yield from on_dask(work, numbered, limits, scheduler)
     else:
         yield from _on_this_machine(work, numbered, limits, workers or os.cpu_count() or 1, starts)

@@ -575,7 +575,7 @@ def test_units_are_checked(tmp_path, known, rows, verdict, word):
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("a.csv", a_form("7", "Jay,1,"), ["line 3", "Jay", "not asked for"]),
+        ("a.csv", a_form("7", "Jay,1,"), ["line 3", "Jay", "not in the form"]),
         ("a.csv", a_form("7", "J,about 3,"), ["line 3", "about 3"]),
         ("a.csv", "quantity,value,unit\nJ,3,\n", ["student", "missing"]),
         ("a.csv", a_form("99", "J,3,"), ["99", "07"]),
