@@ -40,6 +40,8 @@ DETERMINED, SCALED = 0.5, 0.15
 NOISE = 2.0
 #: Radians that a loop turns between samples of the log, from which on the log is too slow for it.
 SLOW = 1.2
+#: Samples in the time in which that slowest loop that is not seen turns by SLOW, so that it is seen.
+RESOLVED = 5.0
 #: Distance over which the slope of a known torque is taken - rad.
 ASIDE = 1e-3
 #: A position error that stays above this share of its size, and of the range of the goal, does not distinguish a gain
@@ -227,9 +229,8 @@ def _require_answered(of: ServoLog, fit: ServoFit) -> None:
         raise UndeterminedError(what, reason, "motions with smaller steps, so that the servo follows without its limit")
     if wide and rate * period > SLOW:
         reason = f"the servo follows within a sample of the log ({period * 1e3:.3g} ms)"
-        raise UndeterminedError(
-            what, reason, f"goal and position at {np.ceil(SLOW / 0.3 * rate / 10) * 10:.0f} Hz or more"
-        )
+        # how far within is not known: the least that the loop can be asks for this rate
+        raise UndeterminedError(what, reason, f"goal and position at {RESOLVED / period:.0f} Hz or more")
     if wide:
         reason = f"the log determines kp/J only to {100 * gain.half_width / gain.value:.0f} %"
         raise UndeterminedError(

@@ -169,7 +169,7 @@ def test_a_short_log_cannot_answer():
 def test_a_log_that_is_too_slow_says_which_rate_it_takes():
     truth = Truth(inertia=1e-4, kp=3.0, kv=0.02, viscous=0.01, rate=10.0, control_period=50e-6, dead_time=0.002)
     goal = goals(np.random.default_rng(2), truth.rate, 15.0)
-    with pytest.raises(UndeterminedError, match=r"within a sample of the log \(100 ms\).*Hz or more"):
+    with pytest.raises(UndeterminedError, match=r"within a sample of the log \(100 ms\).*at 50 Hz or more"):
         bench.servo(log(goal, motion(truth, goal), truth.rate))
 
 
