@@ -9,8 +9,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
-from scipy.ndimage import gaussian_filter1d
 
 from bench.arrays import Array, rms
 from bench.effects.present import GivenEffects, Present, given_effects
@@ -215,6 +213,8 @@ class Sampled:
 
     def __init__(self, time: Array, speed: Array) -> None:
         time = np.concatenate([[time[0] - RAMP], time, [time[-1] + RAMP]]) - (time[0] - RAMP)
+        from scipy.interpolate import PchipInterpolator  # 0.5 s, which only a drawn motion has to pay
+
         self._speed = PchipInterpolator(time, np.concatenate([[0.0], speed, [0.0]]))
         self._position, self._acceleration = self._speed.antiderivative(), self._speed.derivative()
         self.duration = float(time[-1])
@@ -234,6 +234,8 @@ def motion_of(recording: Trace) -> Sampled:
     elif "position_reference" in recording:
         speed = np.gradient(recording["position_reference"], time)
     else:
+        from scipy.ndimage import gaussian_filter1d  # 0.1 s, which only a motion without references has to pay
+
         measured = recording["velocity"] if "velocity" in recording else np.gradient(recording["position"], time)
         known = np.isfinite(measured)
         every = np.interp(time, time[known], measured[known])
