@@ -33,7 +33,7 @@ Format = Literal["text", "github", "gitlab"]
 def check(
     baseline: Annotated[Path, Option(help="TOML file of what the axis was.")],
     traces: Annotated[
-        list[Path] | None, Argument(metavar="TRACE...", help="Recordings of the axis now, of any known format.")
+        list[Path] | None, Argument(metavar="TRACE", help="Recordings of the axis now, of any known format.")
     ] = None,
     rig: common.OptionalRigOption = None,
     simulated: Annotated[Path | None, Option(help="model.toml to check in the place of recordings.")] = None,

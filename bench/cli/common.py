@@ -39,9 +39,7 @@ NOTES: dict[str, None] = {}
 #: Parameters of commands whose file is read, and replaced with `--update`.
 REPLACED = frozenset({"baseline"})
 
-TracesArgument = Annotated[
-    list[Path], Argument(metavar="TRACE...", help="Recordings of one axis, of any known format.")
-]
+TracesArgument = Annotated[list[Path], Argument(metavar="TRACE", help="Recordings of one axis, of any known format.")]
 
 
 def _rig_file(given: str) -> Path:
@@ -84,10 +82,12 @@ DraftOption = Annotated[
 MjcfOption = Annotated[
     Path | None, Option("--mjcf", help="MJCF of the robot whose other dynamics are known, gravity among them.")
 ]
-JointOption = Annotated[list[str] | None, Option("--joint", help="Joint of the MJCF that the log is of.")]
+JointOption = Annotated[
+    list[str] | None, Option("--joint", metavar="NAME", help="Joint of the MJCF that the log is of.")
+]
 AtOption = Annotated[
     list[str] | None,
-    Option("--at", help="NAME=ANGLE of a joint that stands still and is not in the log. Repeatable."),
+    Option("--at", metavar="NAME=ANGLE", help="Of a joint that stands still and is not in the log. Repeatable."),
 ]
 RIG_HELP = "Rig file (TOML), or a shipped rig's name: what is known about the axis."
 RigOption = Annotated[Path, Option("--rig", help=RIG_HELP, **_RIG)]

@@ -145,7 +145,7 @@ def diagnose(
     holdout: Annotated[Path | None, Option(help="Another recording of the axis, not fitted.")] = None,
     json: common.JsonOption = None,
     out: Annotated[Path | None, Option(help="Folder for model, figures and JSON.")] = None,
-    without: Annotated[list[str] | None, Option(help="Effect not to try. Repeatable.")] = None,
+    without: Annotated[list[str] | None, Option(metavar="EFFECT", help="Effect not to try. Repeatable.")] = None,
     axis_name: common.AxisOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,
@@ -175,18 +175,18 @@ def diagnose(
 
 
 def robot(
-    logs: Annotated[list[Path], Argument(metavar="LOG...", help="Logs of the robot, of any known format.")],
+    logs: Annotated[list[Path], Argument(metavar="LOG", help="Logs of the robot, of any known format.")],
     mjcf: Annotated[Path, Option(help="MJCF of the robot.")],
     out: Annotated[Path, Option(help="Folder for MJCF, models, page and JSON.")],
     holdout: Annotated[Path | None, Option(help="Another log of it, not fitted.")] = None,
     rig: common.OptionalRigOption = None,
-    joint: Annotated[list[str] | None, Option(help="Only this joint. Repeatable.")] = None,
+    joint: Annotated[list[str] | None, Option(metavar="NAME", help="Only this joint. Repeatable.")] = None,
     at: common.AtOption = None,
     payload: Annotated[
         str | None,
         Option(help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
     ] = None,
-    without: Annotated[list[str] | None, Option(help="Effect not to try. Repeatable.")] = None,
+    without: Annotated[list[str] | None, Option(metavar="EFFECT", help="Effect not to try. Repeatable.")] = None,
     stand: Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")] = False,
     grade: Annotated[bool, Option("--grade", help="Hold the MJCF's own values against the logs.")] = False,
     json: common.JsonOption = None,
@@ -257,7 +257,7 @@ def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) 
 
 
 def friction(
-    traces: Annotated[list[Path], Argument(metavar="TRACE...", help="Recordings, each at one steady speed.")],
+    traces: Annotated[list[Path], Argument(metavar="TRACE", help="Recordings, each at one steady speed.")],
     rig: common.BesideRigOption = None,
     json: common.JsonOption = None,
     out: Annotated[

@@ -14,7 +14,7 @@ from bench.names import in_a_row, readable
 
 
 def servo(
-    logs: Annotated[list[Path], Argument(metavar="LOG...", help="Logs with goal and measured position.")],
+    logs: Annotated[list[Path], Argument(metavar="LOG", help="Logs with goal and measured position.")],
     rig: common.OptionalRigOption = None,
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,

@@ -149,7 +149,7 @@ def _rigs(name: str | None, out: Path | None) -> None:
 
 
 def report(
-    folders: Annotated[list[Path], Argument(metavar="DIR...", help="Folders that --out of a command wrote.")],
+    folders: Annotated[list[Path], Argument(metavar="DIR", help="Folders that --out of a command wrote.")],
     script: Annotated[Path | None, Option(help="Script file to write that the pages share, for many of them.")] = None,
     opened: Annotated[bool, Option("--open", help="Open the pages in the browser.")] = False,
 ) -> None:
