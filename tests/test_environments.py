@@ -109,7 +109,7 @@ def test_an_installation_that_may_only_be_read(folder, bound_by_permissions):
         path.chmod(modes[path] & ~0o222)
     before = content(install)
     try:
-        done = bench("effects", cwd=folder, before=bound_by_permissions, install=install)
+        done = bench("list", "effects", cwd=folder, before=bound_by_permissions, install=install)
         assert (done.returncode, done.stderr) == (0, "")
         where = [*bound_by_permissions, sys.executable, "-c", "import bench; print(bench.__file__)"]
         env = {**os.environ, "PYTHONPATH": str(install)}

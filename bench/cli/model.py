@@ -174,9 +174,7 @@ def export(
     model: ModelArgument,
     out: Annotated[Path, Option(help="File to write, or a folder.")],
     mjcf: Annotated[Path | None, Option(help="MJCF or URDF of the robot that has the joint.")] = None,
-    joint: Annotated[
-        list[str] | None, Option(metavar="NAME", help="Joint that the model goes onto; of several, repeatable.")
-    ] = None,
+    joint: Annotated[list[str] | None, Option(metavar="NAME", help="Joint that it goes onto. Repeatable.")] = None,
     to: Annotated[
         str | None, Option(help="Format: mjcf; or without --mjcf mjlab, bam, isaaclab, newton, or drive with --rig.")
     ] = None,

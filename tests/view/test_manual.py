@@ -15,7 +15,7 @@ def test_the_commands_of_the_manual_run(tmp_path, monkeypatch):
     done = run_commands(PAGES["docs/view.md"], lambda line: "" if "--video" in line else line)
     assert {one.err for one in done} == {""}
     (video,) = (shlex.split(line)[1:] for line in bench_commands(PAGES["docs/view.md"]) if "--video" in line)
-    for written in ("view.html", "asked.html"):
+    for written in ("view.html", "demanded.html"):
         assert 100_000 < (tmp_path / written).stat().st_size < 1_000_000
     pytest.importorskip("av", reason="needs PyAV (pip install 'servobench[video]')")
     done = run_alone(tmp_path, video[1:])

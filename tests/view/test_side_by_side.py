@@ -58,7 +58,7 @@ def test_along_a_profile_the_ghost_is_what_was_asked_for(tmp_path):
     errors = tracking(model, rig, motion)
     assert rms(found.apart) == pytest.approx(errors.position, rel=1e-12)
     assert rms(found.velocity - found.ghost_velocity) == pytest.approx(errors.velocity, rel=1e-12)
-    assert found.ghost_is == "asked for"
+    assert found.ghost_is == "demanded"
 
 
 def test_a_part_is_cut_out_and_an_empty_one_refused():
