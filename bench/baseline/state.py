@@ -50,8 +50,9 @@ INSTANTS = 24
 
 SCHEMA = "bench.baseline/1"
 HEAD = "# The baseline of bench check; bench check --update writes it again.\n"
-#: Written instead of an unknown spread.
-NO_SPREAD = "not determined by fewer than two recordings"
+#: Written instead of an unknown spread; its end is what is read, as files of earlier versions have other words before.
+FEW = "by fewer than two recordings"
+NO_SPREAD = f"not determined {FEW}"
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?: (.+))?")
 _ALLOWED = "allowed: as bench check --update wrote it"
 #: Magnitudes of what is known of an axis, unless it is zero: their fourth powers, which comparisons take, are numbers.
@@ -92,7 +93,9 @@ class _Written(BaseModel):
     std_error: Exact | None = None
     degrees: Annotated[float, BeforeValidator(lambda one: one if one == math.inf else _plain(one))] = math.inf
     recordings: Annotated[int, Field(strict=True)] = 1
-    spread: Annotated[Measured | None, PlainValidator(lambda one: None if one == NO_SPREAD else _read(one))] = None
+    spread: Annotated[Measured | None, PlainValidator(lambda one: None if str(one).endswith(FEW) else _read(one))] = (
+        None
+    )
 
 
 def _measured(table: object) -> Measured:

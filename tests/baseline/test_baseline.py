@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bench.assets import asset
 from bench.baseline.model import INSTANTS, Response
 from bench.baseline.state import LEAST, MOST, read_baseline, write_baseline
 from bench.comparison.difference import Measured
@@ -23,6 +24,15 @@ def test_a_state_comes_back(tmp_path):
     text = (tmp_path / "b.toml").read_text(encoding="utf-8")
     assert 'value = "0.0613 N*m"' in text
     assert text.count("not determined by fewer than two recordings") == 7
+
+
+def test_a_state_of_an_earlier_version_has_its_spreads(tmp_path):
+    """Of one recording they are not known, in whichever words it says so; the shipped one is such a state."""
+    shipped = asset("data", "baselines", "sh30701p.toml")
+    assert "not told by fewer than two recordings" in shipped.read_text(encoding="utf-8")
+    spreads = {name: quantity.spread for name, quantity in read_baseline(shipped).quantities.items()}
+    assert spreads["torque_gap"] is None
+    assert spreads["moment_of_inertia"] > 0.0
 
 
 SIZES = st.floats(LEAST, MOST)
