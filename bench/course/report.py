@@ -220,7 +220,7 @@ def _cells(number: Number, columns: Iterable[str]) -> list[str]:
     cells = {"quantity": number.name, "value>": f"{number.value:.5g}", "unit": number.unit, "from": number.source}
     cells["± (95 %)>"] = "" if half is None else f"{half:.2g}"
     cells["truth>"] = "" if truth is None else f"{truth:.5g}"
-    cells["error>"] = f"{number.value / truth - 1.0:+.3%}" if truth else ""
+    cells["error>"] = f"{number.value / truth - 1.0:+z.3%}" if truth else ""
     return [cells[column] for column in columns]
 
 

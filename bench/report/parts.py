@@ -25,7 +25,7 @@ def parameters_table(
     for name, found in parameters.items():
         known = truth.get(name) if truth else None
         compared = (
-            (number(known, digits=5), f"{found.value / known - 1.0:+.3%}".replace("-", "−")) if known else ("", "")
+            (number(known, digits=5), f"{found.value / known - 1.0:+z.3%}".replace("-", "−")) if known else ("", "")
         )
         rows.append((words(name), interval(found, unit=False), *(compared if truth else ()), unit_text(found.unit)))
     beside = ("truth>", "error>") if truth else ()
