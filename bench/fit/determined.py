@@ -83,7 +83,7 @@ def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, Undetermi
         return {INERTIA: open_terms[INERTIA]}
     if equations.one_way is None:
         return open_terms
-    name = f"{kind.in_words(COULOMB)} separate from {kind.in_words(OFFSET)}"
+    name = f"the split between {kind.in_words(COULOMB)} and {kind.in_words(OFFSET)}"
     one_way = UndeterminedError(name, f"the axis moves {equations.one_way} only", RECORD[COULOMB])
     open_terms.pop(COULOMB, None)
     return {COULOMB: one_way, OFFSET: one_way, **open_terms}

@@ -87,7 +87,7 @@ def test_runs_that_each_go_one_way_are_one_recording_of_both(seed):
     assert [effect.name for effect in found.effects] == ["torque_offset"]
     assert inside(found.effects[0].parameters["torque"], 0.03)
     assert inside(found.parameters["coulomb_friction_torque"], Truth.coulomb)
-    assert all("separate from torque offset" in alone.reason for alone in found.recordings)
+    assert all("Coulomb friction torque and torque offset" in alone.reason for alone in found.recordings)
 
 
 def test_the_command_takes_several_and_no_holdout_that_is_one_of_them(tmp_path, monkeypatch, capsys):

@@ -185,7 +185,7 @@ def test_constant_speed_does_not_determine_inertia():
 
 def test_one_direction_does_not_tell_coulomb_friction_from_an_offset():
     trace = recording(np.random.default_rng(11), speed=0.5, bias=300.0)
-    with pytest.raises(UndeterminedError, match=r"Coulomb friction torque separate from torque offset.*forward only"):
+    with pytest.raises(UndeterminedError, match=r"Coulomb friction torque and torque offset.*forward only"):
         identify(trace, RIG)
 
 

@@ -114,7 +114,7 @@ def test_a_stand_whose_runs_go_one_way_gives_the_inertia_of_other_joint_fits(run
     print(f"\n{runs}: J {inertia.value:.4g} {inertia.ci95}, {found.between['moment_of_inertia']}")
     assert inertia.ci95[0] < low and high < inertia.ci95[1]
     assert 0.97 * low < inertia.value < 1.03 * high or len(runs) > 2
-    assert all("separate from torque offset" in alone.reason for alone in found.recordings)
+    assert all("Coulomb friction torque and torque offset" in alone.reason for alone in found.recordings)
     assert found["coulomb_friction_torque"].value == pytest.approx(0.033, rel=0.1)
     assert found["torque_offset"].value == pytest.approx(0.0066, rel=0.2)
     if len(runs) > 2:

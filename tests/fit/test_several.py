@@ -63,7 +63,7 @@ def test_runs_of_one_direction_determine_together_what_neither_does_alone(tmp_pa
         rig = load_rig(tmp_path / "rig.toml").model_copy(update={"offset": True})
         runs = [moving(run) for run in recorded[2 * k : 2 * k + 2]]
         for run in runs:
-            with pytest.raises(UndeterminedError, match="separate from torque offset"):
+            with pytest.raises(UndeterminedError, match="Coulomb friction torque and torque offset"):
                 identify(run, rig)
         found = identify(runs, rig)
         truth = dict(zip((*NAMES, "torque_offset"), (axis.inertia, axis.viscous, axis.coulomb, offset), strict=True))
@@ -77,7 +77,7 @@ def test_runs_of_one_direction_determine_together_what_neither_does_alone(tmp_pa
         for alone in found.recordings:
             assert {"moment_of_inertia", "viscous_friction_coefficient"} <= set(alone.parameters)
             assert "coulomb_friction_torque" not in alone.parameters
-            assert "separate from torque offset" in alone.reason
+            assert "Coulomb friction torque and torque offset" in alone.reason
     assert np.mean(held) >= 0.75
 
 
