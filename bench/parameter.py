@@ -103,6 +103,11 @@ class Parameter(ByName, NDArrayOperatorsMixin):
         low, high = (bound / self.value * value if factors else bound - self.value + value for bound in self.ci95)
         return replace(self, value=value, ci95=(low, high))
 
+    def times(self, factor: float) -> Parameter:
+        """The same times a positive factor without a unit."""
+        low, high = (factor * bound for bound in self.ci95)
+        return replace(self, value=factor * self.value, std_error=factor * self.std_error, ci95=(low, high))
+
     def widened(self, *by: float) -> Parameter:
         """The same with independent errors of these half widths at 95 % added - unit."""
         reach = math.hypot(*by)

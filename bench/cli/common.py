@@ -173,7 +173,7 @@ def write_page(path: Path | None, document: Document) -> None:
         write_html(path, document)
 
 
-def placed(out: Path, name: str) -> Path:
+def file_in(out: Path, name: str) -> Path:
     """The file to write for `--out`: `out`, or the file `name` in it if it is a folder, or has no ending."""
     return out / name if _is_folder(out) else out
 
@@ -365,8 +365,7 @@ def subject(
     def along(path: Path) -> RobotAlong:
         from bench.view.side_by_side import RobotAlong
 
-        ratio = within.load.gear_ratio if within.load is not None else 1.0
-        return RobotAlong(mjcf, robot.joint, ratio, *poses_along(path, within, robot, stands))
+        return RobotAlong(mjcf, robot.joint, within.gear_ratio, *poses_along(path, within, robot, stands))
 
     return Subject(within, (rig, mjcf), read, reported, joint, along, {"joint": joint, "at": at or []})
 

@@ -90,7 +90,7 @@ def _written(
 ) -> Path | None:
     """Write signals and report of a replay; the file of signals."""
     if out is not None:
-        out = common.placed(out, "replay.csv")
+        out = common.file_in(out, "replay.csv")
         if out.suffix.lower() == ".mcap":
             _joint_states(replayed, out, joint)
         else:
@@ -200,7 +200,7 @@ def export(
     if [alone, mjcf is not None, ranges is not None, to not in (None, "mjcf")].count(True) != 1:
         found = "found none or several of --mjcf, --snippet, --ranges, --to"
         raise InputError("bench export", found, "allowed: one of them, e.g. `--snippet`")
-    out = common.placed(out, _file_name(to, mjcf, ranges))
+    out = common.file_in(out, _file_name(to, mjcf, ranges))
     if with_assets and mjcf is None:
         raise InputError("--with-assets", "found without --mjcf", "allowed: with a robot's MJCF, `--mjcf ROBOT.xml`")
     models, lines = load_models(model, joint or ()), []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -188,7 +188,7 @@ def robot(
     ] = None,
     without: Annotated[list[str] | None, Option(metavar="EFFECT", help="Effect not to try. Repeatable.")] = None,
     stand: Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")] = False,
-    grade: Annotated[bool, Option("--grade", help="Hold the MJCF's own values against the logs.")] = False,
+    grade: Annotated[bool, Option("--grade", help="Compare the MJCF's own values with the logs.")] = False,
     json: common.JsonOption = None,
 ) -> None:
     """Identify every joint of a robot from its logs, find missing effects, and write its MJCF with all of them."""
@@ -207,9 +207,9 @@ def robot(
     options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded), "stand": stand}
     basis = provenance(rig, logs, options, holdout, mjcf)
     folder = out if found.answered else None
-    held = found.grade if grade else None
-    document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder, held)
-    common.deliver(document, lambda: robot_json(found, basis, held), json, folder)
+    compared = found.grade if grade else None
+    document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder, compared)
+    common.deliver(document, lambda: robot_json(found, basis, compared), json, folder)
     if not found.answered:  # the first reason
         first = next(iter(found.joints.values()))
         if first.failed:
@@ -301,14 +301,14 @@ def limits(
 
     of = common.subject(rig, axis_name, None, None, None, trace, draft)
     axis, recording = of.rig, of.read(trace)
+    envelope = cache(partial(envelope_of, recording, axis))
     if axis.motor.peak_curves:
         document = against_datasheet(recording, axis)
     else:
-        ratio = axis.load.gear_ratio if axis.load is not None else 1.0
-        document = envelope_document(envelope_of(recording, axis), readable(trace.name), axis.axis_kind, ratio)
+        document = envelope_document(envelope(), readable(trace.name), axis.axis_kind, axis.gear_ratio)
     written = common.write_figure(out, document, lambda: document.pictures[0])
     common.write_page(report, document)
-    common.write_json(json, lambda: envelope_json(envelope_of(recording, axis), axis.axis_kind))
+    common.write_json(json, lambda: envelope_json(envelope(), axis.axis_kind))
     common.tell(document, [*written, report, draft], json)
 
 

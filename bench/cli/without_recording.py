@@ -60,7 +60,7 @@ def simulate(
     with progress(f"simulating {axis.name}") as done:
         present = [parse_effect(text, axis.axis_kind) for text in effect or ()]
         simulated = bench.simulate(axis, profile, seed, progress=done, effects=present)
-    out = common.placed(out, "trace.csv.gz")
+    out = common.file_in(out, "trace.csv.gz")
     with held(out.parent):  # a trace and its own truth, not that of a run at the same time
         write(simulated.trace, out)
         truth = write_truth(out, simulated.truth)
@@ -97,7 +97,7 @@ def plan(
         found = motions(axis, effect, profile)
     best = found[0]
     counted = ((unit.text, unit.factor) for unit in (units.position, units.velocity))
-    out = common.placed(out, "motion.csv")
+    out = common.file_in(out, "motion.csv")
     write_text(out, best.motion.csv(period * 1e-3, *counted))
     common.printed(plan_table(best))
     common.say(others_line(found))
@@ -136,7 +136,7 @@ def _rigs(name: str | None, out: Path | None) -> None:
         return
     path = rig_file(name)
     if out is not None:
-        out = common.placed(out, path.name)
+        out = common.file_in(out, path.name)
         write_text(out, read_text(path, "a rig file"))
         common.list_files([out])
     rig = bench.load_rig(path)

@@ -27,7 +27,7 @@ from bench.effects.signals import Base
 from bench.effects.tabulated import NAMES, NODES, TABLES, Tabulated, TabulatedFriction, TorqueOverPosition
 from bench.errors import SimulationError
 from bench.fit.fit import Fit
-from bench.fit.hypothesis import delays, seen_beside
+from bench.fit.hypothesis import delays, rows_of_next
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.plant.model_file import StoredModel
@@ -130,7 +130,7 @@ def remaining(balance: Balance, rows: Rows, effects: Iterable[Present]) -> Array
     tables = [one for one in effects if one.name in TABLES]
     if not tables:
         return residual
-    seen = seen_beside(rows, hypothesis, residual, balance.laid(rows).by_name(balance.theta))
+    seen = rows_of_next(rows, hypothesis, residual, balance.laid(rows).by_name(balance.theta))
     for one in tables:
         values = dict(one.values)
         columns = partial(TABLES[one.name].columns, shape=[values[name] for name in ("low", "high", "turns")])
@@ -171,7 +171,7 @@ def shape_of(table: Tabulated, fitted: Fit) -> tuple[float, float, float]:
     """Where a table begins and ends, and whether it is one of the whole turn: the range of the rows."""
     if table.over == "position" and fitted.scope.kind.turns and fitted.scope.travel > 2.0 * math.pi:
         return 0.0, 2.0 * math.pi, 1.0
-    x = fitted.beside.values(lambda signals: table.coordinate(signals.state))
+    x = fitted.next_rows.values(lambda signals: table.coordinate(signals.state))
     return 0.0 if table.over == "speed" else float(x.min()), float(x.max()), 0.0
 
 

@@ -53,11 +53,11 @@ class Backlash(Contact):
 
     def columns_of(self, signals: Signals, shapes: Shapes, loads: Sequence[Load] = ()) -> list[Column]:
         """The same; of what acts on the load, a spring's share is a shape of its own."""
-        return dead_zone_columns([signals], np.array(shapes))[0]
+        return dead_zone_columns([signals], shapes)[0]
 
     def tables_of(self, stretches: Sequence[Signals], shapes: Shapes) -> list[list[Column]]:
         """The same, integrated side by side."""
-        return dead_zone_columns(stretches, np.array(shapes))
+        return dead_zone_columns(stretches, shapes)
 
     def noise_of_motion(self, shape: Sequence[float], omega: Array) -> Array:
         """The load does not follow it."""

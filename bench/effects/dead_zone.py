@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array, splined
+from bench.effects.shape import Shapes
 from bench.effects.signals import Signals
 from bench.trace.filter import Column
 
@@ -128,7 +129,7 @@ def _beyond(twist: Array, below: Array, above: Array, out: Array) -> None:
     np.subtract(twist, out, out=out)
 
 
-def dead_zone_columns(stretches: Sequence[Signals], shapes: Array) -> list[list[Column]]:
+def dead_zone_columns(stretches: Sequence[Signals], shapes: Shapes) -> list[list[Column]]:
     """Load's acceleration less the motor's behind several dead zones, with the spring's share of it, in each stretch.
 
     Where the speed is the source, the motor's angle is its integral, whose noise no resolution of an encoder adds to.
@@ -138,10 +139,10 @@ def dead_zone_columns(stretches: Sequence[Signals], shapes: Array) -> list[list[
         shapes: (k, 4), see `load_positions`.
     """
     angles = [_angle(signals) for signals in stretches]
-    positions = load_positions(angles, stretches[0].sample_period, shapes)
+    table = np.asarray(shapes)
+    positions = load_positions(angles, stretches[0].sample_period, table)
     twists = [(position - angle[:, None]).T for position, angle in zip(positions, angles, strict=True)]
-    rates = shapes[:, 3]
-    return [[[(load, 2), (rate * load, 0)] for load, rate in zip(twist, rates, strict=True)] for twist in twists]
+    return [[[(load, 2), (rate * load, 0)] for load, rate in zip(twist, table[:, 3], strict=True)] for twist in twists]
 
 
 def _angle(signals: Signals) -> Array:

@@ -109,7 +109,7 @@ def _columns(fitted: Fitted, shapes: Array) -> Array:
     """Columns (m, k) of many shapes, few at a time where the recording is long."""
     few = max(1, TOGETHER // max(fitted.time.size, 1))
     parts = [shapes[k : k + few] for k in range(0, len(shapes), few)]
-    return np.concatenate([fitted.behind(dead_zone_columns, part) for part in parts], axis=1)
+    return np.concatenate([fitted.behind(dead_zone_columns, part.tolist()) for part in parts], axis=1)
 
 
 def contacts_of(scope: Scope) -> list[float]:
@@ -144,7 +144,7 @@ def open_torque(fitted: Fitted, shape: Sequence[float]) -> Array:
     for k, factor in enumerate(INDISTINCT):
         shapes[2 * k + 1, k] *= factor
         shapes[2 * k + 2, k] /= factor
-    columns = fitted.behind(dead_zone_columns, shapes)
+    columns = fitted.behind(dead_zone_columns, shapes.tolist())
     return np.abs(columns[:, 1:] - columns[:, :1]).max(axis=1)
 
 

@@ -27,6 +27,7 @@ from bench.effects.effect import (
     Proposal,
     TablesOf,
 )
+from bench.effects.shape import Shapes
 from bench.effects.signals import Base, Scope, Signals
 from bench.effects.torque import Friction
 from bench.fit.dependence import Dependence, dependence
@@ -43,7 +44,7 @@ from bench.fit.hypothesis import (
     in_line,
     lay_out,
     not_reaching,
-    seen_beside,
+    rows_of_next,
     seen_by,
 )
 from bench.fit.rows import Rows
@@ -229,24 +230,24 @@ class Fit:
         return self.rows.time
 
     @cached_property
-    def beside(self) -> Rows:
-        """The recording as one term more would see it."""
-        return seen_beside(self.rows, self.hypothesis, self.residual, self.found)
+    def next_rows(self) -> Rows:
+        """The recording as one more term would read it."""
+        return rows_of_next(self.rows, self.hypothesis, self.residual, self.found)
 
     @property
     def stretches(self) -> list[Signals]:
         """Raw signals as one term more would see them."""
-        return [part.signals for part in self.beside.stretches]
+        return [part.signals for part in self.next_rows.stretches]
 
     def seen(self, columns: ColumnsOf, of_motion: bool) -> Array:
         """Columns (m, k) of raw signals as one term more would see them; `of_motion`: accelerations or speeds."""
-        return self.beside.table(columns, delays(self.rows, self.hypothesis)[0 if of_motion else 1])
+        return self.next_rows.table(columns, delays(self.rows, self.hypothesis)[0 if of_motion else 1])
 
-    def behind(self, tables: TablesOf, shapes: Array) -> Array:
-        """Columns (m, k) of what follows the motion alone behind couplings of shapes (k, s), made once."""
+    def behind(self, tables: TablesOf, shapes: Shapes) -> Array:
+        """Columns (m, k) of what follows only the motion behind couplings of shapes (k, s), made once."""
         lag = delays(self.rows, self.hypothesis)[0]
-        made_of = tables, shapes.tobytes(), lag, self.beside.motion
-        return self.rows.memory.get(made_of, lambda: self.beside.table(tables(self.stretches, shapes), lag))
+        made_of = tables, tuple(map(tuple, shapes)), lag, self.next_rows.motion
+        return self.rows.memory.get(made_of, lambda: self.next_rows.table(tables(self.stretches, shapes), lag))
 
     def gains(self, columns: Array, width: int) -> Array:
         """Squares that groups of columns (m, groups*width) would take beyond what is fitted (groups,)."""
@@ -282,10 +283,10 @@ class Fit:
         def made(signals: Signals) -> Sequence[Column]:
             return effect.columns_of(signals, shapes)
 
-        rows, (moving, resting) = seen_by(self.rows, self.hypothesis), delays(self.rows, self.hypothesis)
+        rows, (_, resting) = seen_by(self.rows, self.hypothesis), delays(self.rows, self.hypothesis)
         known = effect.columns_of, tuple(shapes)
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
-            columns = rows.memory.get((*known, moving, rows.motion), lambda: self.beside.table(made, moving))
+            columns = self.behind(effect.tables_of, shapes)
             worth = self.gains(columns, 1) * (self.residual @ columns > 0.0)  # none without a load behind it
         elif isinstance(effect, Friction | Bristles) or effect.copies_torque or not self.determined.all():
             columns = self.seen(made, False)
@@ -309,7 +310,7 @@ class Fit:
 
     @cached_property
     def _against(self) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
-        return self.beside.against(self._targets, delays(self.rows, self.hypothesis)[1])
+        return self.next_rows.against(self._targets, delays(self.rows, self.hypothesis)[1])
 
 
 def fit(rows: Rows, hypothesis: Hypothesis, start: Fit | None = None) -> Fit:
@@ -361,7 +362,7 @@ def _determined(fitted: Fit) -> NDArray[np.bool_]:
     for index, term in enumerate(fitted.terms):
         if isinstance(term.effect, Contact):
             torque, lags = term.effect.open_torque, delays(fitted.rows, fitted.hypothesis)
-            made_of = (torque, term.shape, lags, fitted.beside.motion)
+            made_of = (torque, term.shape, lags, fitted.next_rows.motion)
             moved = fitted.rows.memory.get(made_of, partial(torque, fitted, term.shape))
             determined = determined & (moved * abs(fitted.strengths(index)[0]) < OPEN_SHARE * fitted.floor)
     return determined

@@ -511,8 +511,8 @@ def _with_load(seen: Rows, hypothesis: Hypothesis, found: Found) -> Rows:
     return seen.with_signals(change)
 
 
-def seen_beside(rows: Rows, hypothesis: Hypothesis, left: Array, found: Found) -> Rows:
-    """The recording as one term more would see it, by the residual (m,) - N*m (N) - and the fit's coefficients.
+def rows_of_next(rows: Rows, hypothesis: Hypothesis, left: Array, found: Found) -> Rows:
+    """The recording as one more term would read it, by the residual (m,) - N*m (N) - and the fit's coefficients.
 
     It sees the modelled torque in the place of the measured. Columns computed from the measured torque contain what a
     model does not explain and explain it by itself: errors in the variables, for which the modelled torque is the

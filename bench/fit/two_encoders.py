@@ -67,7 +67,7 @@ class Twist:
     @classmethod
     def of(cls, trace: Trace, rig: Rig, effort: Array) -> Twist:
         """Of a recording with a motor torque (n,)."""
-        ratio, at = rig.load.gear_ratio if rig.load is not None else 1.0, condition(trace, effort)
+        ratio, at = rig.gear_ratio, condition(trace, effort)
         source, load, inertia = trace[at.source], trace["load_position"], rig.motor.inertia
         sign = known_sign(raw_speed(source, at.source, trace.sample_period), at.sign_threshold)
         turns = [load, *([trace["position"]] if ratio != 1.0 else [])] if rig.axis_kind.turns else []
@@ -175,7 +175,7 @@ def _named(found: Sequence[Parameter], of: Twist, gap: float, rig: Rig) -> dict[
     """Parameters of the coupling, on the load's side, from the coefficients of the motor's balance."""
     kind, ratio = rig.axis_kind, of.ratio
     known = {
-        name: replace(_times(one, ratio), unit=f"{kind.effort_unit}{part}/{kind.length_unit}")
+        name: replace(one.times(ratio), unit=f"{kind.effort_unit}{part}/{kind.length_unit}")
         for (name, part), one in zip({"stiffness": "", "damping": "*s"}.items(), found, strict=False)
     }
     stiffness = known["stiffness"]
@@ -195,8 +195,3 @@ def _named(found: Sequence[Parameter], of: Twist, gap: float, rig: Rig) -> dict[
             error = Parameter(size, kind.length_unit, wide / 2.0, (size - wide, size + wide))
             known[f"transmission_error_per_{name}_turn"] = error
     return known
-
-
-def _times(one: Parameter, factor: float) -> Parameter:
-    low, high = (factor * bound for bound in one.ci95)
-    return replace(one, value=factor * one.value, std_error=factor * one.std_error, ci95=(low, high))

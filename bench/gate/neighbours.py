@@ -51,7 +51,7 @@ def _over_time(seen: Seen) -> float:
     trace, (effort, _) = seen.trace, seen.effort
     smooth = GaussianFilter.from_cutoff(CUTOFF, trace.sample_period)
     parts = [part for part in trace.segments if part.stop - part.start > 2 * smooth.margin]
-    ratio = seen.rig.load.gear_ratio if seen.rig is not None and seen.rig.load is not None else 1.0
+    ratio = seen.rig.gear_ratio if seen.rig is not None else 1.0
     place, free = measured_position(trace) / ratio, _splines(trace.time)
     tables = [_table(smooth, part, place, effort, seen.speed(part), free) for part in parts]
     table, own = np.vstack([*tables, np.zeros((0, OWN + len(free) + 1))]), slice(0, OWN)

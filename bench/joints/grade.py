@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
+from bench.export.mjcf import compiled
 from bench.joints.identified import IdentifiedJoint
 from bench.parameter import Parameter
 from bench.plant.mjcf_file import read_mjcf
@@ -14,6 +15,8 @@ from bench.plant.mjcf_file import read_mjcf
 #: Share of the log's value by which that of the MJCF may be beyond its interval: parts of one type differ as much.
 NEAR = 0.1
 UNKNOWN = "unknown effect"
+#: Of a joint in an MJCF.
+NUMBERS = ("armature", "damping", "frictionloss")
 
 
 @dataclass(frozen=True)
@@ -39,12 +42,11 @@ class Stated:
 
 @dataclass(frozen=True)
 class GradedJoint:
-    """A joint of an MJCF held against a log.
+    """A joint of an MJCF compared with a log.
 
     Attributes:
         numbers: by the names of the MJCF: armature, damping, frictionloss.
-        lacks: names of effects that the log shows and the MJCF cannot have or does not have; None where the log does
-            not decide on them.
+        lacks: names of effects that the log shows and the MJCF does not have; None where the log does not decide.
     """
 
     numbers: Mapping[str, Stated]
@@ -59,33 +61,22 @@ class GradedJoint:
 
 def graded(mjcf: Path, joints: Mapping[str, IdentifiedJoint], stand: bool) -> dict[str, GradedJoint]:
     """Joints of an MJCF, with a floating base fixed or not, by their logs."""
-    model = read_mjcf(mjcf, stand)[0].compile()
-    found = {}
+    model, grades = compiled(read_mjcf(mjcf, stand)[0]), {}
     for name, joint in joints.items():
-        dof, ratio = model.joint(name).dofadr[0], 1.0
-        if joint.rig is not None and joint.rig.load is not None:
-            ratio = joint.rig.load.gear_ratio
-        told = {"armature": (ARMATURE, 1.0), "damping": (VISCOUS, ratio**2), "frictionloss": (COULOMB, ratio)}
-        numbers = {
-            key: Stated(float(getattr(model, f"dof_{key}")[dof].flat[0]), _at_joint(joint, parameter, factor))
-            for key, (parameter, factor) in told.items()
-        }
-        sprung = bool(model.joint(name).stiffness[0])
-        found[name] = GradedJoint(numbers, _lacks(joint, sprung))
-    return found
+        own, found = model.joint(name), dict(zip(NUMBERS, _at_joint(joint), strict=True))
+        numbers = {key: Stated(float(getattr(own, key).flat[0]), number) for key, number in found.items()}
+        grades[name] = GradedJoint(numbers, _lacks(joint, sprung=bool(own.stiffness[0])))
+    return grades
 
 
-def _at_joint(joint: IdentifiedJoint, name: str, factor: float) -> Parameter | None:
-    """A parameter times a factor; None where the joint has none that is determined."""
+def _at_joint(joint: IdentifiedJoint) -> list[Parameter | None]:
+    """NUMBERS by the log, on the joint's side; None for one that is not determined."""
     if joint.rig is None:
-        return None
-    found = joint.parameters.get(name if name == ARMATURE else joint.rig.axis_kind.parameter(name))
-    if found is None:
-        return None
-    low, high = found.ci95
-    return replace(
-        found, value=factor * found.value, std_error=factor * found.std_error, ci95=(factor * low, factor * high)
-    )
+        return [None] * len(NUMBERS)
+    kind, ratio = joint.rig.axis_kind, joint.rig.gear_ratio
+    factors = {ARMATURE: 1.0, kind.parameter(VISCOUS): ratio**2, kind.parameter(COULOMB): ratio}
+    found = {name: joint.parameters.get(name) for name in factors}
+    return [one and one.times(factors[name]) for name, one in found.items()]
 
 
 def _lacks(joint: IdentifiedJoint, sprung: bool) -> tuple[str, ...] | None:

@@ -1,4 +1,4 @@
-"""A published MJCF held against a log: a table for the robot's page and README, and a badge."""
+"""A published MJCF compared with a log: a table for the robot's page and README, and a badge."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from bench.report.serial import as_json
 
 TABLE, BADGE = "grade.md", "grade.svg"
 LABEL = "MJCF agrees with a log"
-#: Colours of a badge from a share of the joints on.
-COLOURS = {1.0: "#2e7d32", 0.5: "#b26a00", 0.0: "#b3261e"}
+#: Colours of a badge from a share of the joints on, and where the log determines none.
+COLOURS, GREY = {1.0: "#2e7d32", 0.5: "#b26a00", 0.0: "#b3261e"}, "#5f6368"
 #: Mean width of a letter of a badge - px.
 LETTER = 6.6
 
@@ -24,7 +24,9 @@ def grade_section(grade: Mapping[str, GradedJoint], title: str) -> doc.Section:
     """The table, and both files to take along."""
     headings = ("joint", "armature", "damping", "frictionloss", "lacks~")
     rows = [(name, *map(_number, joint.numbers.values()), _lacks(joint)) for name, joint in grade.items()]
-    caption = f"What {title} states, and the log where it differs by more than its interval and {NEAR:.0%}; in SI"
+    caption = (
+        f"Values of {title} in SI; that of the log follows if the two differ by more than its interval and {NEAR:.0%}"
+    )
     lines = (headings, ("---",) * len(headings), *rows)
     cells = ([escape(readable(one.removesuffix("~"))).replace("|", "&#124;") for one in line] for line in lines)
     text = "\n".join(f"| {' | '.join(line)} |" for line in cells)
@@ -52,19 +54,19 @@ def grade_json(grade: Mapping[str, GradedJoint]) -> dict[str, Any]:
 
 def _counts(grade: Mapping[str, GradedJoint]) -> tuple[int, int]:
     """Of joints that agree, and of those that the log determines."""
-    told = [joint.agrees for joint in grade.values() if joint.agrees is not None]
-    return sum(told), len(told)
+    agree = [joint.agrees for joint in grade.values() if joint.agrees is not None]
+    return sum(agree), len(agree)
 
 
 def _share(grade: Mapping[str, GradedJoint]) -> str:
-    agree, told = _counts(grade)
-    return f"{agree} of {told} joints" if told else "no joint determined"
+    agree, determined = _counts(grade)
+    return f"{agree} of {determined} joints" if determined else "no joint determined"
 
 
 def _sentence(grade: Mapping[str, GradedJoint], title: str) -> str:
-    agree, told = _counts(grade)
-    rest = f", of which the log determines {told}" if told < len(grade) else ""
-    return f"{agree} of {len(grade)} joints of {title}{rest} agree with the log in all that it determines."
+    agree, determined = _counts(grade)
+    rest = f" The log determines nothing of {len(grade) - determined} joints." if determined < len(grade) else ""
+    return f"{agree} of {len(grade)} joints of {title} agree with the log in every value that it determines.{rest}"
 
 
 def _number(number: Stated) -> str:
@@ -79,16 +81,16 @@ def _lacks(joint: GradedJoint) -> str:
 
 def _badge(grade: Mapping[str, GradedJoint]) -> str:
     """An SVG of two fields, the result and the number of joints."""
-    agree, told = _counts(grade)
-    colour = next(colour for least, colour in COLOURS.items() if agree >= least * told) if told else "#5f6368"
-    said, width = _share(grade), [int(LETTER * len(text)) + 14 for text in (LABEL, _share(grade))]
+    agree, determined = _counts(grade)
+    colour = next(colour for least, colour in COLOURS.items() if agree >= least * determined) if determined else GREY
+    share, width = _share(grade), [int(LETTER * len(text)) + 14 for text in (LABEL, _share(grade))]
     return f"""<svg xmlns="http://www.w3.org/2000/svg" width="{sum(width)}" height="20" role="img">
-<title>{LABEL}: {said}</title>
+<title>{LABEL}: {share}</title>
 <rect width="{width[0]}" height="20" fill="#444"/>
 <rect x="{width[0]}" width="{width[1]}" height="20" fill="{colour}"/>
 <g fill="#fff" font-family="Verdana,sans-serif" font-size="11" text-anchor="middle">
 <text x="{width[0] / 2}" y="14">{LABEL}</text>
-<text x="{width[0] + width[1] / 2}" y="14">{said}</text>
+<text x="{width[0] + width[1] / 2}" y="14">{share}</text>
 </g>
 </svg>
 """

@@ -105,11 +105,11 @@ def robot(
         answers=_answers(found),
         sections=tuple(sections),
         origin=origin(provenance),
-        warnings=(*found.warnings, *_of_joints(found)),
+        warnings=(*found.warnings, *_joint_warnings(found)),
     )
 
 
-def _of_joints(found: IdentifiedRobot) -> list[str]:
+def _joint_warnings(found: IdentifiedRobot) -> list[str]:
     """Warnings of the joints, each once with the names of those that it concerns."""
     concerned: dict[str, list[str]] = {}
     for name, joint in found.joints.items():

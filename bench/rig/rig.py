@@ -372,6 +372,11 @@ class Rig(RigTable):
         return voltage, "V"
 
     @property
+    def gear_ratio(self) -> float:
+        """Turns (m) of the motor per turn (m) of the load; 1 without a load."""
+        return self.load.gear_ratio if self.load is not None else 1.0
+
+    @property
     def stated_inertia(self) -> float | None:
         """Of all that moves, on the motor's side - kg*m**2 (kg), where the motor's and the load's are stated."""
         if not self.motor.inertia or self.load is None:

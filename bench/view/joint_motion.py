@@ -55,7 +55,7 @@ def joint_motion(
     if held[HELD] is None or not np.array_equal(series.time[:count], trace.time):
         return None
     runs = {how: _position(series.velocity - left, trace) for how, left in held.items() if left is not None}
-    free, ratio = restarted(found, trace, rig, EVERY), rig.load.gear_ratio if rig.load is not None else 1.0
+    free, ratio = restarted(found, trace, rig, EVERY), rig.gear_ratio
     few = np.linspace(trace.time[0], trace.time[-1], min(count, INSTANTS))
     return JointMotion(
         trace.origin,
