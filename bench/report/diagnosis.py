@@ -296,10 +296,10 @@ def _tabulated(found: Diagnosis) -> str:
 
 
 def _sure(found: Diagnosis) -> str:
-    """What confirms the verdict, and what speaks against it."""
+    """What confirms the verdict, and what contradicts it."""
     gap, lines, effort = found.torque, [likely_names(found)], effort_word(found.torque.unit)
     if found.objections[1:]:
-        lines.append(f"Further evidence of a missing effect: {'; '.join(map(words, reasons(found)[1:]))}.")
+        lines.append(f"In addition: {'; '.join(map(words, reasons(found)[1:]))}.")
     if gap.holdout is not None:
         before, after = gap.holdout
         changes = f"falls from {number(before, digits=3)} to" if after < before else "is"

@@ -8,6 +8,7 @@ from bench.diagnosis.diagnosis import Diagnosis
 from bench.diagnosis.reason import Reason
 from bench.names import words
 from bench.parameter import Parameter
+from bench.report.numbers import interval
 
 #: Criteria that have no figures.
 PLAIN = {
@@ -68,4 +69,4 @@ def reason(one: Reason) -> str:
 
 def with_interval(name: str, found: Parameter) -> str:
     """A quantity with half of its interval in words."""
-    return f"{words(name)} ({found.value:.3g} ± {found.half_width:.2g} {found.unit})"
+    return f"{words(name)} ({interval(found)})"
