@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.names import nearest
+from bench.names import OTHER_WORDS, nearest
 from bench.presented import Renderer, Shown
 
 if TYPE_CHECKING:
@@ -85,6 +85,8 @@ Shown.renderer = staticmethod(_renderer)
 
 
 def __getattr__(name: str) -> object:
+    if OTHER_WORDS.get(name) in __all__:
+        return globals().get(OTHER_WORDS[name]) or __getattr__(OTHER_WORDS[name])
     if name not in _MODULES:
         raise AttributeError(f"bench has no '{name}'{nearest(name, __all__)}; allowed: {', '.join(__all__)}")
     return getattr(import_module(_MODULES[name]), name)

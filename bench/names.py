@@ -21,6 +21,13 @@ _FIRST_WORD, _LAST_WORD = re.compile(r"^\S{0,19}\s+"), re.compile(r"\s+\S{0,19}$
 #: Words of a quantity's name that may be left out, and symbols of the equation of motion.
 _FILLING = frozenset(("moment", "of", "moving", "coefficient", "torque", "force"))
 _SYMBOLS = {"J": "inertia", "m": "mass", "K_w": "viscous_friction", "K_0": "coulomb_friction"}
+#: Words of pandas, scikit-learn, statsmodels and of signal processing, and the bench's for the same.
+OTHER_WORDS = {
+    "ci": "ci95", "std": "std_error", "stderr": "std_error", "params": "parameters", "r2": "explained",
+    "residual": "residuals", "probability": "probabilities", "fs": "sample_rate", "sampling_rate": "sample_rate",
+    "dt": "sample_period", "t": "time", "to_pandas": "to_frame", "to_dataframe": "to_frame", "to_csv": "save",
+    "read_csv": "read", "version": "__version__",
+}  # fmt: skip
 _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 
 

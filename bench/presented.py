@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeAlias
 
 from bench.errors import InputError
-from bench.names import nearest
+from bench.files import write_text
+from bench.names import OTHER_WORDS, nearest
 
 if TYPE_CHECKING:
     import numpy as np
@@ -61,7 +62,7 @@ class Renderer(Protocol):
 
 
 class ByName:
-    """What `[name]` gives is an attribute, too."""
+    """What `[name]` gives is an attribute, too, and so is what other libraries call one of its attributes."""
 
     if not TYPE_CHECKING:  # a checker of types shall find attributes that are mistyped
 
@@ -71,7 +72,10 @@ class ByName:
                 try:
                     return self[name]
                 except (LookupError, TypeError, InputError):
-                    known = sorted(each for each in {*dir(type(self)), *own} if not each.startswith("_"))
+                    kinds = [kind for kind in type(self).__mro__ if not kind.__module__.startswith("pydantic")]
+                    known = sorted({each for of in (own, *map(vars, kinds)) for each in of if each[0] != "_"})
+                    if OTHER_WORDS.get(name) in known:
+                        return getattr(self, OTHER_WORDS[name])
                     found = f"{type(self).__name__} has no '{name}'{nearest(name, known)}; allowed: {', '.join(known)}"
                     raise AttributeError(found) from None
             raise AttributeError(name)
@@ -110,7 +114,7 @@ class Shown(ByName):
     def save(self, path: str | Path) -> None:
         """Write all of it into a file: signals in the format of the path's ending (CSV, Parquet), a result as `--json`.
 
-        A diagnosis is written into a folder, with model and page.
+        A diagnosis is written into a folder, with model and page. Into a `.csv` any result goes as its table.
         """
         self.renderer().save(self, Path(path))
 
@@ -123,6 +127,17 @@ class Presented(Shown):
 
     def _repr_html_(self) -> str:
         return self.renderer().small_page(self)
+
+    def summary(self) -> str:
+        """The text of one screen that `print` shows."""
+        return self.renderer().text(self)
+
+    def to_html(self, path: str | Path | None = None) -> str:
+        """What a notebook shows as HTML, written into a file if one is given."""
+        page = self.renderer().small_page(self)
+        if path is not None:
+            write_text(path, page)
+        return page
 
     def to_json(self) -> str:
         """All of it as JSON, as `--json` writes it."""

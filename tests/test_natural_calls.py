@@ -184,6 +184,16 @@ chk.plot().get_xlabel() and set(chk.to_frame().result) == {"same"}
 sim["velocity"] is sim.velocity is sim.trace["velocity"] and len(sim.plot()) == len([*sim.trace])
 bench.identify(sim, "lab.toml").inertia > 0 and len(sim.to_frame()) == len(sim.trace)
 set(dir(bench)) == set(bench.__all__)
+est.inertia.ci == est.inertia.ci95 and est.inertia.stderr == est.inertia.std == est.inertia.std_error
+est.params == est.parameters and est.r2 == est.explained and est.to_dataframe().equals(est.to_frame())
+str(est) == est.summary() and est.to_html("e.html") == Path("e.html").read_text()
+est.to_csv("e.csv") is None and pd.read_csv("e.csv").value[0] == est.inertia.value
+trace.fs == trace.sampling_rate == trace.sample_rate and trace.dt == trace.sample_period and trace.t is trace.time
+trace.columns == [*trace] and trace.to_csv("u.csv") is None and len(bench.read_csv("u.csv")) == len(trace)
+found.probability is found.probabilities and found.residual is found.residuals and found.summary() == repr(found)
+found.save("f.csv") is None and {"axis", "cogging_torque"} == set(pd.read_csv("f.csv")["of"])
+rep["velocity"] is rep.velocity and rig["motor"]["torque_constant"] == rig.motor.torque_constant == K_T
+bench.version == bench.__version__
 "lambda" not in help_of(bench.diagnose) and "chance=" not in help_of(bench.diagnose)
 """.strip().splitlines()
 
@@ -198,11 +208,11 @@ def test_results_behave_as_numbers_tables_and_pictures(names, monkeypatch, line)
 
 #: What a result does not have, and what the one line proposes.
 ABSENT = {
-    "est.params": r"Estimate has no 'params', did you mean 'parameters'",
-    "est.to_dataframe()": r"did you mean 'to_frame'",
+    "est.covarianc": r"Estimate has no 'covarianc'; allowed: between, ",
+    "rig.to_dict()": r"Rig has no 'to_dict'; allowed: assumed, axis_kind, check, .*motor",
+    "rep['speed']": r"speed: found none.*allowed: time, position",
     "est.inertia.half_widht": r"Parameter has no 'half_widht', did you mean 'half_width'",
-    "trace.sampling_rate": r"Trace has no 'sampling_rate', did you mean 'sample_rate'",
-    "found.probability": r"Diagnosis has no 'probability', did you mean 'probabilities'",
+    "trace.sample_rat": r"Trace has no 'sample_rat', did you mean 'sample_rate'",
     "found['moment_of_inertia']": r"found no such effect; allowed: \.parameters\['moment_of_inertia'\]",
     "bench.load": r"bench has no 'load', did you mean 'load_rig'",
     "trace.plot('speed')": r"plot\(\) of Trace: found 'speed'; allowed: velocity, current, position",

@@ -18,6 +18,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
+from bench.names import meant
 from bench.plant.model_file import LARGEST_VALUE, StoredModel, load_model, read_table
 from bench.plant.tracking import track
 from bench.presented import Shown
@@ -56,6 +57,9 @@ class Replay(Shown):
 
     def __repr__(self) -> str:
         return f"Replay({self.summary})"
+
+    def __getitem__(self, name: str) -> Array:
+        return meant(name, vars(self))
 
     @property
     def summary(self) -> str:

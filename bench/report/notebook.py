@@ -36,6 +36,7 @@ from bench.report.parts import parameters_table
 from bench.report.servo import servo, servo_json
 from bench.report.terminal import rendered
 from bench.servos.servo import Servo
+from bench.structured import csv_of_texts
 from bench.trace.trace import Trace
 from bench.trace.write import write
 
@@ -252,16 +253,19 @@ def _by_column(names: Sequence[str], rows: Sequence[tuple[Any, ...]]) -> dict[st
 
 
 def save(result: object, path: Path) -> None:
-    """A folder of a diagnosis, a file of anything else."""
+    """A table of what ends in `.csv`, else a folder of a diagnosis and a file of anything else."""
     match result:
-        case Diagnosis():
-            write_diagnosis(path, result, path.name)
         case Trace():
             write(result, path)
         case Simulated():
             write(result.trace, path)
         case Replay():
             write_text(path, result.csv())
+        case _ if path.suffix.lower() == ".csv":
+            columns = columns_of(result)
+            write_text(path, csv_of_texts([*columns], zip(*columns.values(), strict=True)))
+        case Diagnosis():
+            write_diagnosis(path, result, path.name)
         case IdentifiedRobot():
             raise InputError("save()", "found IdentifiedRobot", "allowed: write its text, robot.with_joints(folder)[0]")
         case _:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from numbers import Real
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 from pydantic import (
     AfterValidator,
@@ -19,14 +19,19 @@ from pydantic_core import PydanticCustomError
 
 from bench.axis_kind import ROTARY
 from bench.errors import InputError
+from bench.names import meant
+from bench.presented import ByName
 from bench.units import parse_with_tolerance
 from bench.validated import refused
 
 
-class RigTable(BaseModel):
+class RigTable(ByName, BaseModel):
     """A table of a rig file: frozen, and an unknown key in it is an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    def __getitem__(self, name: str) -> Any:  # noqa: ANN401 - a table or a value
+        return meant(name, vars(self))
 
 
 class Toleranced(float):

@@ -172,6 +172,11 @@ class Trace(Shown):
         return self.signals.keys()
 
     @property
+    def columns(self) -> list[str]:
+        """The same as a list."""
+        return [*self]
+
+    @property
     def sample_rate(self) -> float:
         """Samples per second - Hz."""
         return 1.0 / self.sample_period
