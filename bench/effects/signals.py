@@ -42,6 +42,7 @@ class Signals:
         load: torque of the load as named effects make it - N*m (N).
         began: the recording, since the start of the first of several that are joined - s.
         known: other known torque - N*m (N) -, as a column; () where none is.
+        known_inertia: by which the momentum in that has the noise of the speed - kg*m**2 (kg) - (n,).
         of_motion: what the motion takes from the effort before it is `effort` - N*m (N) -: induced voltage, a known
             weight. A shift of the effort's signal against the motion does not move it.
     """
@@ -59,6 +60,7 @@ class Signals:
     load: Array | float = 0.0
     began: float = 0.0
     known: Column = ()
+    known_inertia: Array | float = 0.0
     of_motion: Array | float = 0.0
 
     @property

@@ -171,10 +171,10 @@ def _straight_and_bent(late: Fit) -> Iterator[tuple[Array, Array]]:
     noise = np.pad(late.layout.noise, (0, 1))
     noise[-1, -1] = (loud * smooth.noise_gain(2)) ** 2
     table = np.vstack([late.columns.T, bent, late.effort])
-    every = equations(names, table, noise, block_edges(rows.time, smooth.width))
+    every = equations(names, table, noise, block_edges(rows.time, smooth.width), late.layout.known)
     for kept in (names[:-1], names):
         part = every.only(lambda name, kept=kept: name in kept)
-        moment = part.moment.sum(axis=0)
+        moment = part.moments.copy()
         if kept is names:  # the noise of the torque is in its second derivative, too: -(s_M*w)**2
             moment[-1] += part.count * (loud * smooth.noise_gain(1)) ** 2
         theta, inverse = solved(part.total, moment, part.count * part.noise)

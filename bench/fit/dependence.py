@@ -67,12 +67,12 @@ def dependence(rows: Rows, laid: Layout, theta: Array, offset: bool = False) -> 
     base = [name for name in every.names if name not in tested and (offset or name in laid.owners)]
     least = rows.conditioning.effort_noise**2 / rows.conditioning.filter.stride
     without = every.only(lambda each: each in base)
-    plain, _ = solved(without.total, without.moment.sum(axis=0), without.count * without.noise)
+    plain, _ = solved(without.total, without.moments, without.count * without.noise)
     found: dict[float, Dependence] = {}
     for name, (on, _, _) in tested.items():
         kept = [*base, name]
         having = every.only(lambda each, kept=kept: each in kept)
-        fitted, inverse = solved(having.total, having.moment.sum(axis=0), having.count * having.noise)
+        fitted, inverse = solved(having.total, having.moments, having.count * having.noise)
         saved = (without.residual_power(plain) - having.residual_power(fitted)) / having.count
         if saved <= (LEAST * rms(laid.effort)) ** 2:
             continue

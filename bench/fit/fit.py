@@ -385,7 +385,8 @@ def _balanced(layout: Layout, determined: NDArray[np.bool_] | slice = slice(None
     Torque and speed differ in time by no more than the time of latching: a larger shift is a lag, which is an effect.
     """
     columns, effort = layout.columns[determined], layout.effort[determined]
-    return bounded(columns.T @ columns, columns.T @ effort, columns.shape[0] * layout.noise, layout.bounds)
+    noise = columns.shape[0] * layout.noise
+    return bounded(columns.T @ columns, columns.T @ effort + layout.known * noise[:, 0], noise, layout.bounds)
 
 
 def least_squares(columns: Array, effort: Array, noise: Array) -> Array:

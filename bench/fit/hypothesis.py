@@ -198,6 +198,7 @@ class Layout:
         noise: (p, p) covariance of the columns due to the sensors' noise in a row.
         bounds: lowest and highest value of strengths that are not free, by their places.
         rescaling: places of strengths that rescale the reported torque.
+        known: inertia by which the effort has the noise of the acceleration, too - kg*m**2 (kg).
     """
 
     columns: Array
@@ -206,6 +207,7 @@ class Layout:
     noise: Array
     bounds: Mapping[int, tuple[float, float]]
     rescaling: NDArray[np.intp]
+    known: float = 0.0
 
     def by_name(self, theta: Array) -> dict[Name, list[float]]:
         """Coefficients (p,) by the names of their columns."""
@@ -269,7 +271,8 @@ def lay_out(
     rescaling = np.flatnonzero(np.isin(held_by, hypothesis.having(lambda effect: effect.rescales_torque)))
     if hypothesis.shift:
         effort = effort + seen.kept(_moved, hypothesis.shift, lag=late)[:, 0]
-    return Layout(columns, held_by, effort, _noise(rows, hypothesis, held_by, moving), bounds, rescaling)
+    noise = _noise(rows, hypothesis, held_by, moving)
+    return Layout(columns, held_by, effort, noise, bounds, rescaling, rows.known_inertia)
 
 
 def _axis(signals: Signals) -> list[Column]:

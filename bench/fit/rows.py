@@ -19,7 +19,16 @@ from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
 from bench.trace.filter import Column, GaussianFilter
-from bench.trace.motion import SIGN_REACH, Conditioning, condition, integrated, known_column, known_sign, raw_speed
+from bench.trace.motion import (
+    SIGN_REACH,
+    Conditioning,
+    condition,
+    integrated,
+    known_column,
+    known_inertia,
+    known_sign,
+    raw_speed,
+)
 from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.
@@ -251,6 +260,11 @@ class Rows:
         effort = self.kept(effort_of)[:, 0]
         return effort - self.kept(known_of)[:, 0] if self.stretches[0].signals.known else effort
 
+    @cached_property
+    def known_inertia(self) -> float:
+        """By which the known effort has the noise of the acceleration, on average over the rows - kg*m**2 (kg)."""
+        return float(np.mean(self.values(lambda s: np.broadcast_to(s.known_inertia, s.time.shape))))
+
     @property
     def starts(self) -> tuple[float, ...]:
         """Of the recordings that were joined, since the start of the first - s."""
@@ -402,6 +416,7 @@ def _signals(
         sample_period=period,
         source=conditioning.source,
         known=known_column(trace, part),
+        known_inertia=known_inertia(trace, part),
         of_motion=(driven - effort)[part],
     )
 

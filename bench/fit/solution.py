@@ -100,6 +100,7 @@ class NormalEquations:
         power: y'y of each block - (b,).
         rows: of each block - (b,).
         noise: (p, p) covariance of the noise of the columns in a row.
+        known: inertia by which the effort has the noise of the acceleration, the first column - kg*m**2 (kg).
     """
 
     names: tuple[Name, ...]
@@ -108,6 +109,7 @@ class NormalEquations:
     power: Array
     rows: NDArray[np.int64]
     noise: Array
+    known: float = 0.0
 
     def only(self, kept: Callable[[Name], bool]) -> NormalEquations:
         """The same equations for columns of some names only."""
@@ -129,6 +131,11 @@ class NormalEquations:
     def matrix(self) -> Array:
         """X'X less what sensor noise put into it - (p, p)."""
         return self.total - self.count * self.noise
+
+    @cached_property
+    def moments(self) -> Array:
+        """X'y of all rows less what noise put into it, by which the known effort has that of the motion - (p,)."""
+        return self.moment.sum(axis=0) + self.count * self.known * self.noise[:, 0]
 
     @cached_property
     def one_way(self) -> str | None:
@@ -164,7 +171,8 @@ class NormalEquations:
 
     def scores(self, theta: Array) -> Array:
         """X'(y - X*theta) of each block, less the part of it that is due to noise in the columns - (b, p)."""
-        return self.moment - self.gram @ theta + np.outer(self.rows, self.noise @ theta)
+        noise = self.noise @ theta + self.known * self.noise[:, 0]
+        return self.moment - self.gram @ theta + np.outer(self.rows, noise)
 
     def residual_power(self, theta: Array) -> float:
         """Sum of squared residuals of all rows - the effort's unit squared."""
@@ -176,16 +184,18 @@ def equations_of(rows: Rows, laid: Layout, edges: NDArray[np.int64] | None = Non
     """Normal equations of columns that are laid out and, behind them, a constant; of blocks between edges (b + 1,)."""
     edges = block_edges(rows.time, rows.conditioning.filter.width) if edges is None else edges
     table = np.vstack([laid.columns.T, np.ones(laid.effort.size), laid.effort])
-    return equations((*laid.owners, OFFSET), table, np.pad(laid.noise, (0, 1)), edges)
+    return equations((*laid.owners, OFFSET), table, np.pad(laid.noise, (0, 1)), edges, laid.known)
 
 
-def equations(names: tuple[Name, ...], table: Array, noise: Array, edges: NDArray[np.int64]) -> NormalEquations:
+def equations(
+    names: tuple[Name, ...], table: Array, noise: Array, edges: NDArray[np.int64], known: float = 0.0
+) -> NormalEquations:
     """Normal equations of columns of these names, which with the effort behind them are the rows of a table (p + 1, m).
 
-    `noise`: of the columns in a row (p, p); `edges`: of the blocks (b + 1,).
+    `noise`: of the columns in a row (p, p); `edges`: of the blocks (b + 1,); `known`: as of the equations.
     """
     sums = _products(table, edges)
-    return NormalEquations(names, sums[:, :-1, :-1], sums[:, :-1, -1], sums[:, -1, -1], np.diff(edges), noise)
+    return NormalEquations(names, sums[:, :-1, :-1], sums[:, :-1, -1], sums[:, -1, -1], np.diff(edges), noise, known)
 
 
 def _products(table: Array, edges: NDArray[np.int64]) -> Array:
@@ -379,7 +389,7 @@ def solve(rows: Rows, hypothesis: Hypothesis, laid: Layout, equations: NormalEqu
     """
     fitted = equations if offset else equations.only(lambda name: name != OFFSET)
     weight, value, variance = _digit_beforehand(fitted, hypothesis.step)
-    gram, moment = fitted.total + np.diag(weight), fitted.moment.sum(axis=0) + weight * value
+    gram, moment = fitted.total + np.diag(weight), fitted.moments + weight * value
     noise = fitted.count * fitted.noise
     theta, inverse = solved(gram, moment, noise)
     unknown = inverse @ np.diag(weight**2 * variance) @ inverse
@@ -408,7 +418,7 @@ def _digit_beforehand(equations: NormalEquations, step: float) -> tuple[Array, f
     if not step:
         return np.zeros(len(equations.names)), 0.0, 0.0
     value, variance = cut_beforehand(step)
-    theta, _ = solved(equations.total, equations.moment.sum(axis=0), equations.count * equations.noise)
+    theta, _ = solved(equations.total, equations.moments, equations.count * equations.noise)
     weight = equations.residual_power(theta) / equations.count / variance
     return weight * (np.array(equations.names, dtype=object) == DIGIT), value, variance
 
@@ -591,10 +601,11 @@ class Floor:
     def power(self, omega: Array, source: Array) -> Array:
         """Power of noise of effort and speed in the torque balance before the filter - (N*m)**2 (N**2) - (..., k).
 
-        s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|(J*s + K_w)*(1 + lag*s) + ...|**2 + s_p**2*|s*(1 + lag*s)|**2
+        s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|((J + J_p)*s + K_w)*(1 + lag*s) + ...|**2
+        + s_p**2*|s*(1 + lag*s)|**2
 
-        and twice what the known momentum p has of the speed's own noise: the joint's inertia where the arm is, less
-        that in the configuration of the MJCF.
+        J_p - inertia by which the known momentum has the speed's noise: of a joint where the arm is, less that in the
+        configuration of the MJCF; s_p - what else of noise it has.
 
         Args:
             omega: angular frequencies - rad/s (k,).
@@ -603,7 +614,7 @@ class Floor:
         conditioning, theta, owners = self.rows.conditioning, self.theta, self.layout.owners
         moving, _ = delays(self.rows, self.hypothesis)
         s = np.asarray(1j * omega, dtype=np.complex128)
-        kinetic = theta[BASE.index(INERTIA)] * s + theta[BASE.index(VISCOUS)]
+        kinetic = (theta[BASE.index(INERTIA)] + self.layout.known) * s + theta[BASE.index(VISCOUS)]
         for index, term in enumerate(self.hypothesis.terms):
             if isinstance(term.effect, Coupling):
                 transfer = term.effect.noise_of_motion(term.shape, omega)
@@ -613,10 +624,8 @@ class Floor:
             1.0 + effort_lag(self.hypothesis) * s
         )
         effort = conditioning.effort_noise**2 * _square(late)
-        rate = (1.0 + moving * s) * s
-        both = 2.0 * conditioning.known_shared * (kinetic * rate.conj()).real
-        known = conditioning.known_noise**2 * _square(rate)
-        return effort + np.maximum(known + both + source * _square(kinetic), 0.0) / self._acting**2
+        known = conditioning.known_noise**2 * _square((1.0 + moving * s) * s)
+        return effort + (known + source * _square(kinetic)) / self._acting**2
 
     def _colour(self) -> tuple[float, float]:
         """Excess c at low frequency over white noise, and its corner omega_c - rad/s; (0, 1) where the noise is white.

@@ -237,6 +237,18 @@ class Robot:
             momentum[part] = self._row(matrix, w) - self.inertia * w[:, dof]
         return torque, momentum
 
+    def grown(self, position: Array) -> Array:
+        """The joint's own inertia at positions of `joints` (n, joints) less that in the configuration of the MJCF.
+
+        In kg*m**2 (kg), (n,).
+        """
+        found = np.empty(len(position))
+        for part in _parts(len(position)):
+            q, unit = self._posed(position[part], np.zeros_like(position[part]))
+            unit[:, self._dof] = 1.0
+            found[part] = self._momentum(q, unit) - self.inertia
+        return found
+
     def asked(self, added: Sequence[AddedBody], position: Array, velocity: Array) -> list[tuple[Array, Array]]:
         """The load of each of some additions on the joint in addition to that, r and p as `rest` has them.
 
@@ -458,7 +470,8 @@ def _known(
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
     ratio = (own.load or Load()).gear_ratio
-    known = [with_known(trace, asked / ratio, moving / ratio, own.effort_unit) for asked, moving in every]
+    grown = robot.grown(position) / ratio**2
+    known = [with_known(trace, asked / ratio, moving / ratio, own.effort_unit, grown) for asked, moving in every]
     standing = _standing(position, velocity, torque, robot, stand, ratio)
     return [replace(one, notes=(*robot.notes, *one.notes), metadata={**one.metadata, **standing}) for one in known]
 

@@ -16,7 +16,7 @@ from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, Column, GaussianFilter
 from bench.trace.noise import TOP, common_step, resolution, rounding_spectrum, white_noise
-from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
+from bench.trace.signals import KNOWN_INERTIA, KNOWN_MOMENTUM, KNOWN_TORQUE
 from bench.trace.trace import Trace, less_known
 
 #: Where effort and acceleration share half of their power, signal and noise are equal.
@@ -48,8 +48,8 @@ class Conditioning:
         effort_step: between the values it takes; 0 where hardly one occurs twice - the effort's unit.
         speed_noise: of the raw speed whose sign is taken (central difference of a position) - rad/s (m/s).
         coherence: highest coherence of effort and acceleration over frequency.
-        known_noise: white noise of the momentum that is known - N*m*s (N*s); 0 where none is.
-        known_shared: covariance of that with the noise of the source - of both units.
+        known_noise: white noise of the momentum that is known in addition to that of the speed, which it has by the
+            known inertia - N*m*s (N*s); 0 where none is.
         source_spectrum: angular frequencies (k,) - rad/s - and power of rounding there (k,) - the source's
             unit squared; None where it is white.
     """
@@ -62,7 +62,6 @@ class Conditioning:
     speed_noise: float
     coherence: float
     known_noise: float = 0.0
-    known_shared: float = 0.0
     source_spectrum: tuple[Array, Array] | None = field(default=None, compare=False)
 
     def source_power(self, omega: Array) -> Array:
@@ -133,24 +132,18 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
     chosen = GaussianFilter.from_cutoff(cutoff, trace.sample_period)
     efforts = [effort[part] for part in parts]
     loud, step = white_noise(*efforts), resolution(np.concatenate(efforts))
-    known, shared = _noise_of_known(trace, parts, source, noise[source]) if KNOWN_MOMENTUM in trace else (0.0, 0.0)
+    known = _noise_of_known(trace, parts, source) if KNOWN_MOMENTUM in trace else 0.0
     spectrum = _rounded([trace[source][part] for part in parts], chosen, noise[source])
     highest = float(coherence[peak])
-    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, highest, known, shared, spectrum)
+    return Conditioning(chosen, source, noise[source], loud, step, speed_noise, highest, known, spectrum)
 
 
-def _noise_of_known(trace: Trace, parts: Sequence[slice], source: str, noise: float) -> tuple[float, float]:
-    """White noise of the known momentum, and its covariance with that of the speed where the balance is of that."""
-    momentum = [trace[KNOWN_MOMENTUM][part] for part in parts]
-    known = white_noise(*momentum)
-    if source != "velocity" or not known * noise > 0.0:
-        return known, 0.0
-    scale = known / noise
-    speeds = [scale * trace[source][part] for part in parts]
-    more, less = (
-        white_noise(*(p + side * w for p, w in zip(momentum, speeds, strict=True))) ** 2 for side in (1.0, -1.0)
-    )
-    return known, (more - less) / (4.0 * scale)
+def _noise_of_known(trace: Trace, parts: Sequence[slice], source: str) -> float:
+    """White noise of the known momentum less the mean inertia by which it has the noise of the speed."""
+    inertia = float(np.mean(np.concatenate([trace[KNOWN_INERTIA][part] for part in parts])))
+    speeds = (raw_speed(trace[source][part], source, trace.sample_period) for part in parts)
+    momentum = (trace[KNOWN_MOMENTUM][part] for part in parts)
+    return white_noise(*(p - inertia * speed for p, speed in zip(momentum, speeds, strict=True)))
 
 
 def _rounded(stretches: Sequence[Array], smooth: GaussianFilter, noise: float) -> tuple[Array, Array] | None:
@@ -283,6 +276,11 @@ def known_column(trace: Trace, part: slice) -> Column:
     if KNOWN_TORQUE not in trace:
         return ()
     return (trace[KNOWN_TORQUE][part], 0), (trace[KNOWN_MOMENTUM][part], 1)
+
+
+def known_inertia(trace: Trace, part: slice) -> Array | float:
+    """Inertia by which known momentum along a stretch has the speed's noise - kg*m**2 (kg) - (n,); 0 if none is."""
+    return trace[KNOWN_INERTIA][part] if KNOWN_INERTIA in trace else 0.0
 
 
 def stretches_of(trace: Trace) -> tuple[slice, ...]:
