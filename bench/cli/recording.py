@@ -176,7 +176,7 @@ def diagnose(
 
 def robot(
     logs: Annotated[list[Path], Argument(metavar="LOG", help="Logs of the robot, of any known format.")],
-    mjcf: Annotated[Path, Option(help="MJCF of the robot.")],
+    mjcf: Annotated[list[Path], Option(help="MJCF of the robot; one for each log where its payload differs.")],
     out: Annotated[Path, Option(help="Folder for MJCF, models, page and JSON.")],
     holdout: Annotated[Path | None, Option(help="Another log of it, not fitted.")] = None,
     rig: common.OptionalRigOption = None,
@@ -200,15 +200,15 @@ def robot(
     from bench.report.terminal import progress
 
     excluded = frozenset(named(name, "--without").name for name in without or [])
-    stated = common.positions(at or (), joint_units(mjcf))
+    stated = common.positions(at or (), joint_units(mjcf[0]))
     known = None if rig is None else bench.load_rig(rig)
-    with progress(f"identifying the joints of {mjcf.name}") as done:
+    with progress(f"identifying the joints of {mjcf[0].name}") as done:
         found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done, stand)
     options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded), "stand": stand}
     basis = provenance(rig, logs, options, holdout, mjcf)
     folder = out if found.answered else None
     compared = found.grade if grade else None
-    document = document_of(found, f"{readable(mjcf.name)}: {in_a_row(logs)}", basis, folder, compared)
+    document = document_of(found, f"{in_a_row(mjcf)}: {in_a_row(logs)}", basis, folder, compared)
     common.deliver(document, lambda: robot_json(found, basis, compared), json, folder)
     if not found.answered:  # the first reason
         first = next(iter(found.joints.values()))

@@ -20,6 +20,7 @@ from bench.gate.check import Check
 from bench.gate.gate import passed, warnings_of
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
+from bench.joints.weight import constant_of, counted_differently, needs_constant, with_constant
 from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
@@ -34,6 +35,8 @@ Told = TypeVar("Told")
 LIMITS = Limits(deadline=1800.0, memory=8.0 * 1024**3)
 #: Share of the links' inertia, and of the largest torque, below which armature and friction may be none.
 LITTLE = 0.05
+#: Name of the torque (force) constant among the parameters, N*m/A (N/A).
+CONSTANT = "torque_constant"
 #: Key of a refusal that concerns no parameter: whether anything is missing.
 EFFECTS = "effects"
 
@@ -45,6 +48,7 @@ class JointLogs:
     Attributes:
         joint: its name in the MJCF.
         mjcf, logs, holdout: files.
+        mjcfs: of the logs in which the robot had another payload, by their files.
         rig: of the joints; None where nothing is known of them.
         stated: positions of joints that stand and that the logs do not hold - rad (m).
         excluded: effects that are not tried.
@@ -61,10 +65,18 @@ class JointLogs:
     excluded: frozenset[str] = frozenset()
     added: tuple[AddedBody, ...] = ()
     stand: bool = False
+    mjcfs: Mapping[Path, Path] = field(default_factory=dict)
 
     def robot(self) -> Robot:
         """The robot around the joint; InputError as `Robot.of`."""
         return Robot.of(self.mjcf, self.joint, self.added, self.stand)
+
+    def robot_of(self, log: Path) -> Robot:
+        """The robot as it was in a log, its load in addition to the same inertia in all; InputError as `Robot.of`."""
+        first = self.robot()
+        if log not in self.mjcfs:
+            return first
+        return replace(Robot.of(self.mjcfs[log], self.joint, self.added, self.stand), datum=first.inertia)
 
 
 @dataclass(frozen=True)
@@ -81,6 +93,9 @@ class IdentifiedJoint:
         left_out: why a log was not used, by its file.
         failed: what is wrong with the input, if that is why nothing is determined.
         motion: of a diagnosis with a model that moves.
+        payloads: whether the links' inertia differs from log to log.
+        constant: torque (force) constant by the weight of the links, of logs that hold a current and no rig that states
+            it.
     """
 
     name: str
@@ -92,13 +107,16 @@ class IdentifiedJoint:
     left_out: Mapping[str, str] = field(default_factory=dict)
     failed: str = ""
     motion: JointMotion | None = None
+    payloads: bool = False
+    constant: Parameter | None = None
 
     @property
     def parameters(self) -> dict[str, Parameter]:
         """Those that are determined, by name."""
         found = self.diagnosis or self.estimate
         parameters = {} if found is None else found.parameters
-        return {name: parameter for name, parameter in parameters.items() if name not in self.refused}
+        known = {name: parameter for name, parameter in parameters.items() if name not in self.refused}
+        return known if self.constant is None else {**known, CONSTANT: self.constant}
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -116,9 +134,12 @@ class IdentifiedJoint:
 
     @property
     def contested(self) -> str:
-        """What else the armature may be, as a scale of the torque looks like other links; empty if it is clear."""
+        """What else the armature may be, as a scale of the torque looks like other links; empty if it is clear.
+
+        So it is where a known payload differs from log to log.
+        """
         armature = self.parameters.get(ARMATURE)
-        if armature is None:
+        if armature is None or self.payloads:
             return ""
         for one in self.diagnosis or ():
             if one.effect.rescales_torque:
@@ -159,7 +180,9 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
     try:
         robot = asked.robot()
         rig = joint_rig(asked.rig, robot)
-        used, left_out = _moving(asked, asked.logs, rig, robot)
+        read, refusals = _read(asked, asked.logs, rig)
+        rig, constant = _with_constant(asked.joint, rig, [trace for trace, _ in read.values()])
+        used, left_out = _moving(read, refusals, rig)
         traces, poses = [trace for trace, _ in used.values()], next(iter(used.values()))[1]
     except UndeterminedError as error:
         return IdentifiedJoint(asked.joint, refused={EFFECTS: error.reason}, record=error.record)
@@ -168,20 +191,31 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
     unseen: dict[Path, tuple[Trace, Poses]] = {}
     if asked.holdout is not None:
         try:
-            unseen, _ = _moving(asked, [asked.holdout], rig, robot)
+            unseen, _ = _moving(*_read(asked, [asked.holdout], rig), rig)
         except BenchError as error:
             left_out[asked.holdout.name] = str(error)
     try:
         other = next((trace for trace, _ in unseen.values()), None)
         found = diagnose(traces, rig, other, asked.excluded)
     except UndeterminedError as refusal:
-        return _without_effects(asked.joint, traces, rig, refusal, left_out)
+        return replace(_without_effects(asked.joint, traces, rig, refusal, left_out), constant=constant)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
-    found = replace(found, warnings=[*found.warnings, *_frictionless(asked.joint, found, rig)])
+    differ = [] if len(used) == 1 else counted_differently({log: trace for log, (trace, _) in used.items()}, rig)
+    found = replace(found, warnings=[*found.warnings, *_frictionless(asked.joint, found, rig), *differ])
     refused = {**found.refused, **_any_friction(found, rig.axis_kind), **_behind(rig)}
     motion = joint_motion(found, traces[0], rig, poses)
-    return IdentifiedJoint(asked.joint, rig, found, refused=refused, left_out=left_out, motion=motion)
+    payloads = any(replace(asked.robot_of(log), datum=None).inertia != robot.inertia for log in used)
+    return IdentifiedJoint(
+        asked.joint,
+        rig,
+        found,
+        refused=refused,
+        left_out=left_out,
+        motion=motion,
+        payloads=payloads,
+        constant=constant,
+    )
 
 
 def of_each(
@@ -228,25 +262,56 @@ def _any_friction(found: Diagnosis, kind: AxisKind) -> dict[str, str]:
     return refused
 
 
+def _read(
+    asked: JointLogs, logs: Sequence[Path], rig: Rig
+) -> tuple[dict[Path, tuple[Trace, Poses]], dict[Path, BenchError]]:
+    """Recordings of the joint, with the robot's poses along each, and why others cannot be read.
+
+    A current that no constant makes a torque counts as one of 1 N*m/A (N/A).
+    """
+    read, refused = dict[Path, tuple[Trace, Poses]](), dict[Path, BenchError]()
+    rig = with_constant(rig, 1.0) if rig.motor.torque_per_ampere is None else rig
+    for log in logs:
+        try:
+            read[log] = read_along(log, rig, asked.robot_of(log), asked.stated)
+        except (InputError, UndeterminedError) as error:
+            refused[log] = error
+    return read, refused
+
+
+def _with_constant(joint: str, rig: Rig, traces: Sequence[Trace]) -> tuple[Rig, Parameter | None]:
+    """The rig with a torque (force) constant by the weight of the links, where the joint's efforts need one.
+
+    UndeterminedError where the weight does not determine it.
+    """
+    currents = [trace for trace in traces if needs_constant(rig, trace)]
+    if not currents:
+        return rig, None
+    try:
+        return constant_of(currents, rig)
+    except UndeterminedError as error:
+        record = f"{error.record}, or state torque_constant under [joints.{joint}] in a rig"
+        raise UndeterminedError(error.quantity, f"its efforts are in A, and {error.reason}", record) from None
+
+
 def _moving(
-    asked: JointLogs, logs: Sequence[Path], rig: Rig, robot: Robot
+    read: Mapping[Path, tuple[Trace, Poses]], refused: Mapping[Path, BenchError], rig: Rig
 ) -> tuple[dict[Path, tuple[Trace, Poses]], dict[str, str]]:
-    """Recordings of the joint in which it moves, with the robot's poses along each, and why the others are none.
+    """Recordings in which the joint moves, with the robot's poses along each, and why the others are none.
 
     Raises as the first if none is one.
     """
-    traces, refused = dict[Path, tuple[Trace, Poses]](), list[tuple[Path, BenchError]]()
-    for log in logs:
+    traces, reasons = dict[Path, tuple[Trace, Poses]](), dict(refused)
+    for log, (recorded, poses) in read.items():
         try:
-            read, poses = read_along(log, rig, robot, asked.stated)
-            trace = passed(read, rig).trace
+            trace = passed(recorded, rig).trace
             Rows.of(trace, rig)
             traces[log] = trace, poses
         except (InputError, UndeterminedError) as error:
-            refused.append((log, error))
+            reasons[log] = error
     if not traces:
-        raise refused[0][1]
-    return traces, {log.name: str(error) for log, error in refused}
+        raise next(iter(reasons.values()))
+    return traces, {log.name: str(error) for log, error in reasons.items()}
 
 
 def _without_effects(

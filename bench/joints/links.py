@@ -24,19 +24,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg, special
 
-from bench.arrays import Array, rms, symmetric_inverse
-from bench.effects.signals import Signals
+from bench.arrays import Array, symmetric_inverse
 from bench.errors import BenchError, UndeterminedError
-from bench.fit.hypothesis import BASE, lay_out, plain
 from bench.fit.rows import Rows
 from bench.joints.identified import JointLogs, of_each
+from bench.joints.weight import LEAST, OWN, own_columns
 from bench.parameter import Parameter
 from bench.plant.robot import AddedBody, joint_rig, logs_of
-from bench.trace.filter import Column
 
-#: Speeds over which friction may fall, as shares of the usual one; columns that every joint has of its own.
-SLOW = (0.1, 0.4)
-OWN = len(BASE) + 1 + len(SLOW)
 #: Stretches that the rows of a log are cut into, equally many in each.
 STRETCHES = 24
 #: Rounds in which weights of the joints, and the place of a payload, settle.
@@ -45,8 +40,6 @@ ROUNDS = 3
 ASIDE = 0.1
 #: Share of the strongest column's power at which another has none.
 SILENT = 1e-9
-#: Least share of a column's power that the joints' own terms must leave.
-LEAST = 0.01
 #: A link's inertia is doubted where this many errors and this share of all joints' residuals require it.
 SURE, TAKES = 6.0, 0.2
 #: Links at most whose inertia is doubted.
@@ -108,27 +101,16 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
     found = []
     for log in asked.logs:
         try:
-            robot = asked.robot()
-            rig = joint_rig(asked.rig, robot)
+            robot, rig = asked.robot_of(log), joint_rig(asked.rig, asked.robot())
             trace, *changed = logs_of(log, rig, robot, asked.stated, changes)
             rows = Rows.of(trace, rig)
-            columns = [lay_out(rows, plain(rows)).columns[:, : len(BASE)], rows.table(_frictions)]
+            columns = [own_columns(rows)]
             columns += [rows.effort - Rows.of(one, rig, conditioning=rows.conditioning).effort for one in changed]
         except BenchError:  # reported where the joint is identified
             continue
         table = np.column_stack([*columns, rows.effort])
         found += [part.T @ part for part in np.array_split(table, STRETCHES)]
     return np.array(found) if found else None
-
-
-def _frictions(signals: Signals) -> list[Column]:
-    """Friction by transmitted torque, and by speeds that are a share of the usual one.
-
-    No joint has been diagnosed yet: the part of its friction that is not a level would pass for weight.
-    """
-    speed = np.abs(signals.velocity)
-    slow = (np.exp(-((speed / (share * rms(speed) + 1e-300)) ** 2)) for share in SLOW)
-    return [[(signals.sign * shape, 0)] for shape in (np.abs(signals.torque), *slow)]
 
 
 def of_joints(

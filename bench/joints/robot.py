@@ -82,7 +82,7 @@ class IdentifiedRobot(Shown):
 
 def robot(
     logs: str | Path | Sequence[str | Path],
-    mjcf: str | Path,
+    mjcf: str | Path | Sequence[str | Path],
     holdout: str | Path | None = None,
     rig: GivenRig | None = None,
     joints: str | Sequence[str] = (),
@@ -97,7 +97,8 @@ def robot(
 
     Args:
         logs: one log of all joints, or several that each move a few.
-        mjcf: of the robot.
+        mjcf: of the robot; of one whose payload differs from log to log one for each, the holdout's last. Armature and
+            friction are those of all logs, and results are written into the first.
         holdout: another log, not used to fit.
         rig: what is known of the joints' drives, as `identify` takes it; not needed where the logs hold torque.
         joints: names of those to identify; all hinges and slides of the MJCF where none is given.
@@ -114,10 +115,11 @@ def robot(
     known = None if rig is None else rig_of(rig)
     joints = [joints] if isinstance(joints, str) else joints
     left_out = frozenset(named(one, "excluded").name for one in ([excluded] if isinstance(excluded, str) else excluded))
-    names = _required(Path(mjcf), joints)
-    asked = [name for name in names if not joints or name in joints]
     unseen = None if holdout is None else Path(holdout)
-    of_all = JointLogs("", Path(mjcf), tuple(paths), unseen, known, stated or {}, left_out, stand=stand)
+    first, others = _mjcfs(mjcf, [*paths, *([] if unseen is None else [unseen])])
+    names = _required(first, joints)
+    asked = [name for name in names if not joints or name in joints]
+    of_all = JointLogs("", first, tuple(paths), unseen, known, stated or {}, left_out, stand=stand, mjcfs=others)
     return _answered(of_all, [replace(of_all, joint=name) for name in asked], payload, progress)
 
 
@@ -144,6 +146,17 @@ def _answered(
         found = _identified(work, progress)
     added = work[0].added if work else ()
     return IdentifiedRobot(of_all.mjcf, found, sought, tuple(links), tuple(warnings), added, of_all.stand)
+
+
+def _mjcfs(mjcf: str | Path | Sequence[str | Path], logs: Sequence[Path]) -> tuple[Path, dict[Path, Path]]:
+    """The first MJCF, and those of logs that have another one; InputError where neither one nor one each is given."""
+    every = [Path(mjcf)] if isinstance(mjcf, str | Path) else list(map(Path, mjcf))
+    if len(every) == 1:
+        return every[0], {}
+    if len(every) != len(logs):
+        allowed = "allowed: one for all, or one for each in their order, the holdout's last"
+        raise InputError("--mjcf", f"found {len(every)} MJCF files for {len(logs)} logs", allowed)
+    return every[0], {log: one for log, one in zip(logs, every, strict=True) if one != every[0]}
 
 
 def _paths(logs: str | Path | Sequence[str | Path]) -> list[Path]:

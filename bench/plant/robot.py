@@ -127,6 +127,8 @@ class Robot:
         joints: numbers of the joints that move with it, itself among them, in the model's order: what depends on the
             world without them is not felt.
         notes: what was left out of the model.
+        datum: inertia of all that the joint carries to which the load of the links is in addition - kg*m**2 (kg); None
+            for that in the configuration of the MJCF.
     """
 
     model: mujoco.MjModel
@@ -134,6 +136,7 @@ class Robot:
     source: str
     joints: tuple[int, ...]
     notes: tuple[str, ...] = ()
+    datum: float | None = None
 
     @classmethod
     def of(cls, path: Path, joint: str | None, added: Sequence[AddedBody] = (), stand: bool = False) -> Robot:
@@ -209,7 +212,9 @@ class Robot:
 
     @cached_property
     def inertia(self) -> float:
-        """Of all that the joint carries, in the configuration of the MJCF - kg*m**2 (kg)."""
+        """Of all that the joint carries, the datum or in the configuration of the MJCF - kg*m**2 (kg)."""
+        if self.datum is not None:
+            return self.datum
         unit = np.zeros((1, self.model.nv))
         unit[0, self._dof] = 1.0
         return float(self._momentum(self.model.qpos0[None], unit)[0])
@@ -238,10 +243,7 @@ class Robot:
         return torque, momentum
 
     def grown(self, position: Array) -> Array:
-        """The joint's own inertia at positions of `joints` (n, joints) less that in the configuration of the MJCF.
-
-        In kg*m**2 (kg), (n,).
-        """
+        """The joint's own inertia at positions of `joints` (n, joints) less `inertia` - kg*m**2 (kg) - (n,)."""
         found = np.empty(len(position))
         for part in _parts(len(position)):
             q, unit = self._posed(position[part], np.zeros_like(position[part]))

@@ -121,7 +121,7 @@ def provenance(
     traces: Sequence[Path],
     options: Mapping[str, Any],
     holdout: Path | None = None,
-    mjcf: Path | None = None,
+    mjcf: Path | Sequence[Path] | None = None,
 ) -> dict[str, Any]:
     """The contract's `provenance`: from the same version, files and options come the same results.
 
@@ -130,7 +130,7 @@ def provenance(
         traces: files of the recordings, in the order given.
         options: of the command that change its result.
         holdout: file of the recording that was not fitted.
-        mjcf: file of the robot around the axis.
+        mjcf: file of the robot around the axis; several where its payload differs from log to log.
 
     Raises:
         InputError: a file cannot be read.
@@ -139,10 +139,12 @@ def provenance(
     def checksum(path: Path) -> dict[str, str]:
         return {"file": readable(path), "sha256": sha256(path)}
 
+    robots = [checksum(path) for path in ([mjcf] if isinstance(mjcf, Path) else mjcf or [])]
     return {
         "version": __version__,
         "rig_sha256": None if rig is None else sha256(rig),
         "traces": [checksum(trace) for trace in traces],
         "options": dict(options),
-        **{key: checksum(path) for key, path in (("holdout", holdout), ("mjcf", mjcf)) if path is not None},
+        **({} if holdout is None else {"holdout": checksum(holdout)}),
+        **({"mjcf": robots if len(robots) > 1 else robots[0]} if robots else {}),
     }

@@ -182,6 +182,10 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     headings = ("joint", *headings, "what was missing, and how sure~")
     caption = "Values ± half of their intervals of 95 %, in SI, on the motor's side but the armature"
     tables = [doc.table(caption, headings, zip(found.joints, *cells, missing, strict=True))]
+    constants = [(name, interval(joint.constant)) for name, joint in found.joints.items() if joint.constant is not None]
+    if constants:
+        caption = "Torque constants by the weight of the links; negative where the log counts the current the other way"
+        tables.append(doc.table(caption, ("joint", "torque constant>"), constants))
     if found.payload is not None:
         centre = ", ".join(interval(x) if math.isfinite(x.half_width) else "unknown" for x in found.payload.centre)
         row = (found.payload.body, interval(found.payload.mass), centre)

@@ -1,0 +1,99 @@
+"""A joint that swings several masses, each on a pendulum of its own length: one armature, one friction, one kT.
+
+The torque is written out, J*a + m*l**2*a + B*w + C*sgn(w) + m*g*l*sin(q); nothing of MuJoCo is in the logs.
+"""
+
+import json
+
+import numpy as np
+import pytest
+
+import bench
+from bench.errors import InputError
+from tests.command import bench as command
+
+ARMATURE, VISCOUS, COULOMB = 0.012, 0.05, 0.15
+#: Mass - kg - and length - m - of each pendulum.
+PENDULUMS = {"a": (0.3, 0.1), "b": (0.9, 0.15), "c": (0.5, 0.2)}
+MJCF = """<mujoco><option gravity="0 0 -9.81"/><worldbody><body><joint name="j" axis="{axis}"/>
+<inertial pos="0 0 -{length}" mass="{mass}" diaginertia="1e-9 1e-9 1e-9"/></body></worldbody></mujoco>"""
+
+
+def swung(folder, names, effort="torque [N*m]", per_torque=1.0, seed=0, stated=None, axis="0 1 0"):
+    """Logs of some pendulums, and an MJCF of each, with the masses that are `stated`."""
+    rng, time = np.random.default_rng(seed), 2e-3 * np.arange(6000)
+    for name in names:
+        mass, length = PENDULUMS[name]
+        omega, size = 2.0 * np.pi * np.array([[0.3], [1.1], [2.3]]), np.array([[1.2], [0.3], [0.1]])
+        angle = omega * time + rng.uniform(0.0, 2.0 * np.pi, (3, 1))
+        q, w = (size * np.sin(angle)).sum(0), (size * omega * np.cos(angle)).sum(0)
+        a = -(size * omega**2 * np.sin(angle)).sum(0)
+        torque = (ARMATURE + mass * length**2) * a + VISCOUS * w + COULOMB * np.sign(w)
+        torque += mass * 9.81 * length * np.sin(q) * (axis == "0 1 0")
+        columns = {
+            "time [s]": time,
+            "j.position [rad]": q + 1e-4 * rng.standard_normal(time.size),
+            "j.velocity [rad/s]": w + 5e-3 * rng.standard_normal(time.size),
+            f"j.{effort}": per_torque * (torque + 0.01 * rng.standard_normal(time.size)),
+        }
+        table, header = np.column_stack(list(columns.values())), ",".join(columns)
+        np.savetxt(folder / f"{name}.csv", table, "%.8g", ",", header=header, comments="")
+        mass = (stated or {}).get(name, mass)
+        (folder / f"{name}.xml").write_text(MJCF.format(axis=axis, length=length, mass=mass))
+    return [folder / f"{name}.csv" for name in names], [folder / f"{name}.xml" for name in names]
+
+
+def holds(parameter, true):
+    return parameter.ci95[0] <= true <= parameter.ci95[1]
+
+
+def test_several_payloads_have_one_armature_and_a_torque_scale_that_nothing_else_looks_like(tmp_path):
+    """On one pendulum an unbalance looks like a scale of the torque, and so do heavier links."""
+    joint = bench.robot(*swung(tmp_path, "abc", per_torque=1.3)).joints["j"]
+    assert joint.diagnosis is not None
+    (scale,) = joint.diagnosis.effects
+    assert scale.name == "torque_scale"
+    assert not scale.ambiguous_with
+    assert not joint.contested
+    assert scale.values["scale"] == pytest.approx(1.3, rel=2e-3)
+    true = {"armature": ARMATURE, "viscous_friction_coefficient": VISCOUS, "coulomb_friction_torque": COULOMB}
+    for name, value in true.items():
+        assert joint.parameters[name].value == pytest.approx(value, rel=0.01), name
+        assert holds(joint.parameters[name], value), name
+    assert not any("known weight" in warning for warning in joint.warnings)
+
+
+def test_a_payload_that_its_mjcf_has_wrong_is_reported_with_its_log(tmp_path):
+    logs, mjcfs = swung(tmp_path, "abc", stated={"b": 0.99})
+    (warning,) = [one for one in bench.robot(logs, mjcfs).joints["j"].warnings if "known weight" in one]
+    assert "0.909 ± " in warning.split("in a.csv")[1].split("in b.csv")[0]
+
+
+def test_currents_count_by_the_weight_of_the_links_and_in_their_own_direction(tmp_path):
+    """kT is -0.8 N*m/A: the log counts the current against the joint's angle."""
+    logs, mjcfs = swung(tmp_path, "ab", "current [A]", -1.0 / 0.8)
+    line = ["robot", *logs, *(word for one in mjcfs for word in ("--mjcf", one))]
+    done = command(*line, "--out", tmp_path / "found")
+    assert done.status == 0, done.err
+    assert "Torque constants by the weight of the links" in done.out
+    found = json.loads((tmp_path / "found" / "robot.json").read_text())
+    parameters = found["joints"]["j"]["parameters"]
+    low, high = parameters["torque_constant"]["ci95"]
+    assert low < -0.8 < high
+    assert high - low < 0.005
+    assert parameters["armature"]["value"] == pytest.approx(ARMATURE, rel=0.01)
+    assert [one["file"].rpartition("/")[2] for one in found["provenance"]["mjcf"]] == ["a.xml", "b.xml"]
+
+
+def test_without_a_weight_that_moves_a_current_is_no_torque(tmp_path):
+    """About the vertical the links' inertia is constant, and none of it is known apart from the armature's."""
+    joint = bench.robot(*swung(tmp_path, "a", "current [A]", 2.0, axis="0 0 1")).joints["j"]
+    assert not joint.parameters
+    assert "no known weight of links or payload moves clearly" in joint.refused["effects"]
+    assert "torque_constant under [joints.j]" in joint.record
+
+
+def test_an_mjcf_is_of_all_logs_or_of_one_each(tmp_path):
+    logs, mjcfs = swung(tmp_path, "abc")
+    with pytest.raises(InputError, match="--mjcf: found 2 MJCF files for 3 logs; allowed: one for all"):
+        bench.robot(logs, mjcfs[:2])
