@@ -21,7 +21,7 @@ from bench.arrays import Array
 from bench.axis_kind import AxisKind
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Columns
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Axis, Signals
 from bench.errors import InputError, UndeterminedError
 from bench.gate.check import Check
 from bench.gate.gate import STEADY as STEADY_CHECKS
@@ -92,7 +92,7 @@ class FrictionMap:
     kind: AxisKind
     plain: FrictionCurve
     best: FrictionCurve
-    base: Base
+    base: Axis
     offset: float | None
     name: str | None
     values: dict[str, float]
@@ -125,7 +125,7 @@ def friction_map(recordings: Sequence[Given], rig: GivenRig | None = None, units
     best = tried[least] if np.isfinite(tried[least].squares) else plain
     probability = min(1.0, len(names) * chances[least])
     kept = best if probability < CHANCE else plain
-    base = Base(float("nan"), float(kept.theta[0]), float(kept.theta[1]))
+    base = Axis(float("nan"), float(kept.theta[0]), float(kept.theta[1]))
     effect = catalogue()[kept.name] if kept.name else None
     return FrictionMap(
         velocity=velocity,
@@ -219,7 +219,7 @@ def _best_fit(name: str, shape: tuple[float, ...], velocity: Array, effort: Arra
     solved, _, rank, _ = np.linalg.lstsq(table, effort, rcond=1e-10)
     theta = np.asarray(solved, dtype=np.float64)
     squares = float(np.sum((effort - table @ theta) ** 2))
-    base = Base(1.0, float(theta[0]), float(theta[1]))
+    base = Axis(1.0, float(theta[0]), float(theta[1]))
     if name and not catalogue()[name].physical(theta[3:].tolist(), shape, base):
         squares = float("inf")
     return FrictionCurve(name, shape, theta, squares, int(rank) + len(shape), constant)

@@ -5,7 +5,6 @@ Events exceed the residual of a search, whatever that is: no name for the rest i
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -268,12 +267,11 @@ def _gain(effects: Sequence[NamedEffect], fitted: Fit) -> float:
 
     The rig does not state when its torque constant is valid, so all torques may be by as much less.
     """
-    inertia, viscous, coulomb = (fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB))
-    axis, gain = Axis(inertia, inertia, viscous, coulomb, math.inf), 1.0
+    gain = 1.0
     for one in effects:
         effect = one.effect
         if isinstance(effect, Torque) and effect.stage == Stage.CURRENT_SENSOR:
-            lost = partial(_lost_per_torque, effect, one.values, axis)
+            lost = partial(_lost_per_torque, effect, one.values, fitted.base)
             gain *= (1.0 - lost(fitted.scope.duration)) / (1.0 - lost(0.0))
     return gain
 

@@ -24,7 +24,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Effect, Lag
 from bench.effects.present import Present
-from bench.effects.signals import Base
+from bench.effects.signals import Axis
 from bench.errors import BenchError, InputError
 from bench.fit.fit import fit
 from bench.fit.rows import sign_reach
@@ -150,7 +150,7 @@ def one_direction(recordings: Recordings, dry: float, model: AxisModel) -> Itera
     direction = 1.0 if float(np.mean(measured_velocity(recordings.trace))) > 0.0 else -1.0
     for effect in catalogue().values():
         if effect.constant:
-            values = effect.report([direction * dry], (), Base(0.0, 0.0, 0.0))
+            values = effect.report([direction * dry], (), Axis(0.0, 0.0, 0.0))
             friction = replace(model.parameters, coulomb_friction=abs(dry))
             nothing = replace(model.parameters, coulomb_friction=0.0)
             instead = replace(model, parameters=nothing, effects=(*model.effects, Present.of(effect.name, values)))

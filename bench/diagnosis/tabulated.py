@@ -23,7 +23,7 @@ from bench.arrays import Array, rms
 from bench.diagnosis.model import Extension, HeldOut, Recorded, tracking
 from bench.effects.effect import LOSSIEST
 from bench.effects.present import Present
-from bench.effects.signals import Base
+from bench.effects.signals import Axis
 from bench.effects.tabulated import NAMES, NODES, TABLES, Tabulated, TabulatedFriction, TorqueOverPosition
 from bench.errors import SimulationError
 from bench.fit.fit import Fit
@@ -201,7 +201,7 @@ def smoothed(columns: Array, residual: Array) -> tuple[Array, float]:
     return nodes, missed
 
 
-def present(table: Tabulated, shape: Sequence[float], nodes: Array, base: Base) -> Present:
+def present(table: Tabulated, shape: Sequence[float], nodes: Array, base: Axis) -> Present:
     """A table with its values; friction never drives, and takes no larger share of the torque than any gear's."""
     low, high, turns = shape
     if isinstance(table, TabulatedFriction):

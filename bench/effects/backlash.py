@@ -19,7 +19,7 @@ from bench.effects.effect import Contact, Fitted, Load
 from bench.effects.impacts import likeliest_shape, open_torque, spread
 from bench.effects.mjcf import Spec, add_coupling_joint
 from bench.effects.shape import Shape, Shapes
-from bench.effects.signals import Axis, Base, Number, Scope, Signals
+from bench.effects.signals import Axis, Number, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -83,7 +83,7 @@ class Backlash(Contact):
     def in_place_of(self, fitted: Fitted, promises: Callable[[float], bool]) -> tuple[float, ...] | None:
         return likeliest_shape(fitted, promises)
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         """Gap, and what the contact's frequency and damping ratio are with the load's inertia."""
         gap, contact, ratio, _ = shape
         stiffness = strengths[0] * contact**2

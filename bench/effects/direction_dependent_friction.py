@@ -10,7 +10,7 @@ Source: A. Janot, M. Gautier, M. Brunot, NSIB workshop 2019 (EMPS, asymmetric fr
 from collections.abc import Mapping, Sequence
 
 from bench.effects.mjcf import AXIS, Spec, add_resisting_torque
-from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Values
+from bench.effects.signals import Axis, AxisState, Number, Scope, Values
 from bench.effects.torque import Friction
 from bench.units import Quantity
 
@@ -32,7 +32,7 @@ class DirectionDependentFriction(Friction):
         """Half of the viscous difference, in either direction."""
         return 0.5 * values["viscous_difference"] * abs(at.velocity)
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         """Dry friction resists in both directions: more of a difference is a torque that drives."""
         return abs(strengths[0]) <= 2.0 * base.coulomb
 

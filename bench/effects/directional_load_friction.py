@@ -17,7 +17,7 @@ import numpy as np
 
 from bench.effects.effect import LOSSIEST, Fitted
 from bench.effects.shape import Shape, grid_of
-from bench.effects.signals import Axis, AxisState, Base, Number, Values
+from bench.effects.signals import Axis, AxisState, Number, Values
 from bench.effects.torque import Friction, FrictionLaw
 from bench.units import Quantity
 
@@ -54,7 +54,7 @@ class DirectionalLoadFriction(Friction):
         """As much friction by the load's torque as by the motor's, if there is a load."""
         return (1.0,) if fitted.places(lambda effect: effect.transmitted).size else None
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         motor, ratio = strengths[0], shape[0]
         return {"motor_coefficient": motor, "load_ratio": ratio, "load_coefficient": motor * ratio}
 

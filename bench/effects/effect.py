@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from bench.arrays import NORMAL95, Array, namespace, recursive_filter
 from bench.effects.mjcf import Spec
 from bench.effects.shape import LAG, Shape, Shapes, grid_of
-from bench.effects.signals import Axis, Base, Number, Scope, Signals, Values
+from bench.effects.signals import Axis, Number, Scope, Signals, Values
 from bench.rig.rig import Rig
 from bench.trace.filter import Column, GaussianFilter
 from bench.trace.trace import Trace
@@ -41,8 +41,6 @@ BEHIND = (0.02, 0.98)
 LOSSIEST = 0.7
 #: Lags that a search tries first - s.
 LAGS = (3e-4, 8e-4, 2e-3, 4e-3, 8e-3)
-#: Coefficients of the axis for which a strength is the quantity itself.
-UNIT = Base(1.0, 1.0, 1.0)
 
 
 class Stage(IntEnum):
@@ -93,7 +91,7 @@ class Fitted(Protocol):
     @property
     def scope(self) -> Scope: ...
     @property
-    def base(self) -> Base: ...
+    def base(self) -> Axis: ...
     @property
     def theta(self) -> Array: ...
     @property
@@ -240,7 +238,7 @@ class Effect(ABC):
         """First range of a search in the k-th shape quantity; see `Shape.reach`."""
         return self.shapes[k].reach
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         """Whether every quantity lies within its physical bounds."""
         found = self.report(strengths, shape, base)
         return all(q.lower <= found[q.name] <= q.upper for q in self.quantities if q.name in found)
@@ -249,7 +247,7 @@ class Effect(ABC):
         """Whether its terms, several if it is repeatable, are credible in such a recording."""
         return True
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         """The effect's quantities from fitted strengths and shape - SI; by default these are they."""
         searched = {slot.quantity for slot in self.shapes}
         linear = [quantity.name for quantity in self.quantities if quantity not in searched]
@@ -344,7 +342,7 @@ class Coupling(Columns):
         """Frequency and half width at half power of each resonance of this transfer - rad/s."""
         return []
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         """Part of the inertia sits behind it."""
         return BEHIND[0] < strengths[0] / base.inertia < BEHIND[1]
 
@@ -400,7 +398,7 @@ class EncoderFault(Distortion):
 
     def without_fault(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """The recording of the true motion."""
-        values = self.report((), shape, UNIT)
+        values = self.report((), shape, signals.unit)
         position, velocity = self.actual(values, signals.position, signals.velocity)
         return replace(signals, position=position, velocity=velocity)
 
@@ -444,7 +442,7 @@ class Lag(Distortion):
 
     def without_fault(self, signals: Signals, shape: Sequence[float]) -> Signals:
         """Where the axis is, as position summed from the reported speed v lags by T*v; or the torque that acts."""
-        values, step = self.report((), shape, UNIT), signals.sample_period
+        values, step = self.report((), shape, signals.unit), signals.sample_period
         if self.signal == "velocity":
             return replace(signals, position=signals.position + values["time_constant"] * signals.velocity)
         passed = self.lagging if self.signal == "torque" else self.leading

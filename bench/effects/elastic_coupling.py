@@ -25,7 +25,7 @@ from bench.arrays import Array, recursive_filter
 from bench.effects.effect import Coupling, Load
 from bench.effects.mjcf import Spec, add_coupling_joint
 from bench.effects.shape import FREQUENCY, Shape, Shapes
-from bench.effects.signals import Axis, Base, Signals
+from bench.effects.signals import Axis, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -74,7 +74,7 @@ class ElasticCoupling(Coupling):
         antiresonance, ratio = shape
         return [(antiresonance * float(np.sqrt(max(1.0 - ratio**2, 0.0))), ratio * antiresonance)]
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         """It rings, and part of the inertia sits behind it."""
         return shape[1] < OVERDAMPED and super().physical(strengths, shape, base)
 
@@ -82,7 +82,7 @@ class ElasticCoupling(Coupling):
         """It rings well enough to be distinguished from a lag."""
         return shape[1] < DULL
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         """Stiffness J_l*w_a**2, damping 2*D*k/w_a, and the frequency at which both sides resonate."""
         antiresonance, ratio = shape
         load, motor = strengths[0], base.inertia - strengths[0]

@@ -14,7 +14,7 @@ import numpy as np
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.effect import EncoderFault, Fitted, Proposal
 from bench.effects.shape import Shape
-from bench.effects.signals import Base, Number, Scope, Signals, Values
+from bench.effects.signals import Axis, Number, Scope, Signals, Values
 from bench.effects.waves import PHASE, Wave, amplitude_and_phase
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -58,7 +58,7 @@ class EncoderEccentricity(Wave, EncoderFault):
         """A third of the amplitude."""
         return 0.3 * max(float(np.linalg.norm(shape)), 1e-4)
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         amplitude, phase = amplitude_and_phase(*shape)
         return {"amplitude": amplitude, "phase": phase}
 

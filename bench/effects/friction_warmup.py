@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from bench.arrays import namespace
 from bench.effects.shape import DURATION, Shape
-from bench.effects.signals import Axis, AxisState, Base, Number, Values
+from bench.effects.signals import Axis, AxisState, Number, Values
 from bench.effects.torque import Friction
 from bench.units import Quantity
 
@@ -36,13 +36,13 @@ class FrictionWarmup(Friction):
         """Viscous friction of the cold axis."""
         return values["viscous_share"] * _cold(values, at) * axis.viscous * at.velocity
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         """Amplitude relative to the Coulomb friction of the warm axis, and the same of viscous friction over it."""
         amplitude, viscous = strengths[0] / base.coulomb, base.viscous
         share = strengths[1] / (viscous * amplitude) if viscous > 0.0 and amplitude != 0.0 else ALL
         return {"relative_amplitude": amplitude, "time_constant": shape[0], "viscous_share": share}
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         """Dry friction decays; how viscous friction does matters little where that is small."""
         return base.coulomb > 0.0 and strengths[0] > 0.0
 

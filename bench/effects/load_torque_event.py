@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from bench.arrays import NORMAL95, Array, namespace
 from bench.effects.effect import Fitted, Occasional, Proposal, Standout
 from bench.effects.shape import Shape, Shapes
-from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Values
+from bench.effects.signals import Axis, AxisState, Number, Scope, Values
 from bench.effects.torque import Torque
 from bench.units import Quantity
 
@@ -98,7 +98,7 @@ class LoadTorqueEvent(Occasional, Torque):
     def duration(self, shape: Sequence[float]) -> float:
         return shape[1] - shape[0]
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         return self.duration(shape) > 0.0
 
     def plausible(self, strengths: Shapes, shapes: Shapes, scope: Scope) -> bool:

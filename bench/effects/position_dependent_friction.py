@@ -5,7 +5,7 @@
 A - relative amplitude; q - angle - rad.
 """
 
-from bench.effects.signals import Axis, AxisState, Base, Number, Values
+from bench.effects.signals import Axis, AxisState, Number, Values
 from bench.effects.torque import Friction
 from bench.effects.waves import PHASE, Wave
 from bench.units import Quantity
@@ -20,7 +20,7 @@ class PositionDependentFriction(Wave, Friction):
         PHASE,
     )
 
-    def unit(self, base: Base) -> float:
+    def unit(self, base: Axis) -> float:
         return base.coulomb
 
     def friction(self, values: Values, axis: Axis, at: AxisState) -> Number:

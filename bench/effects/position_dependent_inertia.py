@@ -7,7 +7,7 @@ A - relative amplitude; n - harmonic; q - angle - rad. Lagrange's equation of th
 
 from bench.arrays import namespace
 from bench.effects.shape import Shapes
-from bench.effects.signals import Axis, Base, Number, Signals, Values
+from bench.effects.signals import Axis, Number, Signals, Values
 from bench.effects.torque import Inertia, kinetic
 from bench.effects.waves import PHASE, Wave, harmonics, phase_angle, turned
 from bench.trace.filter import Column
@@ -24,7 +24,7 @@ class PositionDependentInertia(Wave, Inertia):
         PHASE,
     )
 
-    def unit(self, base: Base) -> float:
+    def unit(self, base: Axis) -> float:
         return base.inertia
 
     def inertia(self, values: Values, axis: Axis, position: Number) -> tuple[Number, Number]:

@@ -19,7 +19,7 @@ from bench.arrays import Array, recurrence
 from bench.effects.effect import Bristles
 from bench.effects.mjcf import AXIS, BRISTLES, Spec, passive_motor
 from bench.effects.shape import ANGLE, Shape, Shapes
-from bench.effects.signals import Axis, Base, Scope, Signals
+from bench.effects.signals import Axis, Scope, Signals
 from bench.trace.filter import Column
 from bench.units import Quantity
 
@@ -54,11 +54,11 @@ class PreslidingFriction(Bristles):
         bending = signals.velocity - np.abs(signals.velocity) * torque / level
         return [[(torque - signals.friction, 0)], [(bending, 0)]]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         """sigma is its rate over displacement times Coulomb friction, sigma_1 the strength of the bending."""
         return {"bristle_stiffness": shape[0] * base.coulomb, "bristle_damping": strengths[1]}
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         """The bristles carry Coulomb friction within a factor of two."""
         return base.inertia > 0.0 and 0.5 * base.coulomb < strengths[0] < 2.0 * base.coulomb
 

@@ -71,6 +71,11 @@ class Signals:
             self.time, self.position, self.velocity, effort, self.began, self.load, friction=friction, step=step
         )
 
+    @property
+    def unit(self) -> Axis:
+        """The axis of J = K_w = K_0 = 1, for which a strength is the quantity itself."""
+        return Axis(1.0, 1.0, 1.0, peak_effort=self.peak_effort)
+
     @cached_property
     def course(self) -> Array:
         """Speed between samples, by powers of shares of a sample - rad/s (m/s) - (k, n - 1): that of a cubic spline.
@@ -80,15 +85,6 @@ class Signals:
         if self.source == "velocity":
             return spline(self.velocity)
         return spline(self.position)[1:] * np.array([[1.0], [2.0], [3.0]]) / self.sample_period
-
-
-@dataclass(frozen=True)
-class Base:
-    """What the torque balance without effects has: J - kg*m**2 (kg), K_w - N*m*s/rad (N*s/m), K_0 - N*m (N)."""
-
-    inertia: float
-    viscous: float
-    coulomb: float
 
 
 @dataclass(frozen=True)
@@ -144,22 +140,22 @@ class Winding:
 
 @dataclass(frozen=True)
 class Axis:
-    """The axis, as far as effects need it; numbers, or arrays (k,).
+    """The axis, as far as effects need it; numbers, or arrays (k,). A torque balance gives the first three.
 
     Attributes:
         inertia: total inertia J - kg*m**2 (kg).
-        motor_inertia: its part on the motor's side of a coupling - kg*m**2 (kg).
         viscous: K_w - N*m*s/rad (N*s/m).
         coulomb: K_0 - N*m (N).
+        motor_inertia: its part on the motor's side of a coupling - kg*m**2 (kg).
         peak_effort: motor torque at peak current - N*m (N).
         winding: None if the rig does not give it.
     """
 
     inertia: Number
-    motor_inertia: Number
     viscous: Number
     coulomb: Number
-    peak_effort: Number
+    motor_inertia: Number = 0.0
+    peak_effort: Number = math.inf
     winding: Winding | None = None
 
 

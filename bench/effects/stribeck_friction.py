@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from bench.arrays import namespace
 from bench.effects.shape import SPEED, Shape, Shapes
-from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Values
+from bench.effects.signals import Axis, AxisState, Number, Scope, Values
 from bench.effects.torque import Friction, FrictionLaw
 from bench.units import Quantity
 
@@ -33,11 +33,11 @@ class StribeckFriction(Friction):
         fallen = -((at.velocity / values["stribeck_velocity"]) ** 2)
         return (values["static_friction"] - axis.coulomb) * namespace(fallen).exp(fallen)
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         """Static friction is Coulomb friction plus the rise."""
         return {"static_friction": base.coulomb + strengths[0], "stribeck_velocity": shape[0]}
 
-    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> bool:
+    def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         """Friction rises towards standstill, and dry friction stays positive."""
         return strengths[0] > 0.0 and base.coulomb > 0.0
 

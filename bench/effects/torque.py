@@ -17,17 +17,12 @@ from itertools import pairwise
 import numpy as np
 
 from bench.arrays import Array
-from bench.effects.effect import UNIT, Columns
+from bench.effects.effect import Columns
 from bench.effects.signals import Axis, AxisState, Number, Scope, Signals, Values
 from bench.trace.filter import Column
 
 #: Terms of a column at the samples, each with the order of its derivative.
 Terms = list[tuple[Number, int]]
-
-
-def unit_axis(signals: Signals) -> Axis:
-    """The axis for which a strength is the quantity itself."""
-    return Axis(UNIT.inertia, UNIT.inertia, UNIT.viscous, UNIT.coulomb, signals.peak_effort)
 
 
 class Torque(Columns):
@@ -39,7 +34,8 @@ class Torque(Columns):
 
     def resisting(self, signals: Signals, strengths: Sequence[float], shape: Sequence[float]) -> Terms:
         """Its terms at the samples for such strengths, as a column has them."""
-        return [(self.torque(self.report(strengths, shape, UNIT), unit_axis(signals), signals.state), 0)]
+        axis = signals.unit
+        return [(self.torque(self.report(strengths, shape, axis), axis, signals.state), 0)]
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Resisting torque per unit of each strength - N*m (N) per unit - (n,), unfiltered."""
@@ -78,7 +74,8 @@ class Friction(Torque):
 
     def signed(self, signals: Signals, strengths: Sequence[float], shape: Sequence[float]) -> Array:
         """Dry friction at the samples (n,) with its sign, in addition to Coulomb's - the strengths' unit."""
-        values, axis, at = self.report(strengths, shape, UNIT), unit_axis(signals), signals.state
+        axis, at = signals.unit, signals.state
+        values = self.report(strengths, shape, axis)
         forward = self.friction(values, axis, at)
         if self.scales_friction:  # in proportion to a level that has its sign
             return forward
@@ -132,8 +129,8 @@ class Inertia(Torque):
 
     def resisting(self, signals: Signals, strengths: Sequence[float], shape: Sequence[float]) -> Terms:
         """Change of its momentum, less that of its kinetic energy over position."""
-        values = self.report(strengths, shape, UNIT)
-        return kinetic(signals, *self.inertia(values, unit_axis(signals), signals.position))
+        values = self.report(strengths, shape, signals.unit)
+        return kinetic(signals, *self.inertia(values, signals.unit, signals.position))
 
 
 def kinetic(signals: Signals, inertia: Array, slope: Array) -> Terms:

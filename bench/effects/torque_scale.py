@@ -10,7 +10,7 @@ are s times as heavy as in the MJCF look alike, but for armature and friction, w
 from collections.abc import Mapping, Sequence
 
 from bench.effects.effect import Stage
-from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Values
+from bench.effects.signals import Axis, AxisState, Number, Scope, Values
 from bench.effects.torque import Torque
 from bench.trace.signals import KNOWN_TORQUE
 from bench.units import Quantity
@@ -31,7 +31,7 @@ class TorqueScale(Torque):
     def sought(self, scope: Scope) -> bool:
         return KNOWN_TORQUE in scope.signals
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         return {"scale": 1.0 / max(1.0 + strengths[0], 1e-9)}
 
 

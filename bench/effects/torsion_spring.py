@@ -13,7 +13,7 @@ import numpy as np
 
 from bench.effects.effect import Fitted, Proposal
 from bench.effects.mjcf import AXIS, Spec
-from bench.effects.signals import Axis, AxisState, Base, Number, Values
+from bench.effects.signals import Axis, AxisState, Number, Values
 from bench.effects.torque import Torque
 from bench.units import Quantity
 
@@ -38,7 +38,7 @@ class TorsionSpring(Torque):
         (least,) = fitted.gains(constant, 1) + fitted.chance
         return [proposal for proposal in super().propose(fitted) if proposal.gain > least]
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         stiffness, torque = (*strengths, 0.0)[:2]
         return {"stiffness": stiffness, "reference": torque / stiffness if stiffness else 0.0}
 

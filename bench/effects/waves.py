@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array, namespace
 from bench.effects.effect import Effect
 from bench.effects.shape import Shape, Shapes
-from bench.effects.signals import Axis, AxisState, Base, Number, Scope, Signals, Values
+from bench.effects.signals import Axis, AxisState, Number, Scope, Signals, Values
 from bench.effects.torque import Torque
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -41,11 +41,11 @@ class Wave(Effect):
         """Wave number over position - 1 (rad/m)."""
         return 1.0 if self.once_per_revolution else shape[0]
 
-    def unit(self, base: Base) -> float:
+    def unit(self, base: Axis) -> float:
         """Strength of amplitude one."""
         return 1.0
 
-    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Base) -> Mapping[str, float]:
+    def report(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> Mapping[str, float]:
         """Amplitude, harmonic and phase."""
         amplitude, phase = amplitude_and_phase(*strengths)
         harmonic = super().report((), shape, base)

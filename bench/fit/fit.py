@@ -28,7 +28,7 @@ from bench.effects.effect import (
     TablesOf,
 )
 from bench.effects.shape import Shapes
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Axis, Scope, Signals
 from bench.effects.torque import Friction
 from bench.fit.dependence import Dependence, dependence
 from bench.fit.hypothesis import (
@@ -166,9 +166,9 @@ class Fit:
         return max(self.squares - self.count * self.floor**2, 0.0)
 
     @property
-    def base(self) -> Base:
+    def base(self) -> Axis:
         """J, K_w and K_0."""
-        return Base(*(self.value(term) for term in (INERTIA, VISCOUS, COULOMB)))
+        return Axis(self.value(INERTIA), self.value(VISCOUS), self.value(COULOMB))
 
     def value(self, term: str) -> float:
         """Coefficient of a term of the equation of motion - SI."""

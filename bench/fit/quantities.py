@@ -15,7 +15,7 @@ import numpy as np
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Contact, Effect
-from bench.effects.signals import Base, Signals
+from bench.effects.signals import Axis, Signals
 from bench.fit.fit import Fit, least_squares
 from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
@@ -80,8 +80,9 @@ class Uncertain:
             for slot, (owner, k) in enumerate(self.slots):
                 if owner == index:
                     shape[k] = float(point[size + slot])
-            base = Base(*(float(point[:size][owners == name][0]) for name in (INERTIA, VISCOUS, COULOMB)))
-            return term.effect.report(point[:size][owners == index].tolist(), tuple(shape), base)
+            j, k_w, k_0 = (float(point[:size][owners == name][0]) for name in (INERTIA, VISCOUS, COULOMB))
+            axis = Axis(j, k_w, k_0)
+            return term.effect.report(point[:size][owners == index].tolist(), tuple(shape), axis)
 
         steps, found = STEP * np.maximum(np.abs(self.values), 1e-9), {}
         sides = [(values(self.values + step), values(self.values - step)) for step in np.diag(steps)]

@@ -12,7 +12,7 @@ import pytest
 from bench.axis_kind import LINEAR, ROTARY
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Columns, Effect
-from bench.effects.signals import Base, Scope, Signals
+from bench.effects.signals import Axis, Scope, Signals
 from bench.trace.filter import Column
 
 COUNT, STEP = 2000, 1e-3
@@ -86,7 +86,7 @@ def differ(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> bool:
 
 EFFECTS = catalogue()
 RECORDED = signals()
-BASE = Base(1.2e-3, 8e-4, 0.06)
+BASE = Axis(1.2e-3, 8e-4, 0.06)
 SCOPES = list(scopes())
 
 every = pytest.mark.parametrize("effect", EFFECTS.values(), ids=list(EFFECTS))

@@ -7,14 +7,14 @@ import pytest
 
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
-from bench.effects.signals import Base
+from bench.effects.signals import Axis
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 from tests.effects.recording import SCOPES
 
 #: 8 s, through a filter of 2 ms, over a travel of 60 rad, at 100 rad/s at most.
 SCOPE = replace(SCOPES[0], duration=8.0, width=2e-3, travel=60.0, top_speed=100.0, one_way=False)
-BASE = Base(inertia=1e-3, viscous=8e-4, coulomb=0.05)
+BASE = Axis(inertia=1e-3, viscous=8e-4, coulomb=0.05)
 
 
 def effect(name):

@@ -10,7 +10,7 @@ from bench.effects.catalogue import catalogue
 from bench.effects.effect import Bristles, Columns, Coupling, Effect
 from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
-from bench.effects.signals import AxisState, Base, Signals
+from bench.effects.signals import AxisState, Signals
 from bench.effects.torque import Friction, Inertia, Torque
 from bench.plant.axis_model import build_spec
 from bench.plant.run import run
@@ -124,7 +124,7 @@ def test_columns_agree_with_the_simulation(name):
     strengths, *_ = np.linalg.lstsq(columns, gap, rcond=None)
     off = gap - columns @ strengths
     share = np.sqrt(np.mean(off**2) / np.mean(gap**2))
-    found = effect.report(strengths, shape, Base(AXIS.inertia, AXIS.viscous, AXIS.coulomb))
+    found = effect.report(strengths, shape, AXIS)
     print(f"{name}: {share:.1e} of the gap unexplained; {found} of {values}")
     assert share < 0.006
     for key, value in found.items():

@@ -10,7 +10,7 @@ from bench.diagnosis.policy import POLICY
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.effects.catalogue import catalogue
 from bench.effects.present import Present
-from bench.effects.signals import Base
+from bench.effects.signals import Axis
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Term
 from bench.validation.independent.effects import KINDS
@@ -41,7 +41,7 @@ def test_without_a_load_it_is_load_dependent_friction():
 
 
 def test_the_coefficient_of_the_load_is_determined_beside_that_of_the_motor():
-    found = catalogue()[NAME].report([0.2], (3.0,), Base(1.0, 0.0, 0.0))
+    found = catalogue()[NAME].report([0.2], (3.0,), Axis(1.0, 0.0, 0.0))
     assert found == {"motor_coefficient": 0.2, "load_ratio": 3.0, "load_coefficient": pytest.approx(0.6)}
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.effects.signals import Axis, Base
+from bench.effects.signals import Axis
 from tests.effects.axes import FREE, Present, moved, signals
 from tests.effects.recording import signals as recording
 
@@ -31,13 +31,12 @@ def test_viscous_friction_has_its_share():
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_what_a_fit_found_moves_as_it_was_fitted(share):
     """Strengths of its columns, dry and viscous, as quantities: the torque of the columns is that of the model."""
-    effect, base = catalogue()["friction_warmup"], Base(1e-3, 2e-3, 0.06)
+    effect, base = catalogue()["friction_warmup"], Axis(1e-3, 2e-3, 0.06)
     strengths = [1.5 * base.coulomb, share * 1.5 * base.viscous]
     recorded = recording()
     columns = [values for ((values, _),) in effect.columns(recorded, [0.3])]
     values = effect.report(strengths, [0.3], base)
     assert values == pytest.approx({**VALUES, "viscous_share": share})
-    axis = Axis(0.0, 0.0, base.viscous, base.coulomb, 0.0)
     at = recorded.state._replace(friction=base.coulomb * recorded.friction)
-    dry, viscous = effect.friction(values, axis, at), effect.torque(values, axis, at)
+    dry, viscous = effect.friction(values, base, at), effect.torque(values, base, at)
     np.testing.assert_allclose(np.array(strengths) @ columns, dry + viscous, atol=1e-12)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from bench.effects.effect import (
-    UNIT,
     Bristles,
     Columns,
     Coupling,
@@ -19,7 +18,7 @@ from bench.effects.effect import (
     Occasional,
     Stage,
 )
-from bench.effects.torque import Friction, Inertia, Torque, unit_axis
+from bench.effects.torque import Friction, Inertia, Torque
 from bench.effects.waves import Wave
 from bench.plant.axis_model import build_spec
 from bench.trace.signals import KNOWN_TORQUE
@@ -192,7 +191,7 @@ def test_a_torque_without_memory_is_the_sum_of_its_columns(effect):
     if isinstance(effect, Torque) and not isinstance(effect, Inertia):
         columns, shape = plain(effect, RECORDED), shape_of(effect)
         strengths = [0.02, -0.013][: len(columns)]
-        found = effect.torque(effect.report(strengths, shape, UNIT), unit_axis(RECORDED), RECORDED.state)
+        found = effect.torque(effect.report(strengths, shape, RECORDED.unit), RECORDED.unit, RECORDED.state)
         if isinstance(effect, Friction):
             found = found + effect.signed(RECORDED, strengths, shape)
         np.testing.assert_allclose(np.array(strengths) @ columns, found * np.ones(RECORDED.time.size), atol=1e-12)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.effects.signals import Base
+from bench.effects.signals import Axis
 from tests.effects.axes import FREE, moved, present, signals
 
 
@@ -20,5 +20,5 @@ def test_free_axis_swings(reference):
 
 def test_the_reference_is_where_the_constant_torque_is_that_of_the_spring():
     report = catalogue()["torsion_spring"].report
-    assert report((15.0, 4.5), (), Base(1.0, 0.0, 0.0)) == {"stiffness": 15.0, "reference": pytest.approx(0.3)}
-    assert report((0.0, 4.5), (), Base(1.0, 0.0, 0.0))["reference"] == 0.0
+    assert report((15.0, 4.5), (), Axis(1.0, 0.0, 0.0)) == {"stiffness": 15.0, "reference": pytest.approx(0.3)}
+    assert report((0.0, 4.5), (), Axis(1.0, 0.0, 0.0))["reference"] == 0.0
