@@ -15,7 +15,7 @@ from bench.diagnosis.policy import POLICY, Policy
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect, Lag
 from bench.errors import InputError, UndeterminedError
-from bench.fit.cutoffs import INDEPENDENT, NOISY, TELLS, TERMS, Cutoffs
+from bench.fit.cutoffs import INDEPENDENT, NOISY, TELLS, TERMS, for_effects, for_inertia
 from bench.fit.determined import RECORD, require_friction, require_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
@@ -122,9 +122,10 @@ class Recordings:
         """
         if not found.rows.stretches[0].signals.known:
             return self, ()
-        calm, chosen = Cutoffs(solution_of(found.rows, found.hypothesis, self.rig.offset), self.rig).for_inertia()
-        doubt = dict(zip(TERMS, chosen.doubt.tolist(), strict=True))
-        moves = tuple(warning.removesuffix(f"; {TELLS}") for warning in chosen.warnings)
+        highest = solution_of(found.rows, found.hypothesis, self.rig.offset)
+        calm, (moved, warnings) = for_inertia(highest, self.rig)
+        doubt = dict(zip(TERMS, moved.tolist(), strict=True))
+        moves = tuple(warning.removesuffix(f"; {TELLS}") for warning in warnings)
         return replace(self if calm.rows is found.rows else self.like(calm.rows), doubt=doubt), moves
 
     def base(self, numbers: Uncertain) -> dict[str, Parameter]:
@@ -225,7 +226,7 @@ def _decidable(trace: Trace, rig: Rig, policy: Policy) -> tuple[Rows, tuple[str,
 
 def _suited(rows: Rows, rig: Rig) -> Iterator[Solution]:
     """Solutions without effects at the cut-offs that suit effects, from high to low."""
-    return Cutoffs(solution_of(rows, plain(rows), rig.offset), rig).for_effects()
+    return for_effects(solution_of(rows, plain(rows), rig.offset), rig)
 
 
 def _require_above_noise(base: Fit, unit: str, policy: Policy) -> None:

@@ -48,49 +48,43 @@ ROUNDING = 1e-4
 #: Terms of the axis, in whose order all numbers here stand.
 TERMS = (INERTIA, VISCOUS, COULOMB)
 TELLS = "`bench diagnose` searches for the cause"
+#: Possible bias of J, K_w and K_0 (3,) as they move with the cut-off, and warnings that they do; of an estimate that
+#: stands still.
+Moves = tuple[Array, tuple[str, ...]]
+STILL: Moves = np.zeros(3), ()
 
 
-@dataclass(frozen=True)
-class Cutoffs:
-    """The cut-offs that a recording allows, of a solution at the highest one.
+def allowed(highest: Solution, rig: Rig, below: Array, near: bool) -> Iterator[Solution]:
+    """Solutions from the highest cut-off down, until the filter is too long for the motion or hides an effect."""
+    rows = highest.rows
+    yield highest
+    for share in below.tolist():
+        smooth = GaussianFilter.from_cutoff(rows.conditioning.filter.cutoff * share, rows.scope.sample_period)
+        try:
+            through = rows.through(smooth, near)
+        except UndeterminedError:
+            return
+        hum = tuple(line for line in highest.hypothesis.hum if passes(line, smooth.width))
+        found = replace(highest.hypothesis, step=plain(through).step, hum=hum)
+        if found.terms and not _shown(fit(through, found)):
+            return
+        yield solution_of(through, found, rig.offset)
 
-    Attributes:
-        highest: of J, K_w, K_0 and any effects.
-        rig: of the axis.
-    """
 
-    highest: Solution
-    rig: Rig
+def for_effects(highest: Solution, rig: Rig) -> Iterator[Solution]:
+    """Solutions at cut-offs at which the acceleration is hardly noise, the one that suits effects best first."""
+    enough = takewhile(lambda found: found.rows.independent >= INDEPENDENT, allowed(highest, rig, FINER, near=True))
+    return (found for found in enough if found.whole.noise_share(INERTIA) <= NOISY)
 
-    def allowed(self, below: Array, near: bool) -> Iterator[Solution]:
-        """Solutions from the highest cut-off down, until the filter is too long for the motion or hides an effect."""
-        highest, rows = self.highest, self.highest.rows
-        yield highest
-        for share in below.tolist():
-            smooth = GaussianFilter.from_cutoff(rows.conditioning.filter.cutoff * share, rows.scope.sample_period)
-            try:
-                through = rows.through(smooth, near)
-            except UndeterminedError:
-                return
-            hum = tuple(line for line in highest.hypothesis.hum if passes(line, smooth.width))
-            found = replace(highest.hypothesis, step=plain(through).step, hum=hum)
-            if found.terms and not _shown(fit(through, found)):
-                return
-            yield solution_of(through, found, self.rig.offset)
 
-    def for_effects(self) -> Iterator[Solution]:
-        """Solutions at cut-offs at which the acceleration is hardly noise, the one that suits effects best first."""
-        enough = takewhile(lambda found: found.rows.independent >= INDEPENDENT, self.allowed(FINER, near=True))
-        return (found for found in enough if found.whole.noise_share(INERTIA) <= NOISY)
-
-    def for_inertia(self) -> tuple[Solution, Chosen]:
-        """The solution at the cut-off at which J, K_w and K_0 stand still."""
-        every = [(found, Tried.of(found, self.rig.axis_kind)) for found in self.allowed(BELOW, near=False)]
-        usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
-        if not usable:
-            return self.highest, Chosen(0, np.zeros(3))
-        chosen = among([tried for _, tried in usable], self.rig.axis_kind)
-        return usable[chosen.place][0], chosen
+def for_inertia(highest: Solution, rig: Rig) -> tuple[Solution, Moves]:
+    """The solution at the cut-off at which J, K_w and K_0 stand still, and how they move."""
+    every = [(found, Tried.of(found, rig.axis_kind)) for found in allowed(highest, rig, BELOW, near=False)]
+    usable = [(found, tried) for found, tried in every if np.isfinite(tried.theta[0])]
+    if not usable:
+        return highest, STILL
+    place, moves = among([tried for _, tried in usable], rig.axis_kind)
+    return usable[place][0], moves
 
 
 def _shown(fitted: Fit) -> bool:
@@ -139,23 +133,8 @@ class Tried:
         return not np.any(away > np.hypot(self.half_widths, other.half_widths))
 
 
-@dataclass(frozen=True)
-class Chosen:
-    """The chosen of several cut-offs, and what the others imply.
-
-    Attributes:
-        place: of the chosen one.
-        doubt: possible bias of J, K_w and K_0 (3,) as the estimate moves with the cut-off; 0 at the highest.
-        warnings: that the estimate moves with the cut-off.
-    """
-
-    place: int
-    doubt: Array
-    warnings: tuple[str, ...] = ()
-
-
-def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
-    """The choice among estimates that determine the inertia, from high to low cut-off."""
+def among(usable: Sequence[Tried], kind: AxisKind) -> tuple[int, Moves]:
+    """Place of the chosen of estimates that determine the inertia, from high to low cut-off, and how they move."""
     accepted = [usable[-1]]
     for tried in usable[-2::-1]:
         if not all(tried.agrees(lower) for lower in accepted):
@@ -163,7 +142,7 @@ def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
         accepted.append(tried)
     rejected = usable[: len(usable) - len(accepted)]
     if not rejected and all(one.by_noise[0] >= NARROWER * usable[0].half_widths[0] for one in usable[1:]):
-        return Chosen(0, np.zeros(3))
+        return 0, STILL
     beyond = rejected[-1] if rejected else accepted[-1]
     doubts = [_doubt(tried, beyond, accepted[:k]) for k, tried in enumerate(accepted)]
     wide = [float(np.hypot(tried.half_widths[0], off[0])) for tried, off in zip(accepted, doubts, strict=True)]
@@ -171,7 +150,7 @@ def among(usable: Sequence[Tried], kind: AxisKind) -> Chosen:
     if not rejected and wide[best] >= NARROWER * wide[-1]:
         best = len(accepted) - 1
     warnings = (_moves(accepted[best], usable, kind),) if rejected else ()
-    return Chosen(len(usable) - 1 - best, doubts[best], warnings)
+    return len(usable) - 1 - best, (doubts[best], warnings)
 
 
 def _doubt(taken: Tried, beyond: Tried, lower: Sequence[Tried]) -> Array:

@@ -33,7 +33,7 @@ from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, Axi
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.effects.present import parse_value
 from bench.errors import InputError, UndeterminedError
-from bench.fit.cutoffs import TELLS, TERMS, Chosen, Cutoffs
+from bench.fit.cutoffs import TELLS, TERMS, Moves, for_inertia
 from bench.fit.dead_time import DeadTime, command_delay, dead_time
 from bench.fit.dependence import Dependence, dependence
 from bench.fit.determined import remainder, require_inertia, sound
@@ -169,7 +169,7 @@ class Gathered:
 def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> Gathered:
     """A recording, or its consecutive parts, summed up at a cut-off - Hz -, or at the one the data choose."""
     parts = iter([trace] if isinstance(trace, Trace) else trace)
-    gated, found, chosen, still = _first_moving(parts, rig, cutoff)
+    gated, found, (doubt, warnings), still = _first_moving(parts, rig, cutoff)
     first = gated.trace
 
     def summed(part: Trace) -> Summed:
@@ -196,12 +196,12 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
         effort_unit=rig.net_effort(first)[1],
         samples_read=sum(len(part.trace) for part in (*still, gated)) + sum(read for _, read, _ in others),
         measured=_measured(whole.whole, None if others else found.rows),
-        doubt=dict(zip(TERMS, chosen.doubt.tolist(), strict=True)),
+        doubt=dict(zip(TERMS, doubt.tolist(), strict=True)),
         depends=depends,
         hint=told,
         hinted=hinted,
         tolerance=_by_tolerance(first, rig, found),
-        warnings=chosen.warnings,
+        warnings=warnings,
         checks=checks,
         first=first,
         late=_late(found),
@@ -218,7 +218,7 @@ def _late(found: Solution) -> DeadTime | None:
 
 def _first_moving(
     parts: Iterator[Trace], rig: Rig, cutoff: float | None
-) -> tuple[Gated, Solution, Chosen, list[Gated]]:
+) -> tuple[Gated, Solution, Moves, list[Gated]]:
     """The first of a recording's parts that moves clearly, with its solution, and the parts before it.
 
     Raises:
@@ -272,7 +272,7 @@ def _by_tolerance(first: Trace, rig: Rig, found: Solution) -> dict[Name, float]:
     return dict(zip(found.names, moved.tolist(), strict=True))
 
 
-def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chosen]:
+def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Moves]:
     """The solution of a recording, or of its first part, at the chosen cut-off, unless one is given - Hz.
 
     Raises:
@@ -289,10 +289,10 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Chos
         if late.kind == "dead_time":
             highest = solution_of(rows, replace(highest.hypothesis, shift=-late.delay.value), rig.offset)
     if cutoff is None:
-        return Cutoffs(highest, rig).for_inertia()
+        return for_inertia(highest, rig)
     used, rate = rows.conditioning.filter.cutoff, 1.0 / rows.scope.sample_period
     lower = f"the filter's cut-off is {used:.4g} Hz instead of {cutoff:.4g} Hz: {rate:.4g} Hz of sampling allow no more"
-    return highest, Chosen(0, np.zeros(3), (lower,) * (used < cutoff * (1.0 - 1e-9)))
+    return highest, (np.zeros(3), (lower,) * (used < cutoff * (1.0 - 1e-9)))
 
 
 def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
