@@ -18,13 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
-from scipy.signal import lfilter
 
 from bench.arrays import NORMAL95, Array
 from bench.course.axis import MAINS
 from bench.course.methods import FULL_SHARE, HALF_BIN, RPM, SPEEDS, STILL_RISING, kept_samples, torque_at_speeds
 from bench.course.recordings import LabRecordings, LabRun
 from bench.course.result import Number, TaskResult, chart, curve, panel
+from bench.effects.effect import lagged
 from bench.errors import UndeterminedError
 from bench.report.document import Table, table
 from bench.report.drive import in_range
@@ -80,7 +80,9 @@ def decline(velocity: Array, current: Array, sample_period: float) -> Decline:
     def unexplained(theta: Array) -> Array:
         corner, no_load, lag = theta
         quasi_static = np.minimum(top, top * (no_load - between) / (no_load - corner))
-        return _late(quasi_static, lag, sample_period / FINER)[::FINER] - measured
+        step = sample_period / FINER
+        late = lagged(quasi_static, lag, step) if lag > 1e-6 * step else quasi_static
+        return late[::FINER] - measured
 
     start, middle = np.array([corner, no_load, TYPICAL]), 0.5 * (corner + no_load)
     bounds = [0.0, middle, 0.0], [middle, 10.0 * no_load, 1.0]
@@ -90,16 +92,6 @@ def decline(velocity: Array, current: Array, sample_period: float) -> Decline:
         raise UndeterminedError("corner speed", reason, "speed and current as the drive has them, without a filter")
     variance = found.fun @ found.fun / max(found.fun.size - 3, 1) * np.linalg.pinv(found.jac.T @ found.jac)[0, 0]
     return Decline(*found.x.tolist(), half=NORMAL95 * math.sqrt(variance))
-
-
-def _late(values: Array, lag: float, period: float) -> Array:
-    """Response of a first-order lag to a signal that is straight between samples, at rest before it."""
-    if lag < 1e-6 * period:
-        return values
-    a = np.exp(-period / lag)
-    b = lag / period * (1.0 - a)
-    # x[k] = a*x[k-1] + (1 - b)*u[k] + (b - a)*u[k-1]: exact for u straight between its samples
-    return np.asarray(lfilter([1.0 - b, b - a], [1.0, -a], values, zi=[b * values[0]])[0], dtype=np.float64)
 
 
 def _fall(velocity: Array, current: Array) -> tuple[float, NDArray[np.int64], float, float]:

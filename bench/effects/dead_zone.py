@@ -16,6 +16,7 @@ from bench.arrays import Array, splined
 from bench.effects.shape import Shapes
 from bench.effects.signals import Signals
 from bench.trace.filter import Column
+from bench.trace.motion import integrated
 
 #: Steps of the integration per radian of the contact's oscillation: the trapezoidal rule errs by 1/(12*steps**2) of it.
 STEPS_PER_RADIAN = 6.0
@@ -138,17 +139,11 @@ def dead_zone_columns(stretches: Sequence[Signals], shapes: Shapes) -> list[list
         stretches: of a recording.
         shapes: (k, 4), see `load_positions`.
     """
-    angles = [_angle(signals) for signals in stretches]
+    angles = [
+        s.position if s.source == "position" else s.position[0] + integrated(s.velocity, s.sample_period)
+        for s in stretches
+    ]
     table = np.asarray(shapes)
     positions = load_positions(angles, stretches[0].sample_period, table)
     twists = [(position - angle[:, None]).T for position, angle in zip(positions, angles, strict=True)]
     return [[[(load, 2), (rate * load, 0)] for load, rate in zip(twist, table[:, 3], strict=True)] for twist in twists]
-
-
-def _angle(signals: Signals) -> Array:
-    """Of the motor (n,) - rad (m)."""
-    if signals.source != "velocity":
-        return signals.position
-    speed = signals.velocity
-    steps = 0.5 * signals.sample_period * (speed[1:] + speed[:-1])
-    return signals.position[0] + np.concatenate([[0.0], np.cumsum(steps)])

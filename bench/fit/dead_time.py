@@ -245,7 +245,6 @@ def command_delay(trace: Trace, kind: AxisKind) -> CommandDelay | None:
     table = np.vstack([*columns(*found.x).T, *slopes(found.x).T, torque - fitted(found.x)])
     edges = np.linspace(0, torque.size, min(BLOCKS, torque.size // FEWEST * 16) + 1).astype(np.int64)
     every = equations((*range(4),), table, np.zeros((4, 4)), edges)
-    inverse = solved(every.total, every.moment.sum(axis=0), every.noise)[1]
-    covariance, reach = estimated(every.scores(np.zeros(4)), inverse, white_noise(torque) ** 2)
+    covariance, reach = estimated(every.scores(np.zeros(4)), every.solved()[1], white_noise(torque) ** 2)
     half = reach * np.sqrt(np.maximum(np.diag(covariance)[2:], 0.0)) + step
     return CommandDelay(*map(_parameter, found.x.tolist(), half.tolist()))

@@ -16,7 +16,7 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.fit.hypothesis import Layout, Name
 from bench.fit.rows import Rows
-from bench.fit.solution import equations_of, estimated, solved
+from bench.fit.solution import equations_of, estimated
 
 #: Half widths of 95 % that a strength has to exceed: of three columns on 200 recordings of axes that lack nothing the
 #: largest was 1.4 of them.
@@ -67,12 +67,12 @@ def dependence(rows: Rows, laid: Layout, theta: Array, offset: bool = False) -> 
     base = [name for name in every.names if name not in tested and (offset or name in laid.owners)]
     least = rows.conditioning.effort_noise**2 / rows.conditioning.filter.stride
     without = every.only(lambda each: each in base)
-    plain, _ = solved(without.total, without.moments, without.count * without.noise)
+    plain, _ = without.solved()
     found: dict[float, Dependence] = {}
     for name, (on, _, _) in tested.items():
         kept = [*base, name]
         having = every.only(lambda each, kept=kept: each in kept)
-        fitted, inverse = solved(having.total, having.moments, having.count * having.noise)
+        fitted, inverse = having.solved()
         saved = (without.residual_power(plain) - having.residual_power(fitted)) / having.count
         if saved <= (LEAST * rms(laid.effort)) ** 2:
             continue

@@ -216,9 +216,7 @@ def _late(found: Solution) -> DeadTime | None:
     return None
 
 
-def _first_moving(
-    parts: Iterator[Trace], rig: Rig, cutoff: float | None
-) -> tuple[Gated, Solution, Moves, list[Gated]]:
+def _first_moving(parts: Iterator[Trace], rig: Rig, cutoff: float | None) -> tuple[Gated, Solution, Moves, list[Gated]]:
     """The first of a recording's parts that moves clearly, with its solution, and the parts before it.
 
     Raises:

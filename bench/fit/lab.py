@@ -24,17 +24,6 @@ from bench.trace.trace import Trace
 LEAST_SPEED = 20.0
 
 
-def backward_difference(values: Array, sample_period: float) -> Array:
-    """u'[k] = (u[k] - u[k-1])/T of samples (n,) - any unit - with the period T - s, first value 0 - unit per second.
-
-    Raises:
-        InputError: T is not positive.
-    """
-    if not sample_period > 0.0:
-        raise InputError("sample period", f"found {sample_period} s", "allowed: more than zero")
-    return np.diff(values, prepend=values[:1]) / sample_period
-
-
 def least_squares(acceleration: Array, velocity: Array, torque: Array) -> tuple[Array, Array, float]:
     """J, K_w and K_0 of M = J*alpha + K_w*omega + K_0*sgn(omega) by least squares over the fast samples (n,).
 
@@ -66,7 +55,8 @@ def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
         raise InputError(rig.source, f"found a {rig.kind} axis", allowed)
     torque, unit = rig.net_effort(trace)
     velocity = trace["velocity"]
-    acceleration = np.concatenate([backward_difference(velocity[part], trace.sample_period) for part in trace.segments])
+    differences = [np.diff(velocity[part], prepend=velocity[part][:1]) for part in trace.segments]
+    acceleration = np.concatenate(differences) / trace.sample_period
     fast = np.abs(velocity) >= LEAST_SPEED
     theta, std_error, error = least_squares(acceleration[fast], velocity[fast], torque[fast])
     numbers = zip(rig.axis_kind.base_parameters(unit).items(), theta.tolist(), std_error.tolist(), strict=True)

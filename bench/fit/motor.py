@@ -23,7 +23,7 @@ from bench.arrays import NORMAL95, Array, rms, splined
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.estimate import Estimate, MotorConstants
-from bench.fit.solution import INDEPENDENT_SHARE, block_edges, equations, estimated, misfit, solved
+from bench.fit.solution import INDEPENDENT_SHARE, block_edges, equations, estimated, misfit
 from bench.gate.check import Seen
 from bench.gate.velocity import compared
 from bench.names import words
@@ -272,7 +272,7 @@ def regressed(
     fitted = equations(names, table, noise, block_edges(time, smooth.width))
     if time.size < LEAST * len(names) or min(fitted.independent_shares(names)[:2]) < INDEPENDENT_SHARE:
         raise UndeterminedError("a coefficient", alike, STEPS)
-    theta, inverse = solved(fitted.total, fitted.moment.sum(axis=0), fitted.count * fitted.noise)
+    theta, inverse = fitted.solved()
     covariance, reach = estimated(fitted.scores(theta), inverse, own**2 / smooth.stride)
     floor = float(np.sqrt((own * smooth.noise_gain(0)) ** 2 + theta @ noise @ theta))
     beyond = misfit(table[:-1].T, table[-1] - theta @ table[:-1], floor)

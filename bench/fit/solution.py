@@ -169,6 +169,10 @@ class NormalEquations:
         terms = INERTIA, VISCOUS, COULOMB
         return dict(zip(terms, self.independent_shares(terms).tolist(), strict=True))
 
+    def solved(self) -> tuple[Array, Array]:
+        """Coefficients (p,) of all rows, and the inverse of the matrix that they came from; see `solved`."""
+        return solved(self.total, self.moments, self.count * self.noise)
+
     def scores(self, theta: Array) -> Array:
         """X'(y - X*theta) of each block, less the part of it that is due to noise in the columns - (b, p)."""
         noise = self.noise @ theta + self.known * self.noise[:, 0]
@@ -418,8 +422,7 @@ def _digit_beforehand(equations: NormalEquations, step: float) -> tuple[Array, f
     if not step:
         return np.zeros(len(equations.names)), 0.0, 0.0
     value, variance = cut_beforehand(step)
-    theta, _ = solved(equations.total, equations.moments, equations.count * equations.noise)
-    weight = equations.residual_power(theta) / equations.count / variance
+    weight = equations.residual_power(equations.solved()[0]) / equations.count / variance
     return weight * (np.array(equations.names, dtype=object) == DIGIT), value, variance
 
 
