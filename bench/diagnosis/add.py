@@ -34,8 +34,7 @@ from bench.diagnosis.model import (
     present_of,
 )
 from bench.diagnosis.name import NamedEffect, Suspects, named
-from bench.diagnosis.policy import ERRS_TWICE, Policy
-from bench.diagnosis.reason import Reason
+from bench.diagnosis.policy import ERRS_TWICE, Policy, Reason
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.same_axis import SameAxis, same_axis
 from bench.diagnosis.tabulated import UnknownEffect, unknown_effect, with_tables

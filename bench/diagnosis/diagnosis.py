@@ -18,9 +18,8 @@ from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, add
 from bench.diagnosis.name import NamedEffect, Suspects, name
 from bench.diagnosis.next_experiment import NextExperiment, propose
-from bench.diagnosis.policy import POLICY, Policy
+from bench.diagnosis.policy import POLICY, Policy, Reason
 from bench.diagnosis.probability import Probabilities
-from bench.diagnosis.reason import Reason
 from bench.diagnosis.recordings import Recordings, fit_bare
 from bench.diagnosis.same_axis import SameAxis, between_recordings
 from bench.diagnosis.tabulated import UNKNOWN, UnknownEffect, remaining

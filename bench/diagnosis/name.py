@@ -14,13 +14,12 @@ import numpy as np
 
 from bench.arrays import NORMAL95
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.diagnosis.policy import Policy
+from bench.diagnosis.policy import Policy, Reason
 from bench.diagnosis.probability import Probabilities, key_of, probabilities, weighed
-from bench.diagnosis.reason import Reason
 from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Search, search
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Detected, Effect, Lag, Occasional, Stage, Standout
+from bench.effects.effect import Detected, Effect, Lag, Occasional, Stage
 from bench.effects.signals import Axis, AxisState, Values
 from bench.effects.torque import Torque
 from bench.fit.estimate import load_inertia
@@ -193,20 +192,19 @@ def with_events(fitted: Fit, effects: Iterable[Effect], policy: Policy) -> Fit:
     if not policy.remains(fitted):
         return fitted
     for effect in (each for each in effects if isinstance(each, Occasional)):
-        for apart in effect.apart(fitted):
-            fitted = _with_event(fitted, effect, apart, policy)
+        for shape, around in effect.apart(fitted):
+            fitted = _with_event(fitted, Term(effect, shape, around=around), policy)
     return fitted
 
 
-def _with_event(fitted: Fit, effect: Occasional, apart: Standout, policy: Policy) -> Fit:
+def _with_event(fitted: Fit, term: Term, policy: Policy) -> Fit:
     """With an event that saves more than chance does, with little residual around its torque."""
-    term = Term(effect, apart.shape, around=apart.around)
     after = shaped(fitted, fitted.hypothesis.plus(term), len(fitted.terms))
     own = after.owners == len(fitted.terms)
     others = np.linalg.qr(after.columns[:, ~own])[0]
     alone = after.columns[:, own] - others @ (others.T @ after.columns[:, own])
     saved = float(np.sum((alone @ after.theta[own]) ** 2))
-    near = (fitted.time >= apart.around[0]) & (fitted.time <= apart.around[1])
+    near = (fitted.time >= term.around[0]) & (fitted.time <= term.around[1])
     left = float(np.sum(after.residual[near] ** 2)) - np.count_nonzero(near) * fitted.floor**2
     numbers = after.theta[own].size + len(term.shape)
     return after if policy.event_shows(fitted, numbers, saved, left) and policy.physical(after) else fitted

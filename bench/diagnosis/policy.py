@@ -1,19 +1,29 @@
-"""The policy of naming: the numbers that decide on names, and the questions that they answer."""
+"""The policy of naming: the numbers that decide on names, the questions that they answer, and reasons for answers."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from bench.effects.effect import Contact, Effect, Occasional
 from bench.fit.fit import Fit
 from bench.fit.solution import NOISE_ALONE
+from bench.parameter import Parameter
 
 #: A mistimed impact, or a wave out of phase, costs its squares twice: where it is missing, and where it is predicted.
 ERRS_TWICE = 2.0
 #: Periods of a contact after which the oscillation that an impact causes has decayed, at a tenth of critical damping.
 DECAYED = 10.0
+
+
+@dataclass(frozen=True)
+class Reason:
+    """A criterion that decided, with its figures by name; `bench.report.verdict` puts it into words."""
+
+    criterion: str
+    figures: Mapping[str, str | float | Parameter] = field(default_factory=dict)
 
 
 def freedom(fitted: Fit) -> int:

@@ -66,7 +66,7 @@ class Search:
     Attributes:
         last: the most likely set without a decoy.
         stopped: what ended the search before it was done; None if nothing did.
-        refused: why an effect that was fitted was not visited, by effect: a criterion of `bench.diagnosis.reason`.
+        refused: why an effect that was fitted was not visited, by effect: the criterion of a `Reason`.
     """
 
     def __init__(self, bare: Fit, effects: Sequence[Effect], policy: Policy, known: Iterable[Fit] = ()) -> None:
@@ -128,22 +128,21 @@ class Search:
         found = weighed([*self.fits.values()], None, self.policy)
         return {key_of(each.fitted): each.score(self.policy) for each in found}
 
-    def named(self) -> dict[Key, float]:
-        """The scores of those without a decoy."""
-        return {key: score for key, score in self.scores().items() if not any(each.decoy for each, _ in key)}
+    def named(self) -> list[Key]:
+        """Those without a decoy, the most likely first."""
+        scores = {key: score for key, score in self.scores().items() if not any(each.decoy for each, _ in key)}
+        return sorted(scores, key=lambda key: -scores[key])
 
     def best(self) -> Fit:
         """The most likely one without a decoy."""
-        scores = self.named()
-        return self.fits[max(scores, key=lambda key: scores[key])]
+        return self.fits[self.named()[0]]
 
     def next(self) -> Fit | None:
         """The most likely one that was not expanded, its shapes settled."""
-        scores = {key: score for key, score in self.named().items() if key not in self.expanded}
-        if not scores:
+        key = next((key for key in self.named() if key not in self.expanded), None)
+        if key is None:
             return None
-        chosen = self.fits[max(scores, key=lambda key: scores[key])]
-        return self.add(with_hum(on_its_side(settled(chosen, self.policy), self.policy)))
+        return self.add(with_hum(on_its_side(settled(self.fits[key], self.policy), self.policy)))
 
     def expand(self, current: Fit) -> None:
         """Visit what a move away is: an effect more, one less, or another in its place."""
@@ -242,9 +241,9 @@ class Search:
         after = self.search_in_place(less, effect)
         if after is None:
             return
-        scores, size = self.named(), len(key_of(after)) + 1
-        one_more = [key for key in scores if (effect, 1) in key and key_of(less) < key and len(key) == size]
-        for fitted in [self.fits[key] for key in sorted(one_more, key=lambda key: -scores[key])[:AGAIN]]:
+        size = len(key_of(after)) + 1
+        one_more = [key for key in self.named() if (effect, 1) in key and key_of(less) < key and len(key) == size]
+        for fitted in [self.fits[key] for key in one_more[:AGAIN]]:
             if self.policy.leaves_room(fitted, effect):
                 own = [k for k, term in enumerate(fitted.terms) if term.effect is effect]
                 self.search_in_place(self.without(fitted, own), effect)

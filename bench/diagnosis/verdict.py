@@ -11,9 +11,8 @@ import numpy as np
 from bench.arrays import rms
 from bench.axis_kind import COULOMB, VISCOUS
 from bench.diagnosis.add import Added
-from bench.diagnosis.policy import ERRS_TWICE
+from bench.diagnosis.policy import ERRS_TWICE, Reason
 from bench.diagnosis.probability import Probabilities
-from bench.diagnosis.reason import Reason
 from bench.parameter import Parameter
 
 

@@ -284,27 +284,15 @@ class Columns(Effect):
         return [column for shape in shapes for column in self.columns(signals, shape)]
 
 
-@dataclass(frozen=True)
-class Standout:
-    """An event in a residual.
-
-    Attributes:
-        shape: of an effect.
-        around: begin and end of the stretch of time that distinguishes it from the rest of the residual - s.
-    """
-
-    shape: tuple[float, ...]
-    around: tuple[float, float]
-
-
 class Occasional(Columns):
     """It may occur in one recording and not in another, and several times."""
 
     repeatable = True
 
     @abstractmethod
-    def apart(self, fitted: Fitted) -> list[Standout]:
-        """Those that a residual shows by themselves, whatever else it contains."""
+    def apart(self, fitted: Fitted) -> list[tuple[tuple[float, ...], tuple[float, float]]]:
+        """Those that a residual shows by themselves, whatever else it contains: shapes, and begin and end of the
+        stretch of time that distinguishes each from the rest - s."""
 
     @abstractmethod
     def duration(self, shape: Sequence[float]) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array, namespace
-from bench.effects.effect import Fitted, Occasional, Proposal, Standout
+from bench.effects.effect import Fitted, Occasional, Proposal
 from bench.effects.shape import Shape, Shapes
 from bench.effects.signals import Axis, AxisState, Number, Scope, Values
 from bench.effects.torque import Torque
@@ -82,16 +82,16 @@ class LoadTorqueEvent(Occasional, Torque):
         stop = min(int(edges[last[best]]), time.size - 1)
         return [Proposal((float(time[edges[first[best]]]), float(time[stop])), float(gain[best]))]
 
-    def apart(self, fitted: Fitted) -> list[Standout]:
+    def apart(self, fitted: Fitted) -> list[tuple[tuple[float, ...], tuple[float, float]]]:
         """Short events, each of which takes many times what any stretch takes that is none of them."""
         taken, windows = _short(fitted)
-        found, least = list[Standout](), 0.0
+        found, least = list[tuple[tuple[float, ...], tuple[float, float]]](), 0.0
         while len(found) <= FEW and taken.any():
             best = int(np.argmax(taken))
             if least > STANDS_OUT * taken[best]:
                 return found
             first, start, stop, last = windows[best].tolist()
-            found.append(Standout((start, stop), (first, last)))
+            found.append(((start, stop), (first, last)))
             least, taken = float(taken[best]), taken * ((windows[:, 3] < first) | (windows[:, 0] > last))
         return []
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from bench.diagnosis.diagnosis import Diagnosis
-from bench.diagnosis.reason import Reason
+from bench.diagnosis.policy import Reason
 from bench.names import words
 from bench.parameter import Parameter
 from bench.report.numbers import interval

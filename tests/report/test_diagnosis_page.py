@@ -8,7 +8,7 @@ import pytest
 
 from bench.diagnosis.diagnosis import diagnose
 from bench.diagnosis.name import NamedEffect
-from bench.diagnosis.reason import Reason
+from bench.diagnosis.policy import Reason
 from bench.effects.catalogue import catalogue
 from bench.effects.present import Present
 from bench.plant.model_file import LOADED
