@@ -20,7 +20,7 @@ from bench.diagnosis.recordings import Recordings
 from bench.diagnosis.search import Search, search
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect, Lag, Occasional, Stage
-from bench.effects.signals import Axis, AxisState, Values
+from bench.effects.signals import AxisState
 from bench.effects.torque import Torque
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit, hint, shaped, unbiased
@@ -269,15 +269,13 @@ def _gain(effects: Sequence[NamedEffect], fitted: Fit) -> float:
     for one in effects:
         effect = one.effect
         if isinstance(effect, Torque) and effect.stage == Stage.CURRENT_SENSOR:
-            lost = partial(_lost_per_torque, effect, one.values, fitted.base)
-            gain *= (1.0 - lost(fitted.scope.duration)) / (1.0 - lost(0.0))
+            lost = [
+                effect.torque(one.values, fitted.base, AxisState(time, 0.0, 0.0, effort))
+                for time in (fitted.scope.duration, 0.0)
+                for effort in (1.0, 0.0)
+            ]
+            gain *= (1.0 - float(lost[0] - lost[1])) / (1.0 - float(lost[2] - lost[3]))
     return gain
-
-
-def _lost_per_torque(effect: Torque, values: Values, axis: Axis, time: float) -> float:
-    """Share of a small torque that an effect takes at a time - s."""
-    lost = [effect.torque(values, axis, AxisState(time, 0.0, 0.0, effort)) for effort in (1.0, 0.0)]
-    return float(lost[0] - lost[1])
 
 
 def _read(recordings: Recordings, effect: Effect, found: Detected) -> NamedEffect:

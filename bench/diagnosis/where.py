@@ -174,7 +174,7 @@ def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array], explai
     main = order[: int(np.searchsorted(weight, 0.5 * weight[-1])) + 1]
     region = (float(centres[main].min()), float(centres[main].max()))
     many, few = (equal_bins_of(values, max(1, min(most, values.size // LEAST))) for most in (DRAWN, BINS))
-    fine = explained is not None and _between_bins(many, explained) > MOST
+    fine = explained is not None and np.var(means_in(many, explained)[many]) > MOST * max(np.var(explained), 1e-300)
     index = many if fine else few
     kept = np.bincount(index) >= FEWEST
     gaps = [fitted.left if explained is None else explained + after[0], *after]
@@ -182,11 +182,6 @@ def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array], explai
     smooth = equal_bins_of(values, FINER * DRAWN) if fine else few
     curve = None if explained is None else _curve(smooth, labels, explained)
     return Where(name, region, unit, share, centres, before, tuple(later), curve)
-
-
-def _between_bins(index: NDArray[np.int64], values: Array) -> float:
-    """Share of the variance of values (m,) between bins."""
-    return float(np.var(means_in(index, values)[index]) / max(np.var(values), 1e-300))
 
 
 def _curve(index: NDArray[np.int64], labels: Array, explained: Array) -> tuple[Array, Array]:

@@ -409,8 +409,8 @@ class Lag(Distortion):
         return lagged(samples, values["time_constant"], step)
 
     def leading(self, values: Mapping[str, float], samples: Array, step: float) -> Array:
-        """The signal before the lag (n,), from the samples behind it."""
-        return unlagged(samples, values["time_constant"], step)
+        """The signal before the lag (n,), from the samples behind it: y + T*dy/dt, by central differences."""
+        return samples + values["time_constant"] * np.gradient(samples, step) if samples.size > 1 else samples
 
     def stepped(self, values: Values, reported: Number, before: Number, step: float) -> tuple[Number, Number]:
         """Torque that acts of a reported one that is held over a step: at the middle, and at the end of it.
@@ -458,11 +458,6 @@ def lagged(values: Array, time_constant: float, step: float) -> Array:
     mean = time_constant / step * (1.0 - decay)
     now, before = 1.0 - mean, mean - decay
     return recursive_filter([now, before], [1.0, -decay], values, held=values[0] * (1.0 - now))
-
-
-def unlagged(values: Array, time_constant: float, step: float) -> Array:
-    """What comes out behind a lag - s - as these values (n,), by central differences: y + T*dy/dt."""
-    return values + time_constant * np.gradient(values, step) if values.size > 1 else values
 
 
 def smoothed(trace: Trace, smooth: GaussianFilter, name: str, *orders: int) -> Array:

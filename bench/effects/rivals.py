@@ -100,8 +100,7 @@ class SlowMemory(Columns):
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
         """Direction times low-passed magnitude of speed."""
-        keep = np.exp(-signals.sample_period / shape[0])
-        return [[(signals.sign * _lowpass(np.abs(signals.velocity), keep), 0)]]
+        return [[(signals.sign * _recent_speed(signals, shape[0]), 0)]]
 
 
 class FrictionalMemory(Columns):
@@ -120,8 +119,7 @@ class FrictionalMemory(Columns):
     )
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        keep = np.exp(-signals.sample_period / shape[0])
-        return [[(signals.sign * np.exp(-_lowpass(np.abs(signals.velocity), keep) / shape[1]), 0)]]
+        return [[(signals.sign * np.exp(-_recent_speed(signals, shape[0]) / shape[1]), 0)]]
 
 
 class VaryingGain(Columns):
@@ -173,8 +171,10 @@ def _turning(rate: float, signals: Signals) -> NDArray[np.complex128]:
     return np.outer(blocks, np.exp(1j * rate * ahead)).ravel()[:count]
 
 
-def _lowpass(values: Array, keep: float) -> Array:
-    return recursive_filter([1.0 - keep], [1.0, -keep], values)
+def _recent_speed(signals: Signals, time_constant: float) -> Array:
+    """Low-passed magnitude of the speed (n,) - rad/s (m/s)."""
+    keep = np.exp(-signals.sample_period / time_constant)
+    return recursive_filter([1.0 - keep], [1.0, -keep], np.abs(signals.velocity))
 
 
 #: Where a residual as small as noise depends on torque or speed, and where more than noise remains.

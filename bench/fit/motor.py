@@ -70,6 +70,8 @@ def motor_constants(
     if "current" in trace:
         parts |= {f"{RESISTANCE}, {BACK_EMF}": _circuit, constant: _scale}
 
+    bare = rig.model_copy(update={"motor": rig.motor.model_copy(update=dict.fromkeys(SCALES))})
+
     def by(signal: str, of: Trace) -> Estimate:
         """Inertia and friction of the effort that a signal of a recording is, in its unit."""
         if of is trace and found.residual.unit == {"voltage": "V", "current": "A"}[signal]:
@@ -77,7 +79,7 @@ def motor_constants(
         only = of.with_signals({"voltage": rig.voltage(of)}, {"voltage": "V"})
         for name in {"voltage", "current", rig.axis_kind.effort} - {signal}:
             only = only.without(name) if name in only else only
-        return identified(only, _without_scales(rig))
+        return identified(only, bare)
 
     for name, of in parts.items():
         try:
@@ -91,11 +93,6 @@ def motor_constants(
         refused[constant] += f"; in a motor without losses it is {ideal}, as the back-EMF constant"
     supply = trace.signals.get("supply_voltage")
     return MotorConstants(known, refused, None if supply is None else (float(supply.min()), float(supply.max())))
-
-
-def _without_scales(rig: Rig) -> Rig:
-    """A rig that makes no torque of voltage or current."""
-    return rig.model_copy(update={"motor": rig.motor.model_copy(update=dict.fromkeys(SCALES))})
 
 
 def _feedforward(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:

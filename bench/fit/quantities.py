@@ -95,7 +95,8 @@ class Uncertain:
 
 def uncertain(fitted: Fit) -> Uncertain:
     """Free numbers of a fit with their covariance; where not all rows are determined, as in a robust search."""
-    slots, place = _free_shapes(fitted), fitted.theta.size
+    place = fitted.theta.size
+    slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in term.fitted(fitted.scope))
     known = _known(fitted, slots)
     covariance, reach = _by_residual(fitted, slots, known)
     covariance[place:, place:] += np.diag(known**2)
@@ -157,11 +158,6 @@ def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
     sure = fitted.time[fitted.determined]
     errors = [term.effect.shape_errors(term.shape, fitted.scope, sure) for term in fitted.terms]
     return np.array([errors[index][k] for index, k in slots])
-
-
-def _free_shapes(fitted: Fit) -> tuple[tuple[int, int], ...]:
-    """(Term, place in its shape) of what is a free number of the fit."""
-    return tuple((index, k) for index, term in enumerate(fitted.terms) for k in term.fitted(fitted.scope))
 
 
 def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:

@@ -53,8 +53,10 @@ def moves(seen: Seen) -> Check:
     motion = [name for name in MOTION if name in trace]
     efforts = [name for name in EFFORTS if name in trace]
     still = [names for names in (motion, efforts) if names and not any(np.ptp(trace[name]) > 0.0 for name in names)]
-    if "position" in trace and not still and _is_noise(trace["position"]):
-        still = [motion]
+    if "position" in trace and not still:
+        position = trace["position"]
+        if float(np.std(position)) <= STILL * max(white_noise(position), resolution_of(position)):
+            still = [motion]
     if still:
         noise = " but noise" * any(np.ptp(trace[name]) > 0.0 for names in still for name in names)
         found = f"{' and '.join(' and '.join(names) for names in still)} without any change{noise}"
@@ -69,11 +71,6 @@ def moves(seen: Seen) -> Check:
     found = f"{name} stands still for {frozen[name] * trace.sample_period:.3g} s while the axis moves"
     status = "fail" if frozen[name] > FROZEN * len(trace) else "warn"
     return Check(MOVES, status, found, ALLOWED_MOVES, "check the sensor, or cut the recording there")
-
-
-def _is_noise(values: Array) -> bool:
-    """Whether a position (n,) spreads no more than its noise and its steps make it: the axis stands still."""
-    return float(np.std(values)) <= STILL * max(white_noise(values), resolution_of(values))
 
 
 def _steady(seen: Seen) -> bool:

@@ -99,19 +99,14 @@ def simulate(
     trace = sensors.record(reported_states(plant.model, states), references, np.random.default_rng(seed), origin)
     friction = "drive" if plant.emulated else "mechanics"
     truth = Truth(rig.name, plant.axis.parameters, friction, sensors, profile, seed, plant.model.effects)
-    warnings = (*_moved_friction(rig, plant), *_drive_warnings(plant, states, references))
-    return Simulated(trace, truth, states, references, warnings)
+    return Simulated(trace, truth, states, references, tuple(_warnings(rig, plant, states, references)))
 
 
-def _moved_friction(rig: Rig, plant: Plant) -> Iterator[str]:
-    """Where friction acts, if not as the rig has it."""
+def _warnings(rig: Rig, plant: Plant, states: States, references: References) -> Iterator[str]:
+    """Where friction acts, if not as the rig has it; whether the drive chatters or does not follow its profile."""
     if rig.simulated.friction == "drive" and not plant.emulated:
         names = ", ".join(present.name for present in plant.axis.of_kind(OF_MECHANICS))
         yield f"all friction acts in the mechanics, as {names} needs; in the rig the drive makes it"
-
-
-def _drive_warnings(plant: Plant, states: States, references: References) -> Iterator[str]:
-    """Whether the drive chatters or does not follow its profile, and why."""
     loop, cascade = plant.velocity_loop, plant.cascade
     change, largest = np.diff(states.motor_torque), float(np.abs(states.motor_torque).max())
     back = (change[1:] * change[:-1] < 0.0) & (np.abs(change[1:]) > TURNS_BACK * largest)
