@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
@@ -188,6 +189,8 @@ def robot(
     ] = None,
     without: Annotated[list[str] | None, Option(metavar="EFFECT", help="Effect not to try. Repeatable.")] = None,
     stand: Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")] = False,
+    kp: Annotated[list[str] | None, Option(help="Gain of position controllers: 40, or NAME=40. Repeatable.")] = None,
+    kd: Annotated[list[str] | None, Option(help="Their damping: 1, or NAME=1. Repeatable.")] = None,
     grade: Annotated[bool, Option("--grade", help="Compare the MJCF's own values with the logs.")] = False,
     json: common.JsonOption = None,
 ) -> None:
@@ -200,11 +203,16 @@ def robot(
     from bench.report.terminal import progress
 
     excluded = frozenset(named(name, "--without").name for name in without or [])
-    stated = common.positions(at or (), joint_units(mjcf[0]))
+    units = joint_units(mjcf[0])
+    stated = common.positions(at or (), units)
     known = None if rig is None else bench.load_rig(rig)
+    gains = _gains(kp or (), units, "--kp", ""), _gains(kd or (), units, "--kd", "*s")
     with progress(f"identifying the joints of {mjcf[0].name}") as done:
-        found = bench.robot(logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done, stand)
+        found = bench.robot(
+            logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done, stand, *gains
+        )
     options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded), "stand": stand}
+    options |= {"kp": kp or [], "kd": kd or []}
     basis = provenance(rig, logs, options, holdout, mjcf)
     folder = out if found.answered else None
     compared = found.grade if grade else None
@@ -216,6 +224,21 @@ def robot(
             raise InputError("none of the joints could be answered", f"{first.name}: {first.failed}", "see the table")
         reason = f"{first.name}: {next(iter(first.refused.values()))}"
         raise UndeterminedError("any joint", reason, first.record or "what the table advises for each joint")
+
+
+def _gains(texts: Sequence[str], units: Mapping[str, str], option: str, per: str) -> dict[str, float] | None:
+    """Gains of joints from `40`, of all that no other text names, and `NAME=40`; a number without unit is SI."""
+    from bench.effects.present import parse_value
+
+    found, efforts = dict[str, float](), {"rad": "N*m", "m": "N"}
+    for text in sorted(texts, key=lambda one: "=" in one):
+        name, equals, value = text.rpartition("=")
+        if equals and name not in units:
+            raise InputError(f"{option} {text}", "names no joint", f"allowed: NAME=40, NAME one of {', '.join(units)}")
+        for joint in [name] if equals else units:
+            unit = f"{efforts[units[joint]]}{per}/{units[joint]}"
+            found[joint] = parse_value(value, unit, f"{option} {text}")
+    return found or None
 
 
 def _carried(text: str | None) -> AddedBody | str | None:

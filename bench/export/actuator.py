@@ -15,6 +15,11 @@ from xml.sax.saxutils import escape, quoteattr
 TIMESTEP = 0.0005
 
 
+def buffered(delay: float, timestep: float) -> int:
+    """Samples that a delay - s - is buffered for; none without one."""
+    return math.ceil(delay / min(timestep, TIMESTEP)) + 1 if delay > 0.0 else 0
+
+
 def position_actuator(joint: str, values: Mapping[str, float]) -> str:
     """Text of the file.
 
@@ -25,7 +30,7 @@ def position_actuator(joint: str, values: Mapping[str, float]) -> str:
     """
     attributes = {"kp": values["kp"], "kv": values["kv"]}
     if values["delay"] > 0.0:
-        attributes |= {"delay": values["delay"], "nsample": math.ceil(values["delay"] / TIMESTEP) + 1}
+        attributes |= {"delay": values["delay"], "nsample": buffered(values["delay"], TIMESTEP)}
     text = " ".join(f'{name}="{value:.6g}"' for name, value in attributes.items())
     if "forcerange" in values:
         text += f' forcerange="{-values["forcerange"]:.6g} {values["forcerange"]:.6g}"'

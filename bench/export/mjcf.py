@@ -33,6 +33,7 @@ from bench.effects.effect import Effect
 from bench.effects.mjcf import AXIS, DRIVE, LOAD, LOAD_TORQUE
 from bench.effects.present import named
 from bench.errors import InputError
+from bench.export.actuator import buffered
 from bench.files import read_bytes, read_text, whole
 from bench.names import nearest, plain
 from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_inertia
@@ -97,6 +98,22 @@ class Carried:
         return f"{self.joint}: {native}", *left, *self.notes
 
 
+@dataclass(frozen=True)
+class PositionDrive:
+    """A position controller of a joint.
+
+    Attributes:
+        kp, kd: its gains - N*m/rad (N/m), N*m*s/rad (N*s/m).
+        delay: of its goal - s.
+        lacking: what MuJoCo's position actuator does not have of it, in sentences.
+    """
+
+    kp: float
+    kd: float
+    delay: float
+    lacking: tuple[str, ...] = ()
+
+
 def robot_with(
     path: Path,
     models: Mapping[str, tuple[StoredModel, Armature | None]],
@@ -105,6 +122,7 @@ def robot_with(
     kept: Sequence[str] = (),
     with_assets: bool = False,
     stand: bool = False,
+    drives: Mapping[str, PositionDrive] | None = None,
 ) -> tuple[str, tuple[str, ...]]:
     """Text of a robot's MJCF with models at its joints, and what went onto each in sentences.
 
@@ -116,6 +134,7 @@ def robot_with(
         kept: joints that were asked for and have no model.
         with_assets: whether meshes, height fields and textures are copied into ASSETS next to `out`.
         stand: whether a floating base is fixed.
+        drives: position controllers of joints by their names, in the place of what drives them.
 
     Raises:
         InputError: the MJCF cannot be read, an asset cannot be written, or cannot have a model at its joint.
@@ -125,6 +144,8 @@ def robot_with(
     for name, (stored, armature) in models.items():
         own = Armature(float(joint_of(spec, name, stored.model).armature), "the MJCF's own")
         lines += onto(spec, name, stored, armature or own).lines
+    for name, drive in (drives or {}).items():
+        lines += _driven(spec, name, drive)
     lines += [f"{name}: the MJCF's own armature, damping and frictionloss stay" for name in kept]
     compiled(spec)
     for folder in ("meshdir", "texturedir"):
@@ -134,6 +155,21 @@ def robot_with(
         setattr(spec, folder, ASSETS if with_assets else os.path.relpath(where, out.resolve().parent))
     spec.modelfiledir = str(out.resolve().parent)  # writing compiles once more
     return commented(spec, tuple(lines)), tuple(lines)
+
+
+def _driven(spec: mujoco.MjSpec, name: str, drive: PositionDrive) -> list[str]:
+    """Give a joint a position actuator, in the place of its own ones; in sentences."""
+    own = [one for one in spec.actuators if one.target == name and one.trntype == mujoco.mjtTrn.mjTRN_JOINT]
+    actuator = (
+        own[0] if own else spec.add_actuator(name=f"{name} servo", target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    )
+    for other in own[1:]:
+        spec.delete(other)
+    actuator.gear = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    actuator.set_to_position(drive.kp, kv=drive.kd)
+    actuator.delay, actuator.nsample = drive.delay, buffered(drive.delay, spec.option.timestep)
+    lines = [f"{name}: '{actuator.name}' has kp {drive.kp:.4g}, kv {drive.kd:.4g} and a delay of {drive.delay:.4g} s"]
+    return lines + [f"{name}: not carried: {text}" for text in drive.lacking]
 
 
 def _copy_assets(spec: mujoco.MjSpec, kind: str, source: Path, target: Path) -> None:

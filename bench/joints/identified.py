@@ -27,10 +27,14 @@ from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
 from bench.plant.robot import AddedBody, Poses, Robot, joint_rig, read_along
 from bench.rig.rig import Rig
+from bench.servos.breakaway import StaticFriction
+from bench.servos.commanded import Coefficients, Gains
 from bench.trace.trace import Trace
 from bench.view.joint_motion import JointMotion, joint_motion
 
 Told = TypeVar("Told")
+#: Recordings of a joint, with the robot's poses along each, and why others cannot be read, by their files.
+Read = tuple[dict[Path, tuple[Trace, Poses]], dict[Path, BenchError]]
 #: Of one joint: ten times what the longest log tried took (600 s at 500 Hz).
 LIMITS = Limits(deadline=1800.0, memory=8.0 * 1024**3)
 #: Share of the links' inertia, and of the largest torque, below which armature and friction may be none.
@@ -54,6 +58,8 @@ class JointLogs:
         excluded: effects that are not tried.
         added: what the robot has in addition to its MJCF.
         stand: whether a floating base is fixed.
+        goals: whether the logs hold goals of position controllers instead of efforts.
+        gains: of the joint's controller, where they are known.
     """
 
     joint: str
@@ -66,6 +72,8 @@ class JointLogs:
     added: tuple[AddedBody, ...] = ()
     stand: bool = False
     mjcfs: Mapping[Path, Path] = field(default_factory=dict)
+    goals: bool = False
+    gains: Gains | None = None
 
     def robot(self) -> Robot:
         """The robot around the joint; InputError as `Robot.of`."""
@@ -77,6 +85,25 @@ class JointLogs:
         if log not in self.mjcfs:
             return first
         return replace(Robot.of(self.mjcfs[log], self.joint, self.added, self.stand), datum=first.inertia)
+
+
+@dataclass(frozen=True)
+class Goals:
+    """What goals and positions show of a joint.
+
+    Attributes:
+        found: the coefficients of its balance.
+        link_inertia: of its links in the configuration of the MJCF - kg*m**2 (kg).
+        static: its static friction, where that is determined.
+        seldom: why it is not, and what to record instead.
+        doubt: by how much the weight of the links contradicts the gains; empty where it does not.
+    """
+
+    found: Coefficients
+    link_inertia: float
+    static: StaticFriction | None
+    seldom: tuple[str, str]
+    doubt: str
 
 
 @dataclass(frozen=True)
@@ -96,6 +123,7 @@ class IdentifiedJoint:
         payloads: whether the links' inertia differs from log to log.
         constant: torque (force) constant by the weight of the links, of logs that hold a current and no rig that states
             it.
+        goals: what they show, where the torque followed from goals.
     """
 
     name: str
@@ -109,6 +137,7 @@ class IdentifiedJoint:
     motion: JointMotion | None = None
     payloads: bool = False
     constant: Parameter | None = None
+    goals: Goals | None = None
 
     @property
     def parameters(self) -> dict[str, Parameter]:
@@ -182,30 +211,38 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
         rig = joint_rig(asked.rig, robot)
         read, refusals = _read(asked, asked.logs, rig)
         rig, constant = _with_constant(asked.joint, rig, [trace for trace, _ in read.values()])
-        used, left_out = _moving(read, refusals, rig)
-        traces, poses = [trace for trace, _ in used.values()], next(iter(used.values()))[1]
+        unseen = [] if asked.holdout is None else [asked.holdout]
+        found = diagnosed(asked, rig, (read, refusals), lambda: _read(asked, unseen, rig))
+        return replace(found, constant=constant)
     except UndeterminedError as error:
         return IdentifiedJoint(asked.joint, refused={EFFECTS: error.reason}, record=error.record)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, failed=str(error))
+
+
+def diagnosed(asked: JointLogs, rig: Rig, logs: Read, holdout: Callable[[], Read]) -> IdentifiedJoint:
+    """The joint by what was read of its logs, with efforts; raises where it moves in none of them."""
+    used, left_out = _moving(*logs, rig)
+    traces, poses = [trace for trace, _ in used.values()], next(iter(used.values()))[1]
     unseen: dict[Path, tuple[Trace, Poses]] = {}
     if asked.holdout is not None:
         try:
-            unseen, _ = _moving(*_read(asked, [asked.holdout], rig), rig)
+            unseen, _ = _moving(*holdout(), rig)
         except BenchError as error:
             left_out[asked.holdout.name] = str(error)
     try:
         other = next((trace for trace, _ in unseen.values()), None)
         found = diagnose(traces, rig, other, asked.excluded)
     except UndeterminedError as refusal:
-        return replace(_without_effects(asked.joint, traces, rig, refusal, left_out), constant=constant)
+        return _without_effects(asked.joint, traces, rig, refusal, left_out)
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
     differ = [] if len(used) == 1 else counted_differently({log: trace for log, (trace, _) in used.items()}, rig)
     found = replace(found, warnings=[*found.warnings, *_frictionless(asked.joint, found, rig), *differ])
     refused = {**found.refused, **_any_friction(found, rig.axis_kind), **_behind(rig)}
     motion = joint_motion(found, traces[0], rig, poses)
-    payloads = any(replace(asked.robot_of(log), datum=None).inertia != robot.inertia for log in used)
+    inertia = asked.robot().inertia
+    payloads = any(replace(asked.robot_of(log), datum=None).inertia != inertia for log in used)
     return IdentifiedJoint(
         asked.joint,
         rig,
@@ -214,7 +251,6 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
         left_out=left_out,
         motion=motion,
         payloads=payloads,
-        constant=constant,
     )
 
 
@@ -262,9 +298,7 @@ def _any_friction(found: Diagnosis, kind: AxisKind) -> dict[str, str]:
     return refused
 
 
-def _read(
-    asked: JointLogs, logs: Sequence[Path], rig: Rig
-) -> tuple[dict[Path, tuple[Trace, Poses]], dict[Path, BenchError]]:
+def _read(asked: JointLogs, logs: Sequence[Path], rig: Rig) -> Read:
     """Recordings of the joint, with the robot's poses along each, and why others cannot be read.
 
     A current that no constant makes a torque counts as one of 1 N*m/A (N/A).

@@ -11,6 +11,7 @@ from bench.effects.present import named
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.export.mjcf import Armature, robot_with
 from bench.jobs.process import Failure
+from bench.joints.goals import GivenGain, by_goals, drive_of, with_gains, with_one_delay
 from bench.joints.grade import GradedJoint, graded
 from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
 from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
@@ -77,7 +78,8 @@ class IdentifiedRobot(Shown):
             armature = None if found is None else Armature(max(found.value, 0.0), origin)
             models[name] = model, armature
         kept = [name for name in self.joints if name not in models]
-        return robot_with(self.mjcf, models, out, self.added, kept, stand=self.stand)
+        drives = {name: drive for name, joint in self.joints.items() if (drive := drive_of(joint)) is not None}
+        return robot_with(self.mjcf, models, out, self.added, kept, stand=self.stand, drives=drives)
 
 
 def robot(
@@ -91,6 +93,8 @@ def robot(
     payload: AddedBody | str | None = None,
     progress: Callable[[float], None] = lambda share: None,
     stand: bool = False,
+    kp: GivenGain = None,
+    kd: GivenGain = None,
 ) -> IdentifiedRobot:
     """Identify and diagnose every joint of a robot, each within the rest of it; one that fails does not affect the
     others.
@@ -107,6 +111,8 @@ def robot(
         payload: that a body carried in the logs, or the name of a body whose payload is sought.
         progress: called with the share done.
         stand: whether a floating base is fixed where the MJCF has it.
+        kp, kd: gains of position controllers at the joints, where the logs hold goals and no efforts - N*m/rad (N/m),
+            N*m*s/rad (N*s/m) -: of all, or of each by its name; by default those of the MJCF's position actuators.
 
     Raises:
         InputError: no log, an MJCF that cannot be read, or a joint that it does not have.
@@ -120,7 +126,8 @@ def robot(
     names = _required(first, joints)
     asked = [name for name in names if not joints or name in joints]
     of_all = JointLogs("", first, tuple(paths), unseen, known, stated or {}, left_out, stand=stand, mjcfs=others)
-    return _answered(of_all, [replace(of_all, joint=name) for name in asked], payload, progress)
+    work = with_gains([replace(of_all, joint=name) for name in asked], kp, kd)
+    return _answered(of_all, work, payload, progress)
 
 
 def _answered(
@@ -182,9 +189,10 @@ def _required(mjcf: Path, joints: Sequence[str]) -> list[str]:
 def _identified(work: Sequence[JointLogs], progress: Callable[[float], None]) -> dict[str, IdentifiedJoint]:
     """Each joint by its name; BenchError where several fail, all for one reason that concerns the MJCF."""
     found: dict[str, IdentifiedJoint] = {}
-    for asked, one in zip(work, of_each(identified, work, progress), strict=True):
+    by = by_goals if any(asked.goals for asked in work) else identified
+    for asked, one in zip(work, of_each(by, work, progress), strict=True):
         found[asked.joint] = IdentifiedJoint(asked.joint, failed=one.reason) if isinstance(one, Failure) else one
     reasons = {joint.failed for joint in found.values()}
     if len(found) > 1 and len(reasons) == 1 and any(reason.startswith(str(work[0].mjcf)) for reason in reasons):
         raise BenchError(*reasons)
-    return found
+    return with_one_delay(found)

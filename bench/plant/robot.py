@@ -32,7 +32,7 @@ from bench.rig.rig import JointNotes, Load, Rig
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import GivenOptions, axes_of
 from bench.trace.joints import named
-from bench.trace.motion import stretches_of
+from bench.trace.motion import slope, stretches_of
 from bench.trace.read import read_recording
 from bench.trace.signals import STANDING, STANDING_ASK, signal_of
 from bench.trace.time_base import interpolate
@@ -50,6 +50,8 @@ FAR = 1.0
 UNITS = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
 #: Step of a joint's position for the slope of a torque - rad (m).
 SLOPE_STEP = 1e-3
+#: Signals from which a joint's effort follows.
+EFFORTS = frozenset({"torque", "force", "current", "voltage"})
 #: Unit of the effort of a joint by that of its position.
 UNITS_OF_EFFORT = {"rad": "N*m", "m": "N"}
 #: What inverse dynamics leaves out: what is no property of the links.
@@ -448,6 +450,32 @@ def read_goals(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], 
     return trace.with_signals(
         {slope: (ahead - behind) / (2.0 * SLOPE_STEP)}, {slope: f"{unit}/{robot.unit(robot.joint)}"}
     )
+
+
+def read_commanded(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Trace, Poses]:
+    """A log of a joint's goal and position with the load of its links, all on the joint's side, and the robot's poses.
+
+    InputError as `read_log`, but for an effort. Speeds are derivatives of positions.
+    """
+    trace, position, _, _ = _moved(path, rig, robot, stated)
+    ratio, unit = (rig.of_joint(robot.joint).load or Load()).gear_ratio, UNITS_OF_EFFORT[robot.unit(robot.joint)]
+    velocity = np.zeros_like(position)
+    for part in stretches_of(trace):
+        velocity[part] = slope(position[part], trace.sample_period)
+    own = {name: trace[name] / ratio for name in ("position", "position_reference") if name in trace}
+    trace = replace(trace, signals=own, units={name: trace.units[name] for name in own})
+    known = with_known(trace, *robot.rest(position, velocity), unit, robot.grown(position))
+    return known, (trace.time, dict(zip(robot.names, position.T, strict=True)))
+
+
+def is_commanded(path: Path, rig: Rig, robot: Robot) -> bool:
+    """Whether a log has goals of a joint and no effort; InputError where it cannot be read."""
+    every = (robot.model.joint(k).name for k in range(robot.model.njnt))
+    recording, own = named(read_recording(path), list(filter(None, every))), rig.of_joint(robot.joint)
+    if not (_holds(recording, robot.joint) or own.trace.columns or own.trace.axis):
+        return False
+    trace = _joint_of(recording, robot.joint, own, robot)
+    return "position_reference" in trace and EFFORTS.isdisjoint(trace.signals)
 
 
 def logs_of(

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from bench.axis_kind import ARMATURE, COULOMB, VISCOUS
+from bench.joints.goals import COMMAND
 from bench.joints.grade import GradedJoint
 from bench.joints.identified import EFFECTS, IdentifiedJoint
 from bench.joints.robot import IdentifiedRobot
@@ -28,6 +29,9 @@ from bench.report.verdict import reasons
 
 SCHEMA = "bench.robot/1"
 MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
+#: Columns of the table of joints, and those of them that only joints with goals have.
+COLUMNS = ("armature", "viscous", "Coulomb", "static", "dead time", "bias")
+EXTRA = COLUMNS[3:]
 #: Joints that an answer lists.
 SUMMARISED = 3
 #: Sections of a diagnosis that a robot's page has of each joint.
@@ -173,7 +177,9 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     """A row for each joint; and what is open, where anything is."""
     headings, cells = [], []
     values = [_values(joint) for joint in found.joints.values()]
-    for name, column in zip(("armature", "viscous", "Coulomb"), zip(*values, strict=True), strict=True):
+    for name, column in zip(COLUMNS, zip(*values, strict=True), strict=True):
+        if name in EXTRA and not any(column):
+            continue
         units = {value.unit for value in column if value is not None}
         alike = len(units) == 1  # then it is in the heading
         headings.append(f"{name} / {unit_text(units.pop())}>" if alike else f"{name}>")
@@ -201,9 +207,11 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
 
 
 def _values(joint: IdentifiedJoint) -> tuple[Parameter | None, ...]:
-    """Armature, viscous and Coulomb friction; None for one that is not determined."""
-    kind = None if joint.rig is None else joint.rig.axis_kind
-    names = (ARMATURE, "", "") if kind is None else (ARMATURE, kind.parameter(VISCOUS), kind.parameter(COULOMB))
+    """Parameters of COLUMNS; None for one that is not determined."""
+    if joint.rig is None:
+        return (None,) * len(COLUMNS)
+    kind = joint.rig.axis_kind
+    names = (ARMATURE, kind.parameter(VISCOUS), kind.parameter(COULOMB), f"static_friction_{kind.effort}", *COMMAND)
     return tuple(joint.parameters.get(name) for name in names)
 
 

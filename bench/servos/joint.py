@@ -13,6 +13,7 @@ from bench.errors import InputError
 from bench.plant.mjcf_file import read_mjcf
 from bench.plant.robot import Robot, joint_rig, read_goals
 from bench.rig.rig import Rig
+from bench.servos.commanded import Gains
 from bench.trace.trace import Trace
 
 #: Signal of a trace: how the known torque changes with the joint's position - N*m/rad (N/m).
@@ -54,7 +55,7 @@ class JointModel:
             raise InputError(
                 f"{mjcf}: joint '{robot.joint}'", "moves no mass", "allowed: a joint with a link or armature"
             )
-        before = _actuator(model, robot.joint)
+        before = position_actuator(model, robot.joint)
         if before is not None:
             before = {name: value / inertia if name != "dead_time" else value for name, value in before.items()}
             before |= {"damping": damping / inertia, "friction": friction / inertia, "mobility": 1.0 / inertia}
@@ -72,7 +73,17 @@ class JointModel:
         return read_goals(Path(log), self.rig, self.robot, self.stated, KNOWN_SLOPE)
 
 
-def _actuator(model: mujoco.MjModel, joint: str) -> dict[str, float] | None:
+def gains_of(mjcf: Path, stand: bool) -> dict[str, Gains]:
+    """Gains of the joints of an MJCF that have a position actuator, by their names; InputError as `Robot.of`."""
+    model, found = read_mjcf(mjcf, stand)[0].compile(), dict[str, Gains]()
+    for name in (model.joint(k).name for k in range(model.njnt)):
+        values = position_actuator(model, name) if name else None
+        if values is not None:
+            found[name] = Gains(values["stiffness"], max(values["drive_damping"], 0.0))
+    return found
+
+
+def position_actuator(model: mujoco.MjModel, joint: str) -> dict[str, float] | None:
     """kp, kv, delay and force limit of the position actuator on a joint, by their names; None where it has none."""
     here = model.joint(joint).id
     for k in range(model.nu):

@@ -137,16 +137,16 @@ def servo(
             return model.read(one)
         return one if isinstance(one, Trace) else read(one, None if rig is None else rig.trace)
 
-    traces = [_require_goal(opened(one)) for one in logs]
+    traces = [require_goal(opened(one)) for one in logs]
     trace = join(traces)
     known = _known(trace, rig)
     of = _recorded(trace, known)
     fit, inertia = _scaled(of, rig, model, bool(known[0].any()), progress)
     _require_answered(of, fit)
-    return _result(traces, fit, inertia, rig, model, None if holdout is None else _require_goal(opened(holdout)))
+    return _result(traces, fit, inertia, rig, model, None if holdout is None else require_goal(opened(holdout)))
 
 
-def _require_goal(trace: Trace) -> Trace:
+def require_goal(trace: Trace) -> Trace:
     """The trace; an error with the true reason where its goal and position cannot show a servo."""
     name = "position_reference"
     if "position" not in trace:

@@ -182,6 +182,18 @@ def raw_speed(values: Array, source: str, sample_period: float) -> Array:
     return np.gradient(values, sample_period) if source == "position" else values
 
 
+def slope(values: Array, sample_period: float) -> Array:
+    """Derivative of regular samples (n, ...) along the first axis, by differences of fourth order but for the ends.
+
+    The error of a central difference, a share of (omega*T)**2/6, delays a joint's balance on moving links by 40 us at
+    2 Hz and 400 Hz of sampling; that of this one, (omega*T)**4/30, by none.
+    """
+    found = np.gradient(values, sample_period, axis=0)
+    if len(values) > 4:
+        found[2:-2] = (8.0 * (values[3:-1] - values[1:-3]) - (values[4:] - values[:-4])) / (12.0 * sample_period)
+    return found
+
+
 def known_sign(speed: Array, threshold: float) -> Array:
     """Sign of a speed (n,), 0 where it is within `threshold` of zero - rad/s (m/s)."""
     return np.sign(speed) * (np.abs(speed) > threshold)

@@ -1,0 +1,132 @@
+"""`bench robot` of logs with goals and no effort: known gains, what the MJCF gets, and what is refused or doubted."""
+
+import json
+
+import mujoco
+import numpy as np
+import pytest
+
+from bench.errors import InputError
+from bench.joints.goals import by_goals, with_gains, with_one_delay
+from bench.joints.identified import JointLogs
+from bench.servos.commanded import Delay, Gains, shared
+from tests.command import bench as command
+from tests.studies.quadruped import KD, KP, hidden, joints_of, mjcf, moved, write_log
+
+LEG = ("FL",)
+HIP, THIGH, CALF = joints_of(LEG)
+
+
+@pytest.fixture(scope="module")
+def leg(tmp_path_factory):
+    """The folder with logs and MJCFs of a leg, and what its joints have."""
+    folder, rng = tmp_path_factory.mktemp("leg"), np.random.default_rng(11)
+    of = hidden(3, rng)
+    write_log(folder / "log.csv", moved(of, rng, 12.0, LEG), LEG)
+    write_log(folder / "limited.csv", moved(of, rng, 6.0, LEG, limit=1.2), LEG)
+    (folder / "robot.xml").write_text(mjcf(LEG), encoding="utf-8")
+    (folder / "bare.xml").write_text(mjcf(LEG, actuators=False), encoding="utf-8")
+    return folder, of
+
+
+def thigh(folder, gains, log="log.csv"):
+    """The thigh by a log with these gains."""
+    asked = JointLogs(THIGH, folder / "robot.xml", (folder / log,), goals=True, gains=gains)
+    return with_one_delay({THIGH: by_goals(asked)})[THIGH]
+
+
+@pytest.fixture(scope="module")
+def found(leg):
+    """The folder that the command writes for a joint whose gains the MJCF states."""
+    folder, _ = leg
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        done = command("robot", "log.csv", "--mjcf", "robot.xml", "--joint", THIGH, "--out", "found")
+    assert done.status == 0, done.err
+    return folder / "found"
+
+
+def test_all_parameters_of_a_joint_are_found(leg, found):
+    _, of = leg
+    joint = json.loads((found / "robot.json").read_text(encoding="utf-8"))["joints"][THIGH]
+    for name, truth in of.items():
+        low, high = joint["parameters"][name]["ci95"]
+        assert abs(joint["parameters"][name]["value"] - truth[1]) < high - low, name
+    assert joint["parameters"]["dead_time"]["value"] == pytest.approx(of["dead_time"][1], abs=0.3e-3)
+    assert joint["parameters"]["armature"]["value"] == pytest.approx(of["armature"][1], rel=0.04)
+    assert joint["verdict"] == "nothing_missing"
+    assert "misalignment" not in joint["parameters"]
+
+
+def test_the_mjcf_has_the_delay_and_the_friction(leg, found):
+    _, of = leg
+    text = (found / "robot_id.xml").read_text(encoding="utf-8")
+    model = mujoco.MjModel.from_xml_string(text)
+    (drive,) = (k for k in range(model.nu) if model.actuator_trnid[k, 0] == model.joint(THIGH).id)
+    assert model.actuator_gainprm[drive, 0] == pytest.approx(KP)
+    assert model.actuator_biasprm[drive, :3] == pytest.approx([0.0, -KP, -KD])
+    assert model.actuator_delay[drive] == pytest.approx(of["dead_time"][1], abs=0.3e-3)
+    assert model.joint(THIGH).frictionloss[0] == pytest.approx(of["coulomb_friction_torque"][1], rel=0.03)
+    assert "not carried: joint bias" in text
+    assert "not carried: static friction" in text
+
+
+def test_gains_that_are_given_replace_those_of_the_mjcf(leg):
+    folder, of = leg
+    work = [JointLogs(CALF, folder / "bare.xml", (folder / "log.csv",))]
+    (asked,) = with_gains(work, KP, {CALF: KD})
+    one = with_one_delay({CALF: by_goals(asked)})[CALF]
+    assert one.parameters["armature"].value == pytest.approx(of["armature"][2], rel=0.04)
+    assert one.parameters["joint_bias"].value == pytest.approx(of["joint_bias"][2], abs=1e-4)
+
+
+def test_gains_that_are_too_large_are_doubted_by_the_weight_of_the_links(leg):
+    one = thigh(leg[0], Gains(1.2 * KP, KD))
+    (doubt,) = (text for text in one.warnings if "with these gains the links weigh" in text)
+    assert float(doubt.split("kp is ")[1].split()[0]) == pytest.approx(KP, rel=0.03)
+
+
+def test_friction_below_zero_is_refused(leg):
+    one = thigh(leg[0], Gains(KP, KD + 0.4))
+    assert "another robot's" in one.refused["viscous_friction_coefficient"]
+    assert "viscous_friction_coefficient" not in one.parameters
+
+
+def test_a_limit_that_nobody_stated_is_refused(leg):
+    one = thigh(leg[0], Gains(KP, KD), "limited.csv")
+    assert not one.parameters
+    assert "force limit" in one.refused["effects"]
+
+
+def test_gains_that_are_not_known_lead_to_the_command_that_fits_them(leg, monkeypatch):
+    monkeypatch.chdir(leg[0])
+    done = command("robot", "log.csv", "--mjcf", "bare.xml", "--out", "none")
+    assert (done.status, done.err.strip().count("\n")) == (2, 0)
+    assert f"`bench servo log.csv --mjcf bare.xml --joint {HIP} --out servo` fits them" in done.err
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [(("--kd", "1"), "found no --kp"), (("--kp", "elbow=4"), "names no joint"), (("--kp", "-3"), "kp and the limit")],
+)
+def test_gains_that_no_joint_has_are_one_line(leg, monkeypatch, options, says):
+    monkeypatch.chdir(leg[0])
+    done = command("robot", "log.csv", "--mjcf", "bare.xml", "--out", "none", *options)
+    assert (done.status, done.err.strip().count("\n")) == (2, 0)
+    assert says in done.err
+
+
+def test_gains_next_to_an_effort_are_bad_input(tmp_path, leg):
+    text = (leg[0] / "log.csv").read_text(encoding="utf-8").replace(f"{HIP}.goal [rad]", f"{HIP}.torque [N*m]")
+    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    work = [JointLogs(HIP, leg[0] / "robot.xml", (tmp_path / "log.csv",))]
+    with pytest.raises(InputError, match="has efforts"):
+        with_gains(work, KP, None)
+
+
+def test_delays_of_joints_are_weighted_and_kept_apart_where_they_differ():
+    near = shared([Delay(0.010, 1e-10), Delay(0.01001, 4e-10)])
+    assert near.value == pytest.approx(0.010002)
+    assert near.variance == pytest.approx(0.8e-10)
+    assert shared([Delay(0.010, 1e-10), Delay(0.012, 1e-10)]) is None
+    assert shared([]) is None

@@ -1,0 +1,77 @@
+"""The balance of a joint with known gains against motions of closed form, and how a joint breaks loose."""
+
+import numpy as np
+import pytest
+
+from bench.errors import UndeterminedError
+from bench.rig.rig import Rig
+from bench.servos.breakaway import _impulse, static_friction
+from bench.servos.commanded import Gains, balance
+from bench.trace.trace import Trace, with_known
+
+KP, KD, RATE = 30.0, 0.5, 500.0
+J, VISCOUS, COULOMB, BIAS, DELAY = 0.02, 0.1, 0.2, 0.03, 0.0071
+RIG = Rig.of({"name": "joint", "kind": "rotary"}, "test")
+#: Size - rad -, frequency - Hz - and phase - rad - of the waves of the motion.
+WAVES = ((0.5, 0.4, 0.0), (0.2, 1.1, 1.0), (0.08, 2.3, 2.0))
+
+
+def motion(time):
+    """Position of the waves with its first two derivatives (3, n)."""
+    turns = [(size, 2.0 * np.pi * rate, 2.0 * np.pi * rate * time + phase) for size, rate, phase in WAVES]
+    return np.array(
+        [
+            sum(size * np.sin(angle) for size, _, angle in turns),
+            sum(size * rate * np.cos(angle) for size, rate, angle in turns),
+            sum(-size * rate**2 * np.sin(angle) for size, rate, angle in turns),
+        ]
+    )
+
+
+def log(noise, seconds=20.0):
+    """A log whose goal makes a joint without links move by the waves."""
+    time = np.arange(round(seconds * RATE)) / RATE
+    q, w, alpha = motion(time + DELAY + 0.5 / RATE)  # a held goal acts half a period later
+    torque = J * alpha + (VISCOUS + KD) * w + COULOMB * np.sign(w)
+    goal = torque / KP + q - BIAS
+    measured = motion(time)[0] + noise * np.random.default_rng(3).standard_normal(time.size)
+    units = {"time": "s", "position": "rad", "position_reference": "rad"}
+    trace = Trace.from_arrays({"time": time, "position": measured, "position_reference": goal}, units)
+    zero = np.zeros(time.size)
+    return with_known(trace, zero, zero, "N*m")
+
+
+@pytest.mark.parametrize(("noise", "share"), [(1e-6, 2e-3), (2e-4, 1e-2)])
+def test_a_motion_of_closed_form_gives_the_parameters_back(noise, share):
+    found = balance(log(noise), RIG, Gains(KP, KD)).found.parameters(0.005)
+    truth = {
+        "moment_of_inertia": J,
+        "armature": J - 0.005,
+        "viscous_friction_coefficient": VISCOUS,
+        "coulomb_friction_torque": COULOMB,
+        "joint_bias": BIAS,
+    }
+    for name, value in truth.items():
+        assert found[name].value == pytest.approx(value, rel=share), name
+    assert found["dead_time"].value == pytest.approx(DELAY, abs=5e-5)
+
+
+def test_intervals_grow_with_the_noise():
+    few, many = (balance(log(noise), RIG, Gains(KP, KD)).found.errors for noise in (5e-5, 5e-4))
+    assert np.all(many > 3.0 * few)
+
+
+def test_a_joint_that_never_rests_shows_no_static_friction():
+    with pytest.raises(UndeterminedError, match="breaks loose 0 times"):
+        static_friction(balance(log(1e-4), RIG, Gains(KP, KD)))
+
+
+@pytest.mark.parametrize("damping", [0.2, 2.0 * np.sqrt(0.05 * 8.0), 5.0])
+def test_the_impulse_response_solves_its_equation(damping):
+    time = np.linspace(0.0, 0.5, 20001)
+    x = _impulse(0.05, damping, 8.0, time)
+    speed = np.gradient(x, time, edge_order=2)
+    assert x[0] == 0.0
+    assert speed[0] == pytest.approx(1.0 / 0.05, rel=1e-3)
+    rest = 0.05 * np.gradient(speed, time) + damping * speed + 8.0 * x
+    assert np.abs(rest[2:-2]).max() < 1e-3
