@@ -41,7 +41,7 @@ from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, 
 from bench.fit.fit import by_hint
 from bench.fit.hum import mains
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
-from bench.fit.motor import motor_constants
+from bench.fit.motor import motor_constants, with_inertia
 from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
     NOISE_ALONE,
@@ -104,7 +104,7 @@ def identify(
         found = _estimated_together(gathered, rig)
     first = join_traces([one.first for one in gathered])
     found = replace(found, motor=motor_constants(first, rig, found, _only), command=command_delay(first, rig.axis_kind))
-    found = _with_coupling(found, first, rig)
+    found = _with_coupling(with_inertia(found, first, rig), first, rig)
     return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
 
 

@@ -14,7 +14,7 @@ for s = 0, and I, w, dU/dt for L = 0. R and kA are between the two, and their in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -23,13 +23,13 @@ from bench.arrays import NORMAL95, Array, rms, splined
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.estimate import Estimate, MotorConstants
-from bench.fit.solution import INDEPENDENT_SHARE, block_edges, equations, estimated, misfit
+from bench.fit.regression import STEPS, filtered, regressed
+from bench.fit.sampled import sampled
 from bench.gate.check import Seen
 from bench.gate.velocity import compared
 from bench.names import words
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.trace.filter import GaussianFilter
 from bench.trace.motion import ONE_SIGN, condition, known_sign, raw_speed
 from bench.trace.noise import white_noise
 from bench.trace.signals import KNOWN_TORQUE
@@ -43,16 +43,15 @@ DETERMINED = 0.5
 #: Values by which a rig makes torque of a voltage or a current.
 SCALES = ("torque_constant", "force_constant", "torque_per_volt", "force_per_volt", "resistance", "back_emf_constant")
 SCALES += ("continuous_stall_torque", "continuous_stall_current", "peak_torque", "peak_current")
+#: Samples to a time constant from which on filtered derivatives are as good as samples: half a hold is 1/40 of it.
+#: And from which on those are right to half a hold.
+FEW, ENOUGH = 20.0, 5.0
 #: Samples by which the motion must be late for a voltage to be held between samples.
 HELD = 0.25
 #: Longest L/R of a winding whose rig does not give it - s: small motors have 0.1 to 2 ms.
 LONGEST = 5e-3
 #: Inertia and friction of the effort that a signal of a recording is.
 By = Callable[[str, Trace], Estimate]
-#: Rows for each coefficient, and what to record for them.
-LEAST = 20
-STEPS = "steps in both directions, from standstill to full speed"
-ALIKE = "current and motion change in the same way"
 
 
 def motor_constants(
@@ -88,6 +87,14 @@ def motor_constants(
             refused[name] = f"{error.reason}; record instead: {error.record}"
         except InputError as error:
             refused[name] = str(error)
+    if "kA" in known and _samples_of(known, trace) < FEW:
+        try:
+            known |= _by_samples(trace, rig, known)
+        except UndeterminedError as error:
+            known |= {"kA": known["kA"].reaching(known["kA"].value - 0.5 * trace.sample_period * known["kV"].value)}
+            if _samples_of(known, trace) < ENOUGH:
+                del known["kA"]
+                refused["kA"] = f"{error.reason}; record instead: {error.record}"
     if constant in refused and BACK_EMF in known:
         ideal = f"{known[BACK_EMF].value:.4g} {rig.axis_kind.effort_unit}/A"
         refused[constant] += f"; in a motor without losses it is {ideal}, as the back-EMF constant"
@@ -111,6 +118,63 @@ def _feedforward(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:
         low, high = _electrical(total, trace.sample_period, rig)
         known["kA"] = _between(known["kA"], low * known["kV"].value, high * known["kV"].value)
     return known
+
+
+def _by_samples(trace: Trace, rig: Rig, known: Mapping[str, Parameter]) -> dict[str, Parameter]:
+    """kS, kV, kA - and kG - in place of those that derivatives gave."""
+    found = sampled(trace, rig, "kG" in known)
+    by = {name: replace(one, unit=known[name].unit) for name, one in found.feedforward.items()}
+    low, high = _electrical(found.delay, trace.sample_period, rig)
+    return by | {"kA": _between(by["kA"], low * by["kV"].value, high * by["kV"].value)}
+
+
+def _samples_of(known: Mapping[str, Parameter], trace: Trace) -> float:
+    """Samples of a recording in the time constant of its motor."""
+    return known["kA"].value / known["kV"].value / trace.sample_period
+
+
+def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
+    """The estimate of a recording with a voltage, its inertia that of kA where few samples make a time constant.
+
+    A current that is read once in each hold of a voltage is not the mean of its hold. Where one is recorded, that may
+    be so or not: the interval covers both. Where samples do not show kA, it covers a voltage that is held or is not.
+    """
+    motor, name = found.motor, rig.axis_kind.inertia
+    known, per_volt = {} if motor is None else motor.parameters, _per_volt(trace, rig, found)
+    if motor is None or per_volt is None or name not in found or "kV" not in known:
+        return found
+    old, period, voltage = found[name], trace.sample_period, "the voltage, if it is held between samples,"
+    if "kA" in motor.refused and "current" not in trace:
+        least = old.value - 0.5 * period * known["kV"].value * per_volt
+        new, text = old.reaching(least), f"{voltage} gives {least:.3g} {old.unit}; record at a higher rate"
+    elif "current" in trace:
+        # by the voltage of few samples, or as the shift would be of the part that is not induced alone
+        shift = min(found[rig.axis_kind.parameter(MISALIGNMENT)].ci95[0], 0.0)
+        shift -= 0.5 * period * ("kA" in motor.refused)
+        few = "kA" in known and _samples_of(known, trace) < FEW
+        by = known["kA"].value * per_volt if few else old.value + shift * known[BACK_EMF].value * per_volt
+        if old.ci95[0] <= by <= old.ci95[1]:
+            return found
+        new, text = old.reaching(by), f"{voltage} gives {by:.3g} {old.unit}; record at a higher rate"
+    elif "kA" in known and _samples_of(known, trace) < FEW:
+        new, often = replace(known["kA"].times(per_volt), unit=old.unit), _samples_of(known, trace)
+        text = f"it is from the voltage of one sample and the speed at the next, as {often:.2g} make a time constant"
+    else:
+        return found
+    warnings = (*found.warnings, f"{words(name)}: {text}")
+    return replace(found, parameters={**found.parameters, name: new}, warnings=warnings)
+
+
+def _per_volt(trace: Trace, rig: Rig, found: Estimate) -> float | None:
+    """Effort of one volt, in the unit of the estimate; None where it does not follow a voltage."""
+    motor, constant = rig.motor, rig.motor.torque_per_ampere
+    if rig.axis_kind.effort in trace or found.motor is None:
+        return None
+    if "current" in trace:
+        winding = found.motor.parameters.get(RESISTANCE)
+        return None if winding is None else (constant.constant if constant else 1.0) / winding.value
+    gain = motor.force_per_volt or motor.torque_per_volt
+    return gain or (constant.constant / motor.resistance if constant and motor.resistance else 1.0)
 
 
 def _held(trace: Trace, rig: Rig) -> Array:
@@ -234,47 +298,3 @@ def _require_motor(known: Mapping[str, Parameter]) -> None:
             raise UndeterminedError(words(name), reason, "current and voltage of the motor, positive where it drives")
         if found.half_width > DETERMINED * found.value:
             raise UndeterminedError(words(name), f"{words(name)} would be {found}", STEPS)
-
-
-def filtered(
-    trace: Trace, smooth: GaussianFilter, signals: Sequence[Array], orders: Sequence[int]
-) -> tuple[Array, Array]:
-    """Times (m,) and filtered derivatives of these orders of signals (n,) each - (p, m)."""
-    times, tables = [], []
-    for part in trace.segments:
-        if part.stop - part.start > 2 * smooth.margin:
-            of = [[(values[part], order)] for values, order in zip(signals, orders, strict=True)]
-            tables.append(smooth.columns(of))
-            times.append(trace.time[part][smooth.margin : part.stop - part.start - smooth.margin : smooth.stride])
-    return np.concatenate(times), np.concatenate(tables, axis=1)
-
-
-def regressed(
-    time: Array, table: Array, noise: Sequence[float] | Array, own: float, smooth: GaussianFilter, alike: str = ALIKE
-) -> list[Parameter]:
-    """Coefficients of columns, the last of a table (p + 1, m) by the others, with intervals, without unit.
-
-    Args:
-        time: of the rows (m,).
-        noise: variance of the noise in each column (p,), or its covariance (p, p).
-        own: of the raw signal that they explain.
-        smooth: the filter of all.
-        alike: what it means that the others explain the first or the second column.
-
-    Raises:
-        UndeterminedError: they do, or there are too few rows.
-    """
-    names = tuple(range(len(table) - 1))
-    noise = np.diag(noise) if np.ndim(noise) == 1 else np.asarray(noise)
-    fitted = equations(names, table, noise, block_edges(time, smooth.width))
-    if time.size < LEAST * len(names) or min(fitted.independent_shares(names)[:2]) < INDEPENDENT_SHARE:
-        raise UndeterminedError("a coefficient", alike, STEPS)
-    theta, inverse = fitted.solved()
-    covariance, reach = estimated(fitted.scores(theta), inverse, own**2 / smooth.stride)
-    floor = float(np.sqrt((own * smooth.noise_gain(0)) ** 2 + theta @ noise @ theta))
-    beyond = misfit(table[:-1].T, table[-1] - theta @ table[:-1], floor)
-    errors = np.sqrt(np.diag(covariance))
-    return [
-        Parameter(value, "", error, (value - reach * error, value + reach * error)).widened(wide)
-        for value, error, wide in zip(theta.tolist(), errors.tolist(), beyond.tolist(), strict=True)
-    ]

@@ -97,7 +97,7 @@ def _frozen(trace: Trace, name: str) -> int:
         gone = mean * lengths * trace.sample_period
         least = max(TRAVELLED * step, OF_ALL * float(np.ptp(values)))
         return int(lengths[moving & (gone > least)].sum()) if "velocity" in trace else 0
-    if white_noise(values) < NOISY * step or _noise_free(values):
+    if white_noise(values) < NOISY * step or _noise_free(values) or _in_steps(values):
         return 0
     off_or_rail = (values[starts] == 0.0) | (values[starts] == values.max()) | (values[starts] == values.min())
     return int(lengths[moving & ~off_or_rail].sum())
@@ -109,6 +109,12 @@ def _noise_free(values: Array) -> bool:
     changing = np.abs(steps[1:-1]) + np.abs(steps[:-2]) + np.abs(steps[2:]) > 0.0
     bend = np.abs(steps[2:] - 2.0 * steps[1:-1] + steps[:-2])[changing]
     return bend.size > 0 and float(np.median(bend)) < SMOOTH * float(np.median(np.abs(steps[1:-1][changing])))
+
+
+def _in_steps(values: Array) -> bool:
+    """Whether most changes stand alone, as those of a command; after one of noise that is a step another is 0.72."""
+    changed = np.diff(values) != 0.0
+    return bool(np.mean(changed[1:][changed[:-1]]) < 0.5)
 
 
 def _runs(standing: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

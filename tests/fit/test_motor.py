@@ -1,4 +1,4 @@
-"""Constants of motors from voltage, current and motion, stepped by explicit Euler, with inductance."""
+"""Constants of motors from voltage, current and motion, stepped by the midpoint rule, with inductance."""
 
 import json
 import math
@@ -26,13 +26,15 @@ def driven(voltage, resistance, emf, inertia, viscous, coulomb, inductance=0.0, 
         current = current if inductance else (volts - emf * speed) / resistance
         rows.append((k * voltage.period, position, speed, current, volts))
         for _ in range(inner):
-            if inductance:
-                current += step * (volts - resistance * current - emf * speed) / inductance
-            else:
-                current = (volts - emf * speed) / resistance
-            load = viscous * speed + coulomb * math.tanh(speed / 0.02) + weight * math.sin(position)
-            speed += step * (emf * current - load) / inertia
-            position += step * speed
+            begun = speed
+            for part in (0.5, 1.0):  # the midpoint rule
+                if inductance and part == 1.0:
+                    current += step * (volts - resistance * current - emf * speed) / inductance
+                elif not inductance:
+                    current = (volts - emf * speed) / resistance
+                load = viscous * speed + coulomb * math.tanh(speed / 0.02) + weight * math.sin(position)
+                speed = begun + part * step * (emf * current - load) / inertia
+            position += 0.5 * step * (begun + speed)
     return dict(zip(("time", "position", "velocity", "current", "voltage"), np.array(rows).T, strict=True))
 
 
