@@ -39,7 +39,7 @@ WIDE = 0.5
 
 
 @dataclass(frozen=True)
-class Sampled:
+class BySamples:
     """Constants of a motor by its samples.
 
     Attributes:
@@ -51,7 +51,7 @@ class Sampled:
     delay: float
 
 
-def sampled(trace: Trace, rig: Rig, load: bool) -> Sampled:
+def sampled(trace: Trace, rig: Rig, load: bool) -> BySamples:
     """Of a recording with a voltage; `load`: whether a constant one is fitted.
 
     Raises:
@@ -68,7 +68,7 @@ def sampled(trace: Trace, rig: Rig, load: bool) -> Sampled:
     feedforward = {**dict(zip(names, fitted[1:], strict=False)), "kA": acceleration}
     besides = sum(one.value * by for one, by in zip(fitted[1 + len(names) :], BESIDES[at.source], strict=True))
     delay = (_held(at.source, acceleration.value / fitted[1].value / period) + late - besides) * period
-    return Sampled(feedforward, delay)
+    return BySamples(feedforward, delay)
 
 
 def _fitted(time: Array, table: Array, noise: Array, loudest: float, smooth: GaussianFilter) -> list[Parameter]:
