@@ -191,6 +191,7 @@ def robot(
     stand: Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")] = False,
     kp: Annotated[list[str] | None, Option(help="Gain of position controllers: 40, or NAME=40. Repeatable.")] = None,
     kd: Annotated[list[str] | None, Option(help="Their damping: 1, or NAME=1. Repeatable.")] = None,
+    compare: Annotated[bool, Option("--compare", help="Compare friction models M1 to M6 by held-out torque.")] = False,
     grade: Annotated[bool, Option("--grade", help="Compare the MJCF's own values with the logs.")] = False,
     json: common.JsonOption = None,
 ) -> None:
@@ -209,10 +210,10 @@ def robot(
     gains = _gains(kp or (), units, "--kp", ""), _gains(kd or (), units, "--kd", "*s")
     with progress(f"identifying the joints of {mjcf[0].name}") as done:
         found = bench.robot(
-            logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done, stand, *gains
+            logs, mjcf, holdout, known, joint or (), stated, excluded, _carried(payload), done, stand, *gains, compare
         )
     options = {"joint": joint or [], "payload": payload, "at": at or [], "without": sorted(excluded), "stand": stand}
-    options |= {"kp": kp or [], "kd": kd or []}
+    options |= {"kp": kp or [], "kd": kd or []} | ({"compare": True} if compare else {})
     basis = provenance(rig, logs, options, holdout, mjcf)
     folder = out if found.answered else None
     compared = found.grade if grade else None

@@ -20,6 +20,7 @@ from bench.gate.check import Check
 from bench.gate.gate import passed, warnings_of
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
+from bench.joints.friction_models import FrictionModel, friction_models
 from bench.joints.weight import constant_of, counted_differently, needs_constant, with_constant
 from bench.names import words
 from bench.parameter import Parameter
@@ -52,6 +53,7 @@ class JointLogs:
     Attributes:
         joint: its name in the MJCF.
         mjcf, logs, holdout: files.
+        compare: whether friction models are compared.
         mjcfs: of the logs in which the robot had another payload, by their files.
         rig: of the joints; None where nothing is known of them.
         stated: positions of joints that stand and that the logs do not hold - rad (m).
@@ -74,6 +76,7 @@ class JointLogs:
     mjcfs: Mapping[Path, Path] = field(default_factory=dict)
     goals: bool = False
     gains: Gains | None = None
+    compare: bool = False
 
     def robot(self) -> Robot:
         """The robot around the joint; InputError as `Robot.of`."""
@@ -121,6 +124,7 @@ class IdentifiedJoint:
         failed: what is wrong with the input, if that is why nothing is determined.
         motion: of a diagnosis with a model that moves.
         payloads: whether the links' inertia differs from log to log.
+        friction_models: compared, where that was asked for and a known load moves.
         constant: torque (force) constant by the weight of the links, of logs that hold a current and no rig that states
             it.
         goals: what they show, where the torque followed from goals.
@@ -138,6 +142,7 @@ class IdentifiedJoint:
     payloads: bool = False
     constant: Parameter | None = None
     goals: Goals | None = None
+    friction_models: tuple[FrictionModel, ...] = ()
 
     @property
     def parameters(self) -> dict[str, Parameter]:
@@ -238,9 +243,15 @@ def diagnosed(asked: JointLogs, rig: Rig, logs: Read, holdout: Callable[[], Read
     except BenchError as error:
         return IdentifiedJoint(asked.joint, rig, failed=str(error), left_out=left_out)
     differ = [] if len(used) == 1 else counted_differently({log: trace for log, (trace, _) in used.items()}, rig)
-    found = replace(found, warnings=[*found.warnings, *_frictionless(asked.joint, found, rig), *differ])
     refused = {**found.refused, **_any_friction(found, rig.axis_kind), **_behind(rig)}
     motion = joint_motion(found, traces[0], rig, poses)
+    warnings, models = [*found.warnings, *_frictionless(asked.joint, found, rig), *differ], ()
+    if asked.compare:
+        try:
+            models = friction_models(traces, rig)
+        except UndeterminedError as error:
+            warnings.append(str(error))
+    found = replace(found, warnings=warnings)
     inertia = asked.robot().inertia
     payloads = any(replace(asked.robot_of(log), datum=None).inertia != inertia for log in used)
     return IdentifiedJoint(
@@ -251,6 +262,7 @@ def diagnosed(asked: JointLogs, rig: Rig, logs: Read, holdout: Callable[[], Read
         left_out=left_out,
         motion=motion,
         payloads=payloads,
+        friction_models=models,
     )
 
 

@@ -95,6 +95,7 @@ def robot(
     stand: bool = False,
     kp: GivenGain = None,
     kd: GivenGain = None,
+    compare: bool = False,
 ) -> IdentifiedRobot:
     """Identify and diagnose every joint of a robot, each within the rest of it; one that fails does not affect the
     others.
@@ -113,6 +114,7 @@ def robot(
         stand: whether a floating base is fixed where the MJCF has it.
         kp, kd: gains of position controllers at the joints, where the logs hold goals and no efforts - N*m/rad (N/m),
             N*m*s/rad (N*s/m) -: of all, or of each by its name; by default those of the MJCF's position actuators.
+        compare: whether friction models M1 to M6 of each joint are compared.
 
     Raises:
         InputError: no log, an MJCF that cannot be read, or a joint that it does not have.
@@ -125,7 +127,8 @@ def robot(
     first, others = _mjcfs(mjcf, [*paths, *([] if unseen is None else [unseen])])
     names = _required(first, joints)
     asked = [name for name in names if not joints or name in joints]
-    of_all = JointLogs("", first, tuple(paths), unseen, known, stated or {}, left_out, stand=stand, mjcfs=others)
+    known_of_all = unseen, known, stated or {}, left_out, (), stand, others
+    of_all = JointLogs("", first, tuple(paths), *known_of_all, compare=compare)
     work = with_gains([replace(of_all, joint=name) for name in asked], kp, kd)
     return _answered(of_all, work, payload, progress)
 

@@ -73,6 +73,10 @@ def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
             del content[name]
     elif joint.estimate is not None:
         content["explained"] = joint.estimate.explained
+    if joint.friction_models:
+        content["friction_models"] = [
+            {**picked(one, "error", "chosen", "parameters"), "model": one.name.lower()} for one in joint.friction_models
+        ]
     content |= picked(joint, "parameters", "refused", "checks", "warnings")
     return {**content, "record": joint.record or None, "failed": joint.failed or None, "left_out": joint.left_out}
 
@@ -188,6 +192,17 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     headings = ("joint", *headings, "what was missing, and how sure~")
     caption = "Values ± half of their intervals of 95 %, in SI, on the motor's side but the armature"
     tables = [doc.table(caption, headings, zip(found.joints, *cells, missing, strict=True))]
+    compared = {name: joint.friction_models for name, joint in found.joints.items() if joint.friction_models}
+    if compared:
+        heads = ("joint", *(f"{model.name}>" for model in next(iter(compared.values()))), "model~")
+        rows = [
+            (name, *(number(one.error, digits=3) for one in models), next(one.name for one in models if one.chosen))
+            for name, models in compared.items()
+        ]
+        caption = (
+            "RMS error of torque that was not fitted / N·m (N), by friction model; the simplest as good as the best"
+        )
+        tables.append(doc.table(caption, heads, rows))
     constants = [(name, interval(joint.constant)) for name, joint in found.joints.items() if joint.constant is not None]
     if constants:
         caption = "Torque constants by the weight of the links; negative where the log counts the current the other way"

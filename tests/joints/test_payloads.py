@@ -4,12 +4,15 @@ The torque is written out, J*a + m*l**2*a + B*w + C*sgn(w) + m*g*l*sin(q); nothi
 """
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import bench
 from bench.errors import InputError
+from bench.joints.friction_models import friction_models
+from bench.plant.robot import Robot, joint_rig, read_log
 from tests.command import bench as command
 
 ARMATURE, VISCOUS, COULOMB = 0.012, 0.05, 0.15
@@ -19,7 +22,18 @@ MJCF = """<mujoco><option gravity="0 0 -9.81"/><worldbody><body><joint name="j" 
 <inertial pos="0 0 -{length}" mass="{mass}" diaginertia="1e-9 1e-9 1e-9"/></body></worldbody></mujoco>"""
 
 
-def swung(folder, names, effort="torque [N*m]", per_torque=1.0, seed=0, stated=None, axis="0 1 0"):
+def coulomb(free, load, sign):
+    """Torque of the motor (n,) with Coulomb friction, by that without."""
+    return free + COULOMB * sign
+
+
+def directional(free, load, sign):
+    """The same with BAM's M5, M = free + sign*(K_0 + |K_m*M + K_e*load|), which is linear on each side of the bars."""
+    of = [(free + sign * (0.02 + side * 0.05 * load)) / (1.0 - sign * side * 0.25) for side in (1.0, -1.0)]
+    return np.where(0.25 * of[0] + 0.05 * load >= 0.0, *of)
+
+
+def swung(folder, names, effort="torque [N*m]", per_torque=1.0, seed=0, stated=None, axis="0 1 0", friction=coulomb):
     """Logs of some pendulums, and an MJCF of each, with the masses that are `stated`."""
     rng, time = np.random.default_rng(seed), 2e-3 * np.arange(6000)
     for name in names:
@@ -28,8 +42,8 @@ def swung(folder, names, effort="torque [N*m]", per_torque=1.0, seed=0, stated=N
         angle = omega * time + rng.uniform(0.0, 2.0 * np.pi, (3, 1))
         q, w = (size * np.sin(angle)).sum(0), (size * omega * np.cos(angle)).sum(0)
         a = -(size * omega**2 * np.sin(angle)).sum(0)
-        torque = (ARMATURE + mass * length**2) * a + VISCOUS * w + COULOMB * np.sign(w)
-        torque += mass * 9.81 * length * np.sin(q) * (axis == "0 1 0")
+        load = mass * 9.81 * length * np.sin(q) * (axis == "0 1 0")
+        torque = friction((ARMATURE + mass * length**2) * a + VISCOUS * w + load, load, np.sign(w))
         columns = {
             "time [s]": time,
             "j.position [rad]": q + 1e-4 * rng.standard_normal(time.size),
@@ -97,3 +111,21 @@ def test_an_mjcf_is_of_all_logs_or_of_one_each(tmp_path):
     logs, mjcfs = swung(tmp_path, "abc")
     with pytest.raises(InputError, match="--mjcf: found 2 MJCF files for 3 logs; allowed: one for all"):
         bench.robot(logs, mjcfs[:2])
+
+
+@pytest.mark.parametrize(("friction", "name"), [(coulomb, "M1"), (directional, "M5")])
+def test_the_friction_model_of_a_servo_is_the_simplest_that_predicts_its_torque(tmp_path, friction, name):
+    """M5 includes M1, and M6 both: none that is larger predicts better than the noise of the torque, 0.01 N*m."""
+    logs, mjcfs = swung(tmp_path, "abc", friction=friction)
+    first = Robot.of(mjcfs[0], "j")
+    rig = joint_rig(None, first)
+    robots = [first, *(replace(Robot.of(mjcf, "j"), datum=first.inertia) for mjcf in mjcfs[1:])]
+    models = friction_models([read_log(log, rig, robot, {}) for log, robot in zip(logs, robots, strict=True)], rig)
+    (chosen,) = [model for model in models if model.chosen]
+    assert chosen.name == name
+    assert chosen.error < 0.02  # noise of torque and acceleration
+    assert chosen.parameters["armature"] == pytest.approx(ARMATURE, rel=0.05)
+    if name == "M5":
+        assert chosen.error < 0.2 * models[0].error
+        factor = chosen.parameters["load_friction_motor"], chosen.parameters["load_friction_external"]
+        assert factor == pytest.approx((0.25, 0.05), abs=0.01)
