@@ -24,11 +24,12 @@ import numpy as np
 
 from bench.arrays import NORMAL95, Array, rms, splined
 from bench.axis_kind import MISALIGNMENT, AxisKind
+from bench.effects.catalogue import catalogue
 from bench.effects.effect import Lag, lagged
 from bench.effects.signals import Signals
 from bench.errors import UndeterminedError
 from bench.fit.fit import Fit, fit
-from bench.fit.hypothesis import Hypothesis
+from bench.fit.hypothesis import Hypothesis, Term
 from bench.fit.rows import Rows
 from bench.fit.solution import BLOCKS, block_edges, equations, estimated, solved
 from bench.parameter import Parameter
@@ -132,6 +133,32 @@ def dead_time(rows: Rows, hypothesis: Hypothesis, shift: float, search: bool = T
     return DeadTime(delay, lag, kind, period, bound)
 
 
+def with_delay(hypothesis: Hypothesis, late: DeadTime) -> tuple[Hypothesis, ...]:
+    """A hypothesis in which the torque is late as was found, and one with its lag at the end of the interval.
+
+    () where the motion does not show in what way it is late; a dead time, which the shift corrects, has one.
+    """
+    if late.kind == "dead_time":
+        return (replace(hypothesis, shift=-late.delay.value),)
+    signal = "torque" if late.delay.value > 0.0 else "current"
+    effects = (effect for effect in catalogue().values() if isinstance(effect, Lag) and effect.signal == signal)
+    lag, sizes = next(effects), (late.lag.value, late.lag.ci95[1])
+    return tuple(hypothesis.plus(Term(lag, (size,))) for size in sizes) if late.kind else ()
+
+
+def without_delay(hypothesis: Hypothesis) -> tuple[Hypothesis, float]:
+    """A hypothesis without shift and lag of the torque, and by how much these made it late - s, as `shift`."""
+    lags = [index for index in hypothesis.of_kind(Lag) if _side(hypothesis.terms[index])]
+    shift = hypothesis.shift + sum(_side(hypothesis.terms[index]) * hypothesis.terms[index].shape[0] for index in lags)
+    kept = (term for index, term in enumerate(hypothesis.terms) if index not in lags)
+    return replace(hypothesis, terms=(*kept,), shift=0.0), shift
+
+
+def _side(term: Term) -> float:
+    """Of a lag of the torque, on which side it is; 0 of any other term."""
+    return SIDES.get(term.effect.signal, 0.0) if isinstance(term.effect, Lag) else 0.0
+
+
 def _quiet(rows: Rows) -> Rows:
     """Rows through the narrowest filter at which the effort's second derivative is hardly noise."""
     found, cutoff = rows, rows.conditioning.filter.cutoff
@@ -184,14 +211,10 @@ def _straight_and_bent(late: Fit) -> Iterator[tuple[Array, Array]]:
 
 def dead_time_of(fitted: Fit) -> DeadTime | None:
     """Dead time of a fit whose torque is shifted, or in the place of its lag, if that is longer than a sample."""
-    hypothesis, period = fitted.hypothesis, fitted.scope.sample_period
-    if hypothesis.shift:
-        return dead_time(fitted.rows, replace(hypothesis, shift=0.0), fitted.shift, search=False)
-    for index in hypothesis.of_kind(Lag):
-        (lag, *_), effect = hypothesis.terms[index].shape, hypothesis.terms[index].effect
-        if isinstance(effect, Lag) and effect.signal in SIDES and lag > period:
-            return dead_time(fitted.rows, hypothesis.without(index), SIDES[effect.signal] * lag)
-    return None
+    (bare, shift), shifted = without_delay(fitted.hypothesis), bool(fitted.hypothesis.shift)
+    if not shifted and abs(shift) <= fitted.scope.sample_period:
+        return None
+    return dead_time(fitted.rows, bare, fitted.shift if shifted else shift, search=False)
 
 
 def _bent(signals: Signals) -> list[Column]:

@@ -34,7 +34,7 @@ from bench.comparison.spread import ALARM, Between, Excess, between, excess, spr
 from bench.effects.present import parse_value
 from bench.errors import InputError, UndeterminedError
 from bench.fit.cutoffs import TELLS, TERMS, Moves, for_inertia
-from bench.fit.dead_time import DeadTime, command_delay, dead_time
+from bench.fit.dead_time import DeadTime, command_delay, dead_time, with_delay, without_delay
 from bench.fit.dependence import Dependence, dependence
 from bench.fit.determined import remainder, require_inertia, sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
@@ -210,10 +210,8 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
 
 def _late(found: Solution) -> DeadTime | None:
     """By how much the torque of a solution is later than its motion, if that is more than a sample."""
-    shift = found.hypothesis.shift
-    if shift or found.delayed:
-        return dead_time(found.rows, replace(found.hypothesis, shift=0.0), shift + found.shift[0])
-    return None
+    bare, shift = without_delay(found.hypothesis)
+    return dead_time(found.rows, bare, shift + found.shift[0]) if shift or found.delayed else None
 
 
 def _first_moving(parts: Iterator[Trace], rig: Rig, cutoff: float | None) -> tuple[Gated, Solution, Moves, list[Gated]]:
@@ -282,15 +280,23 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Move
     hum = mains(rows, highest.residual)
     if hum:
         highest = solution_of(rows, replace(highest.hypothesis, hum=hum), rig.offset)
+    other = None
     if highest.delayed:
         late = dead_time(rows, highest.hypothesis, highest.shift[0])
-        if late.kind == "dead_time":
-            highest = solution_of(rows, replace(highest.hypothesis, shift=-late.delay.value), rig.offset)
+        delayed, *further = with_delay(highest.hypothesis, late) or (highest.hypothesis,)
+        highest, other = solution_of(rows, delayed, rig.offset), next(iter(further), None)
     if cutoff is None:
-        return for_inertia(highest, rig)
-    used, rate = rows.conditioning.filter.cutoff, 1.0 / rows.scope.sample_period
-    lower = f"the filter's cut-off is {used:.4g} Hz instead of {cutoff:.4g} Hz: {rate:.4g} Hz of sampling allow no more"
-    return highest, (np.zeros(3), (lower,) * (used < cutoff * (1.0 - 1e-9)))
+        found, (doubt, warnings) = for_inertia(highest, rig)
+    else:
+        used, rate = rows.conditioning.filter.cutoff, 1.0 / rows.scope.sample_period
+        lower = (
+            f"the filter's cut-off is {used:.4g} Hz instead of {cutoff:.4g} Hz: {rate:.4g} Hz of sampling allow no more"
+        )
+        found, doubt, warnings = highest, np.zeros(3), (lower,) * (used < cutoff * (1.0 - 1e-9))
+    if other is not None:  # what a lag may be moves all others
+        moved = solution_of(found.rows, other, OFFSET in found.names).theta - found.theta
+        doubt = np.hypot(doubt, moved[: len(TERMS)])
+    return found, (doubt, warnings)
 
 
 def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
@@ -301,7 +307,7 @@ def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
         margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
         parameter = _parameter_of(found, term, kind, unit)
         if term == MISALIGNMENT:
-            parameter = parameter.at(parameter.value + found.hypothesis.shift, positive=False)
+            parameter = parameter.at(parameter.value + without_delay(found.hypothesis)[1], positive=False)
         parameter = parameter.widened(found.of(term, found.misfit), *margins)
         depends = gathered.depends
         for moved in (gathered.hinted, {} if depends is None else depends.moved):

@@ -64,7 +64,10 @@ def found(name, unknown, seeds):
     fits = [
         fit(Rows.of(recorded(s, unknown, factor), RIG), Hypothesis((Term(catalogue()[name], shape),))) for s in seeds
     ]
-    return np.mean([[*vars(each.base).values(), each.strengths(0)[0], each.rms] for each in fits], axis=0)
+    return np.mean(
+        [[each.base.inertia, each.base.viscous, each.base.coulomb, each.strengths(0)[0], each.rms] for each in fits],
+        axis=0,
+    )
 
 
 @pytest.mark.parametrize("name", COPIES)
