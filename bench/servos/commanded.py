@@ -24,9 +24,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 from numpy.typing import NDArray
 
-from bench.arrays import Array
+from bench.arrays import NORMAL95, Array
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.effects.signals import Signals
 from bench.errors import InputError, UndeterminedError
@@ -45,8 +46,8 @@ from bench.trace.trace import Trace, with_known
 TERMS = INERTIA, VISCOUS, COULOMB, MISALIGNMENT, OFFSET
 #: Filters that are tried: widths in shortest ones.
 WIDTHS = tuple(1.4**k for k in range(8))
-#: Growth of the errors over the least ones at which no wider filter is tried.
-WORSE = 1.5
+#: Growth of the product of three errors over the least at which no wider filter is tried.
+WORSE = 10.0
 #: Delays that a search begins at - s -, steps of it at most, and the step at which it has converged - s.
 DELAYS, STEPS, CONVERGED = np.arange(0.0, 0.061, 0.01), 12, 1e-6
 #: Variance of a median over that of a mean, by which the noise's level is read.
@@ -349,7 +350,7 @@ def shared(found: Sequence[Delay]) -> Delay | None:
     """The dead time of joints of one robot by that of each; None where these differ by far more than their errors.
 
     The mean weighted by their variances; where they differ by more, its variance is as much larger (R. T. Birge,
-    Physical Review 40, 1932, 207-227).
+    Physical Review 40, 1932, 207-227), and so that a normal interval is as wide as Student's of as many joints.
     """
     if not found:
         return None
@@ -361,4 +362,5 @@ def shared(found: Sequence[Delay]) -> Delay | None:
         scale = max(1.0, float(weights @ (delays - value) ** 2) / (len(found) - 1))
     if scale > NOT_ONE**2:
         return None
-    return Delay(value, scale / float(weights.sum()))
+    student = float(scipy.special.stdtrit(len(found) - 1, 0.975)) / NORMAL95 if scale > 1.0 else 1.0
+    return Delay(value, scale * student**2 / float(weights.sum()))
