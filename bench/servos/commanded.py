@@ -216,8 +216,10 @@ def balance(trace: Trace, rig: Rig, gains: Gains) -> JointBalance:
     if best is None:
         reason = f"the controller is nearly always at its limit of {gains.limit:.3g} {trace.axis_kind.effort_unit}"
         raise UndeterminedError("the joint's inertia", reason, "smaller and slower goals, which the joint follows")
-    if _explained(best) < EXPLAINS:
-        reason = f"goal, position and gains explain {_explained(best):.0%} of the torque only: "
+    whole = replace(best, rows=first)  # a wide filter may keep only the slow parts, in which no limit is reached
+    explained = _explained(whole if math.isinf(gains.limit) else replace(whole, rows=_within_limit(whole)))
+    if explained < EXPLAINS:
+        reason = f"goal, position and gains explain {max(explained, 0.0):.0%} of the torque only: "
         reason += "the controller has other gains or is at a force limit"
         raise UndeterminedError("the joint's inertia", reason, "smaller and slower goals, which the joint follows")
     if not best.found.reach * best.found.errors[0] < DETERMINED * best.found.theta[0]:
@@ -307,10 +309,11 @@ def _step(rows: Rows, gains: Gains, more: Array, delay: float) -> tuple[Array, f
 
 
 def _explained(one: JointBalance) -> float:
-    """Share of the squares of the controller's torque, less the links', that the balance explains."""
+    """Share of the squares of the controller's torque, less the links' and the noise, that the balance explains."""
     known, _ = _equations(one.rows, one.found.gains, one.trace[KNOWN_INERTIA], one.found.delay.value)
     theta = np.where(np.arange(len(TERMS)) == TERMS.index(MISALIGNMENT), 0.0, one.found.theta)
-    return 1.0 - known.residual_power(theta) / float(known.power.sum())
+    noise = known.count * float(theta @ known.noise @ theta)
+    return 1.0 - (known.residual_power(theta) - noise) / float(known.power.sum())
 
 
 def wrong_scale(one: JointBalance) -> str:
