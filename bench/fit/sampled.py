@@ -130,7 +130,7 @@ def _acceleration(change: Parameter, speed: Parameter, period: float) -> Paramet
 
 
 def _too_slow(period: float) -> str:
-    return f"samples that are {1e3 * period:.3g} ms apart do not show how fast the motor follows its voltage"
+    return f"samples every {1e3 * period:.3g} ms do not show how fast the motor follows its voltage"
 
 
 def _of_hold(change: float, speed: float, period: float) -> float:

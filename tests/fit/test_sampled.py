@@ -79,7 +79,7 @@ def test_samples_too_far_apart_leave_the_other_constants():
     given = noisy({name: columns[name] for name in ("time", "voltage", "velocity")})
     found = bench.identify(given, RIG)
     assert {*found.motor.parameters} == {"kS", "kV"}
-    assert "20 ms apart" in found.motor.refused["kA"] and "at a higher rate" in found.motor.refused["kA"]
+    assert "every 20 ms" in found.motor.refused["kA"] and "at a higher rate" in found.motor.refused["kA"]
     low, high = found.inertia.ci95
     assert low <= inertia <= high
 
