@@ -32,6 +32,7 @@ from bench.errors import InputError
 from bench.fit.dead_time import DeadTime, dead_time_of
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit, fit
+from bench.fit.identify import require_diagnosable
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.gate.check import Check
@@ -247,6 +248,8 @@ def diagnose(
     left_out = frozenset(named(one, "excluded").name for one in ([excluded] if isinstance(excluded, str) else excluded))
     gated = [passed(each, rig) for each in traces]
     unseen = passed(trace_of(holdout, rig, units), rig).trace if holdout is not None else None
+    for each in gated:
+        require_diagnosable(each.trace, rig)
     recordings = Recordings.of([each.trace for each in gated], rig, unseen, policy)
     recordings, bare, suspects = decided(recordings, left_out, policy)
     recordings, moves = recordings.steady(suspects.fitted)

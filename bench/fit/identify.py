@@ -41,7 +41,7 @@ from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, 
 from bench.fit.fit import by_hint
 from bench.fit.hum import mains
 from bench.fit.hypothesis import BASE, Name, lay_out, plain
-from bench.fit.motor import motor_constants, with_inertia
+from bench.fit.motor import motor_constants, require_often, with_inertia
 from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
     NOISE_ALONE,
@@ -106,6 +106,17 @@ def identify(
     found = replace(found, motor=motor_constants(first, rig, found, _only), command=command_delay(first, rig.axis_kind))
     found = _with_coupling(with_inertia(found, first, rig), first, rig)
     return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
+
+
+def require_diagnosable(trace: Trace, rig: Rig) -> None:
+    """UndeterminedError where a recording with a voltage has too few samples to the motor's time constant."""
+    if "voltage" not in trace or rig.axis_kind.effort in trace:
+        return
+    try:
+        found = identify(trace, rig)
+    except UndeterminedError:  # which a diagnosis judges with effects
+        return
+    require_often(trace, rig, found)
 
 
 def _with_coupling(found: Estimate, first: Trace, rig: Rig) -> Estimate:

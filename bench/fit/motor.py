@@ -48,6 +48,8 @@ SCALES += ("continuous_stall_torque", "continuous_stall_current", "peak_torque",
 FEW, ENOUGH = 20.0, 5.0
 #: Samples by which the motion must be late for a voltage to be held between samples.
 HELD = 0.25
+#: Of what an inertia by a held voltage is said.
+IF_HELD = "the voltage, if it is held between samples,"
 #: Longest L/R of a winding whose rig does not give it - s: small motors have 0.1 to 2 ms.
 LONGEST = 5e-3
 #: Inertia and friction of the effort that a signal of a recording is.
@@ -143,10 +145,10 @@ def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
     known, per_volt = {} if motor is None else motor.parameters, _per_volt(trace, rig, found)
     if motor is None or per_volt is None or name not in found or "kV" not in known:
         return found
-    old, period, voltage = found[name], trace.sample_period, "the voltage, if it is held between samples,"
+    old, period = found[name], trace.sample_period
     if "kA" in motor.refused and "current" not in trace:
         least = old.value - 0.5 * period * known["kV"].value * per_volt
-        new, text = old.reaching(least), f"{voltage} gives {least:.3g} {old.unit}; record at a higher rate"
+        new, text = old.reaching(least), f"{IF_HELD} gives {least:.3g} {old.unit}; record at a higher rate"
     elif "current" in trace:
         # by the voltage of few samples, or as the shift would be of the part that is not induced alone
         shift = min(found[rig.axis_kind.parameter(MISALIGNMENT)].ci95[0], 0.0)
@@ -155,7 +157,7 @@ def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
         by = known["kA"].value * per_volt if few else old.value + shift * known[BACK_EMF].value * per_volt
         if old.ci95[0] <= by <= old.ci95[1]:
             return found
-        new, text = old.reaching(by), f"{voltage} gives {by:.3g} {old.unit}; record at a higher rate"
+        new, text = old.reaching(by), f"{IF_HELD} gives {by:.3g} {old.unit}; record at a higher rate"
     elif "kA" in known and _samples_of(known, trace) < FEW:
         new, often = replace(known["kA"].times(per_volt), unit=old.unit), _samples_of(known, trace)
         text = f"it is from the voltage of one sample and the speed at the next, as {often:.2g} make a time constant"
@@ -163,6 +165,25 @@ def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
         return found
     warnings = (*found.warnings, f"{words(name)}: {text}")
     return replace(found, parameters={**found.parameters, name: new}, warnings=warnings)
+
+
+def require_often(trace: Trace, rig: Rig, found: Estimate) -> None:
+    """UndeterminedError where few samples make a time constant of the motor, by the estimate of its recording.
+
+    What a held voltage does between them would pass for an effect. Where the voltage itself is the effort, its shift is
+    fitted, and only the square of that remains.
+    """
+    motor, by_current = found.motor, "current" in trace
+    if motor is None or _per_volt(trace, rig, found) is None or not (by_current or "kA" in motor.refused):
+        return
+    often = _samples_of(motor.parameters, trace) if "kA" in motor.parameters else 0.0
+    if often >= FEW or not any(IF_HELD in line for line in found.warnings):
+        return
+    faster = f", at {FEW / often / trace.sample_period:.2g} Hz or more" if often else ", at a higher rate"
+    reason = (
+        f"the voltage may be held for the {1e3 * trace.sample_period:.3g} ms between samples, which the motor follows"
+    )
+    raise UndeterminedError("whether the model lacks an effect", reason, f"the motion{faster}")
 
 
 def _per_volt(trace: Trace, rig: Rig, found: Estimate) -> float | None:

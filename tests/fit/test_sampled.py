@@ -60,7 +60,7 @@ def test_constants_of_few_samples_to_a_time_constant(source, constant, voltage, 
 def test_the_inertia_by_a_voltage_that_is_held():
     inertia, columns = run(0.046, Routine())
     found = bench.identify(noisy({name: columns[name] for name in ("time", "voltage", "velocity")}), RIG)
-    within(found.inertia, inertia, 0.01)
+    within(found["moment_of_inertia"], inertia, 0.01)
     assert any("make a time constant" in line for line in found.warnings)
 
 
@@ -69,7 +69,7 @@ def test_an_inertia_by_a_current_read_once_in_each_hold_counts_that(constant, pe
     """The current falls while a voltage is held, by what is induced: read at its end it is too small by T/2 of a."""
     inertia, columns = run(constant, Waves(period, 12.0 if period < 0.02 else 24.0, (6.0, 0.7), (4.0, 2.3), (3.0, 5.1)))
     found = bench.identify(noisy(columns), RIG)
-    low, high = found.inertia.ci95
+    low, high = found["moment_of_inertia"].ci95
     assert low <= inertia <= high
     assert any("if it is held between samples" in line for line in found.warnings)
 
@@ -80,11 +80,26 @@ def test_samples_too_far_apart_leave_the_other_constants():
     found = bench.identify(given, RIG)
     assert {*found.motor.parameters} == {"kS", "kV"}
     assert "every 20 ms" in found.motor.refused["kA"] and "at a higher rate" in found.motor.refused["kA"]
-    low, high = found.inertia.ci95
+    low, high = found["moment_of_inertia"].ci95
     assert low <= inertia <= high
 
 
 def test_a_voltage_in_steps_is_no_sensor_that_stands_still():
     _, columns = run(0.05, Steps(0.001, 6.0))
     given = {name: columns[name] for name in ("time", "voltage", "velocity")}
-    assert bench.identify(noisy(given)).inertia.value > 0.0
+    assert bench.identify(noisy(given))["moment_of_inertia"].value > 0.0
+
+
+@pytest.mark.parametrize(("constant", "recorded"), [(0.092, "current"), (0.025, "voltage")])
+def test_a_hold_of_the_voltage_is_no_missing_effect(constant, recorded):
+    """A torsion spring was named beside the current, by what the motor does while a voltage is held."""
+    _, columns = run(constant, Waves(0.02, 24.0, (6.0, 0.7), (4.0, 2.3), (3.0, 5.1)))
+    given = noisy({name: columns[name] for name in {"time", "voltage", "velocity", recorded}})
+    with pytest.raises(bench.UndeterminedError, match=r"held for the 20 ms between samples.*(higher rate|Hz or more)"):
+        bench.diagnose(given, RIG)
+
+
+def test_a_motor_with_many_samples_is_diagnosed():
+    _, columns = run(0.092, Waves(0.001, 12.0, (6.0, 0.7), (4.0, 2.3), (3.0, 5.1)))
+    found = bench.diagnose(noisy({name: columns[name] for name in ("time", "voltage", "current", "velocity")}), RIG)
+    assert not found.names
