@@ -81,8 +81,14 @@ def quantities(
         low, high = (end - less for end in measured.ci95)
         found.parameters[of_inertia] = Parameter(measured.value - less, measured.unit, measured.std_error, (low, high))
     elif not scaled:
-        known = "an MJCF, or rotor and load in the rig"
-        known = f"state the inertia ({known}), or move a known mass against gravity ([load] eccentric_mass)."
+        known = "state the inertia (an MJCF, or rotor and load in the rig), or move a known mass against gravity "
+        known += "([load] eccentric_mass)."
+        if model is not None:
+            is_that = f"its weight contradicts the armature of {model.armature:.3g} {kind.inertia_unit} in the MJCF"
+            known = (
+                f"{is_that if model.armature else 'the MJCF states no armature'}: state that of motor and gear there, "
+            )
+            known += "or let the goals turn the link further against gravity."
         found.advice.append(f"kp, {coulomb} and {kind.inertia}: {known}")
     _effects(found, fit, scale, scaled, kind)
     _actuator(found, fit, scale, scaled, model)

@@ -36,6 +36,8 @@ from bench.trace.trace import Trace, join
 
 #: A gain whose interval is wider than this share of it is not determined, nor is an inertia.
 DETERMINED, SCALED = 0.5, 0.15
+#: Half widths by which the weight of a link has to contradict a stated inertia.
+CONTRADICTS = 2.0
 #: Residual over noise floor up to which no effect is missing.
 NOISE = 2.0
 #: Radians that a loop turns between samples of the log, from which on the log is too slow for it.
@@ -204,15 +206,20 @@ def _recorded(trace: Trace, known: tuple[Array, Array]) -> ServoLog:
 def _scaled(
     of: ServoLog, rig: Rig | None, model: JointModel | None, known: bool, progress: Callable[[float], None]
 ) -> tuple[ServoFit, Callable[[Mapping[str, float]], float] | None]:
-    """The fit, and how its values give the inertia - kg*m**2 (kg); None where nothing gives the scale of torques."""
+    """The fit, and how its values give the inertia - kg*m**2 (kg); None where nothing gives the scale of torques.
+
+    A joint without armature in its MJCF is one whose motor and gear nobody stated, and weight may contradict what is.
+    """
     fit, stated = None, rig.stated_inertia if rig is not None else None
     if model is not None:
-        stated = model.inertia
+        stated = model.inertia if model.armature else None
     if known:
         fit = fitted(of, {}, progress)
         scale = fit.parameter(lambda values: values["mobility"], "")
         if scale.value > 0.0 and scale.half_width < SCALED * scale.value:
             return fit, lambda values: 1.0 / values["mobility"]
+        if stated is not None and abs(1.0 / stated - scale.value) > CONTRADICTS * scale.half_width:
+            stated = None
     if stated is None:
         return (fit if fit is not None else fitted(of, {}, progress)), None
     return fitted(of, {"mobility": 1.0 / stated} if known else {}, progress), lambda values: stated

@@ -26,6 +26,13 @@ assert abs(level / 0.085 - 1.0) < 0.03
 assert elbow.actuator("elbow cogging_torque 0") is not None
 assert np.std(identified[2000:]) > 5.0 * np.std(as_written[2000:])
 """,
+    "servo": """
+values = {name: one.value for name, one in found.parameters.items()}
+for name, true in (("kp", 12.0), ("kv", 0.35 + 0.02), ("dead_time", 0.012), ("armature", 0.006)):
+    low, high = found.parameters[name].ci95
+    assert low <= true <= high, name
+assert np.std(simulated - measured) < 0.2 * np.std(guessed - measured)
+""",
     "fleet": """
 changed = {one.axis: one for one in found.summary.changed}
 assert set(changed) == set(truth)

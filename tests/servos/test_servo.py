@@ -75,9 +75,9 @@ def test_a_limit_that_is_reached_is_found():
     assert of["kp/moment_of_inertia"].value == pytest.approx(truth.effective["kp"], rel=0.05)
 
 
-def arm(goal, rate, kp, kv, friction, late):
+def arm(goal, rate, kp, kv, friction, late, armature=0.002):
     """Position (n,) of the arm of MJCF under gravity, integrated at 50 us by its equation of motion."""
-    h, inertia, pull = 50e-6, LINK + 0.002, 0.4 * 9.81 * 0.1
+    h, inertia, pull = 50e-6, LINK + armature, 0.4 * 9.81 * 0.1
     q = w = 0.0
     out = np.empty(goal.size)
     every = round(1.0 / (rate * h))
@@ -94,17 +94,21 @@ def arm(goal, rate, kp, kv, friction, late):
     return np.round(out * 2**13 / np.pi) * np.pi / 2**13
 
 
+def of_joint(folder, goal, position):
+    """The arm's log at 100 Hz."""
+    table = np.column_stack([np.arange(goal.size) / 100.0, position, goal])
+    header = "time [s],elbow.position [rad],elbow.goal [rad]"
+    np.savetxt(folder / "log.csv", table, delimiter=",", header=header, comments="")
+
+
 @pytest.fixture(scope="module")
 def of_arm(tmp_path_factory):
     """The folder with log and MJCF of the arm."""
     folder = tmp_path_factory.mktemp("arm")
     goal = goals(np.random.default_rng(3), 100.0, 12.0)
     position = arm(goal, 100.0, 6.0, 0.15, 0.02, 0.012)
-    time = np.arange(goal.size) / 100.0
     (folder / "robot.xml").write_text(MJCF, encoding="utf-8")
-    table = np.column_stack([time, position, goal])
-    header = "time [s],elbow.position [rad],elbow.goal [rad]"
-    np.savetxt(folder / "log.csv", table, delimiter=",", header=header, comments="")
+    of_joint(folder, goal, position)
     return folder
 
 
@@ -124,6 +128,19 @@ def test_gravity_on_known_links_gives_the_scale_and_the_actuator_loads(of_arm, m
     assert model.actuator_gainprm[0, 0] == pytest.approx(values["kp"], rel=1e-4)
     assert -model.actuator_biasprm[0, 2] == pytest.approx(values["kv"], rel=1e-4)
     assert model.actuator_delay[0] == pytest.approx(values["dead_time"], rel=1e-4)
+
+
+@pytest.mark.parametrize("stated", ['armature="0"', 'armature="0.001"'], ids=["no armature", "a wrong one"])
+def test_an_inertia_that_is_not_the_joint_s_gives_no_scale(tmp_path, stated):
+    """With the link alone kp was 3.3 +- 0.1 of 12, as nobody states the armature of a hobby servo."""
+    armature, goal = 0.02, 0.08 * goals(np.random.default_rng(3), 100.0, 12.0)
+    position = arm(goal, 100.0, 6.0, 0.15, 0.02, 0.012, armature)
+    (tmp_path / "robot.xml").write_text(MJCF.replace('armature="0.002"', stated), encoding="utf-8")
+    of_joint(tmp_path, goal, position)
+    found = bench.servo(tmp_path / "log.csv", mjcf=tmp_path / "robot.xml", joint="elbow").found
+    assert "kp" not in found.parameters and not found.actuator
+    assert found.inseparable["kp/moment_of_inertia"].value == pytest.approx(6.0 / (LINK + armature), rel=0.05)
+    assert any("armature" in line and "state that of motor and gear" in line for line in found.advice)
 
 
 def test_the_commands_of_its_page_run(of_arm, monkeypatch):
