@@ -81,18 +81,22 @@ def quantities(
         low, high = (end - less for end in measured.ci95)
         found.parameters[of_inertia] = Parameter(measured.value - less, measured.unit, measured.std_error, (low, high))
     elif not scaled:
-        known = "state the inertia (an MJCF, or rotor and load in the rig), or move a known mass against gravity "
-        known += "([load] eccentric_mass)."
-        if model is not None:
-            is_that = f"its weight contradicts the armature of {model.armature:.3g} {kind.inertia_unit} in the MJCF"
-            known = (
-                f"{is_that if model.armature else 'the MJCF states no armature'}: state that of motor and gear there, "
-            )
-            known += "or let the goals turn the link further against gravity."
+        known = _unknown_scale(model, kind)
         found.advice.append(f"kp, {coulomb} and {kind.inertia}: {known}")
     _effects(found, fit, scale, scaled, kind)
     _actuator(found, fit, scale, scaled, model)
     return found
+
+
+def _unknown_scale(model: JointModel | None, kind: AxisKind) -> str:
+    """What would give the scale of torques, in a sentence."""
+    if model is None:
+        known = "state the inertia (an MJCF, or rotor and load in the rig), or move a known mass against gravity "
+        return f"{known}([load] eccentric_mass)."
+    known = "the MJCF states no armature"
+    if model.armature:
+        known = f"its weight contradicts the armature of {model.armature:.3g} {kind.inertia_unit} in the MJCF"
+    return f"{known}: state that of motor and gear there, or let the goals turn the link further against gravity."
 
 
 def _damping(
