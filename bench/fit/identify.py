@@ -109,8 +109,8 @@ def identify(
 
 
 def require_diagnosable(trace: Trace, rig: Rig) -> None:
-    """UndeterminedError where a recording with a voltage has too few samples to the motor's time constant."""
-    if "voltage" not in trace or rig.axis_kind.effort in trace:
+    """UndeterminedError where a recording with voltage and current has too few samples to the motor's time constant."""
+    if not {"voltage", "current"} <= set(trace.signals) or rig.axis_kind.effort in trace:
         return
     try:
         found = identify(trace, rig)

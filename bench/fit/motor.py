@@ -170,19 +170,18 @@ def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
 def require_often(trace: Trace, rig: Rig, found: Estimate) -> None:
     """UndeterminedError where few samples make a time constant of the motor, by the estimate of its recording.
 
-    What a held voltage does between them would pass for an effect. Where the voltage itself is the effort, its shift is
-    fitted, and only the square of that remains.
+    What a current does while a voltage is held between them would pass for an effect. Where the voltage itself is the
+    effort, its shift is fitted, and only the square of that remains.
     """
-    motor, by_current = found.motor, "current" in trace
-    if motor is None or _per_volt(trace, rig, found) is None or not (by_current or "kA" in motor.refused):
+    motor = found.motor
+    if motor is None or "current" not in trace or not any(IF_HELD in line for line in found.warnings):
         return
     often = _samples_of(motor.parameters, trace) if "kA" in motor.parameters else 0.0
-    if often >= FEW or not any(IF_HELD in line for line in found.warnings):
+    if often >= FEW:
         return
     faster = f", at {FEW / often / trace.sample_period:.2g} Hz or more" if often else ", at a higher rate"
-    reason = (
-        f"the voltage may be held for the {1e3 * trace.sample_period:.3g} ms between samples, which the motor follows"
-    )
+    period = f"{1e3 * trace.sample_period:.3g} ms"
+    reason = f"the voltage may be held for the {period} between samples, in which the motor follows it"
     raise UndeterminedError("whether the model lacks an effect", reason, f"the motion{faster}")
 
 

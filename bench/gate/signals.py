@@ -114,7 +114,7 @@ def _noise_free(values: Array) -> bool:
 def _in_steps(values: Array) -> bool:
     """Whether most changes stand alone, as those of a command; after one of noise that is a step another is 0.72."""
     changed = np.diff(values) != 0.0
-    return bool(np.mean(changed[1:][changed[:-1]]) < 0.5)
+    return bool(2 * np.count_nonzero(changed[1:] & changed[:-1]) < np.count_nonzero(changed[:-1]))
 
 
 def _runs(standing: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -37,14 +37,15 @@ def with_gains(work: Sequence[JointLogs], kp: GivenGain, kd: GivenGain) -> list[
     Raises:
         InputError: gains are given and the logs hold efforts; no gain of any joint is known; kd of a joint without kp.
     """
-    if not work or not _without_effort(work[0]):
+    first = next((asked for asked in work if _without_effort(asked)), None)
+    if first is None:
         if work and (kp is not None or kd is not None):
             allowed = "allowed: without it; or delete the columns of the effort, so that the gains are used"
             raise InputError("--kp", f"found with {work[0].logs[0].name}, which has efforts, or no goals", allowed)
         return [*work]
     known = _gains(work, kp, kd)
     if not known:
-        raise InputError(work[0].logs[0], "contains goals and no efforts, and no gains are known", _remedy(work[0]))
+        raise InputError(first.logs[0], "contains goals and no efforts, and no gains are known", _remedy(first))
     return [replace(asked, goals=True, gains=known.get(asked.joint)) for asked in work]
 
 

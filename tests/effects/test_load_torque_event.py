@@ -31,11 +31,11 @@ SLOW = 0.12 * np.sin(2.0 * np.pi * 0.7 * TIME) + 0.08 * np.sin(2.0 * np.pi * 1.9
 @pytest.mark.parametrize("other", [0.0 * TIME, SLOW])
 @pytest.mark.parametrize("pushes", [[(0.5, 3.0, 3.05)], [(-0.7, 4.0, 4.1), (0.6, 7.2, 7.27)]])
 def test_short_ones_are_distinguished_by_themselves_from_what_runs_slowly(pushes, other):
-    found = sorted(EFFECT.apart(left(TIME, pushes, other)), key=lambda one: one.shape)
+    found = sorted(EFFECT.apart(left(TIME, pushes, other)))
     assert len(found) == len(pushes)
-    for one, (_, start, stop) in zip(found, pushes, strict=True):
-        np.testing.assert_allclose(one.shape, (start, stop), atol=4e-3)
-        assert one.around[0] < start < stop < one.around[1]
+    for (shape, around), (_, start, stop) in zip(found, pushes, strict=True):
+        np.testing.assert_allclose(shape, (start, stop), atol=4e-3)
+        assert around[0] < start < stop < around[1]
 
 
 @pytest.mark.parametrize(
