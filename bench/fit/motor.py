@@ -23,14 +23,14 @@ from bench.arrays import NORMAL95, Array, rms, splined
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.estimate import Estimate, MotorConstants
-from bench.fit.regression import STEPS, filtered, regressed
+from bench.fit.regression import LEAST, STEPS, filtered, regressed
 from bench.fit.sampled import sampled
 from bench.gate.check import Seen
 from bench.gate.velocity import compared
 from bench.names import words
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
-from bench.trace.motion import ONE_SIGN, condition, known_sign, raw_speed
+from bench.trace.motion import ONE_SIGN, condition, known_sign, measured_velocity, raw_speed
 from bench.trace.noise import white_noise
 from bench.trace.signals import KNOWN_TORQUE
 from bench.trace.trace import Trace
@@ -89,7 +89,7 @@ def motor_constants(
             refused[name] = f"{error.reason}; record instead: {error.record}"
         except InputError as error:
             refused[name] = str(error)
-    if "kA" in known and _samples_of(known, trace) < FEW:
+    if "kA" in known and _samples_of(known, trace) < FEW and ("current" not in trace or _read_before(trace, rig)):
         try:
             known |= _by_samples(trace, rig, known)
         except UndeterminedError as error:
@@ -138,8 +138,8 @@ def _samples_of(known: Mapping[str, Parameter], trace: Trace) -> float:
 def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
     """The estimate of a recording with a voltage, its inertia that of kA where few samples make a time constant.
 
-    A current that is read once in each hold of a voltage is not the mean of its hold. Where one is recorded, that may
-    be so or not: the interval covers both. Where samples do not show kA, it covers a voltage that is held or is not.
+    A current that is read at the end of each hold of a voltage, by the voltage before it, is not the mean of its hold:
+    the interval counts that. Where samples do not show kA, it covers a voltage that is held or is not.
     """
     motor, name = found.motor, rig.axis_kind.inertia
     known, per_volt = {} if motor is None else motor.parameters, _per_volt(trace, rig, found)
@@ -150,11 +150,10 @@ def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
         least = old.value - 0.5 * period * known["kV"].value * per_volt
         new, text = old.reaching(least), f"{IF_HELD} gives {least:.3g} {old.unit}; record at a higher rate"
     elif "current" in trace:
-        # by the voltage of few samples, or as the shift would be of the part that is not induced alone
-        shift = min(found[rig.axis_kind.parameter(MISALIGNMENT)].ci95[0], 0.0)
-        shift -= 0.5 * period * ("kA" in motor.refused)
-        few = "kA" in known and _samples_of(known, trace) < FEW
-        by = known["kA"].value * per_volt if few else old.value + shift * known[BACK_EMF].value * per_volt
+        if not _read_before(trace, rig):
+            return found
+        shift = found[rig.axis_kind.parameter(MISALIGNMENT)]  # which is only of the part that is not induced
+        by = old.value + shift.ci95[int(shift.value > 0.0)] * known[BACK_EMF].value * per_volt
         if old.ci95[0] <= by <= old.ci95[1]:
             return found
         new, text = old.reaching(by), f"{IF_HELD} gives {by:.3g} {old.unit}; record at a higher rate"
@@ -165,6 +164,22 @@ def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
         return found
     warnings = (*found.warnings, f"{words(name)}: {text}")
     return replace(found, parameters={**found.parameters, name: new}, warnings=warnings)
+
+
+def _read_before(trace: Trace, rig: Rig) -> bool:
+    """Whether the current is rather that of the voltage one sample before, as where a voltage is set after reading.
+
+    A drive that controls its current has both at one time.
+    """
+    volts, left = rig.voltage(trace), np.zeros(2)
+    for part in trace.segments:
+        if part.stop - part.start > LEAST:
+            speed = measured_velocity(trace)[part][1:]
+            table = np.column_stack([trace["current"][part][1:], speed, np.ones(speed.size)])
+            for late in (0, 1):
+                other = volts[part][1 - late : volts[part].size - late]
+                left[late] += float(np.sum((other - table @ np.linalg.lstsq(table, other, rcond=None)[0]) ** 2))
+    return bool(left[1] < left[0])
 
 
 def require_often(trace: Trace, rig: Rig, found: Estimate) -> None:
