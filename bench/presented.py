@@ -130,7 +130,7 @@ class Presented(Shown):
 
     def summary(self) -> str:
         """The text of one screen that `print` shows."""
-        return self.renderer().text(self)
+        return str(self)
 
     def to_html(self, path: str | Path | None = None) -> str:
         """What a notebook shows as HTML, written into a file if one is given."""

@@ -140,10 +140,12 @@ def with_delay(hypothesis: Hypothesis, late: DeadTime) -> tuple[Hypothesis, ...]
     """
     if late.kind == "dead_time":
         return (replace(hypothesis, shift=-late.delay.value),)
+    if late.kind is None:
+        return ()
     signal = "torque" if late.delay.value > 0.0 else "current"
     effects = (effect for effect in catalogue().values() if isinstance(effect, Lag) and effect.signal == signal)
-    lag, sizes = next(effects), (late.lag.value, late.lag.ci95[1])
-    return tuple(hypothesis.plus(Term(lag, (size,))) for size in sizes) if late.kind else ()
+    lag = next(effects)
+    return tuple(hypothesis.plus(Term(lag, (size,))) for size in (late.lag.value, late.lag.ci95[1]))
 
 
 def without_delay(hypothesis: Hypothesis) -> tuple[Hypothesis, float]:

@@ -40,7 +40,7 @@ from bench.fit.determined import remainder, require_inertia, sound
 from bench.fit.estimate import Alone, Estimate, RefusedEstimateError, Residual, load_inertia
 from bench.fit.fit import by_hint
 from bench.fit.hum import mains
-from bench.fit.hypothesis import BASE, Name, lay_out, plain
+from bench.fit.hypothesis import BASE, Hypothesis, Name, lay_out, plain
 from bench.fit.motor import motor_constants, require_often, with_inertia
 from bench.fit.rows import Rows, effort_of
 from bench.fit.solution import (
@@ -291,11 +291,11 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Move
     hum = mains(rows, highest.residual)
     if hum:
         highest = solution_of(rows, replace(highest.hypothesis, hum=hum), rig.offset)
-    other = None
+    delayed: tuple[Hypothesis, ...] = ()
     if highest.delayed:
-        late = dead_time(rows, highest.hypothesis, highest.shift[0])
-        delayed, *further = with_delay(highest.hypothesis, late) or (highest.hypothesis,)
-        highest, other = solution_of(rows, delayed, rig.offset), next(iter(further), None)
+        delayed = with_delay(highest.hypothesis, dead_time(rows, highest.hypothesis, highest.shift[0]))
+    if delayed:
+        highest = solution_of(rows, delayed[0], rig.offset)
     if cutoff is None:
         found, (doubt, warnings) = for_inertia(highest, rig)
     else:
@@ -304,7 +304,7 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Move
             f"the filter's cut-off is {used:.4g} Hz instead of {cutoff:.4g} Hz: {rate:.4g} Hz of sampling allow no more"
         )
         found, doubt, warnings = highest, np.zeros(3), (lower,) * (used < cutoff * (1.0 - 1e-9))
-    if other is not None:  # what a lag may be moves all others
+    for other in delayed[1:]:  # what a lag may be moves all others
         moved = solution_of(found.rows, other, OFFSET in found.names).theta - found.theta
         doubt = np.hypot(doubt, moved[: len(TERMS)])
     return found, (doubt, warnings)

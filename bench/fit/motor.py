@@ -23,7 +23,7 @@ from bench.arrays import NORMAL95, Array, rms, splined
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
 from bench.errors import InputError, UndeterminedError
 from bench.fit.estimate import Estimate, MotorConstants
-from bench.fit.regression import LEAST, STEPS, filtered, regressed
+from bench.fit.regression import DETERMINED, LEAST, STEPS, filtered, regressed
 from bench.fit.sampled import sampled
 from bench.gate.check import Seen
 from bench.gate.velocity import compared
@@ -38,18 +38,14 @@ from bench.trace.trace import Trace
 #: Names of the coefficients of the equation of motion whose effort is a voltage.
 FEEDFORWARD = {COULOMB: "kS", VISCOUS: "kV", INERTIA: "kA", OFFSET: "kG"}
 RESISTANCE, BACK_EMF, SPEED = "resistance", "back_emf_constant", "speed_constant"
-#: A constant whose interval is wider to one side than this share of it is not determined.
-DETERMINED = 0.5
 #: Values by which a rig makes torque of a voltage or a current.
 SCALES = ("torque_constant", "force_constant", "torque_per_volt", "force_per_volt", "resistance", "back_emf_constant")
 SCALES += ("continuous_stall_torque", "continuous_stall_current", "peak_torque", "peak_current")
-#: Samples to a time constant from which on filtered derivatives are as good as samples: half a hold is 1/40 of it.
-#: And from which on those are right to half a hold.
+#: Samples in a time constant: from FEW on filtered derivatives serve, as half a hold is 1/40 of it; from ENOUGH on they
+#: are right up to half a hold.
 FEW, ENOUGH = 20.0, 5.0
 #: Samples by which the motion must be late for a voltage to be held between samples.
 HELD = 0.25
-#: Of what an inertia by a held voltage is said.
-IF_HELD = "the voltage, if it is held between samples,"
 #: Longest L/R of a winding whose rig does not give it - s: small motors have 0.1 to 2 ms.
 LONGEST = 5e-3
 #: Inertia and friction of the effort that a signal of a recording is.
@@ -124,9 +120,9 @@ def _feedforward(trace: Trace, rig: Rig, by: By) -> dict[str, Parameter]:
 
 def _by_samples(trace: Trace, rig: Rig, known: Mapping[str, Parameter]) -> dict[str, Parameter]:
     """kS, kV, kA - and kG - in place of those that derivatives gave."""
-    found = sampled(trace, rig, "kG" in known)
-    by = {name: replace(one, unit=known[name].unit) for name, one in found.feedforward.items()}
-    low, high = _electrical(found.delay, trace.sample_period, rig)
+    found, delay = sampled(trace, rig, "kG" in known)
+    by = {name: replace(one, unit=known[name].unit) for name, one in found.items()}
+    low, high = _electrical(delay, trace.sample_period, rig)
     return by | {"kA": _between(by["kA"], low * by["kV"].value, high * by["kV"].value)}
 
 
@@ -136,48 +132,51 @@ def _samples_of(known: Mapping[str, Parameter], trace: Trace) -> float:
 
 
 def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
-    """The estimate of a recording with a voltage, its inertia that of kA where few samples make a time constant.
+    """The estimate of a recording with a voltage, its inertia with what a held voltage leaves uncertain."""
+    name, per_volt = rig.axis_kind.inertia, _per_volt(trace, rig, found)
+    by = None if per_volt is None or name not in found else _inertia(found, trace, rig, per_volt)
+    if by is None:
+        return found
+    warnings = (*found.warnings, f"{words(name)}: {by[1]}")
+    return replace(found, parameters={**found.parameters, name: by[0]}, warnings=warnings)
 
-    A current that is read at the end of each hold of a voltage, by the voltage before it, is not the mean of its hold:
-    the interval counts that. Where samples do not show kA, it covers a voltage that is held or is not.
+
+def _inertia(found: Estimate, trace: Trace, rig: Rig, per_volt: float) -> tuple[Parameter, str] | None:
+    """The inertia by a voltage, with the reason; None where the one of the estimate is kept.
+
+    It is that of kA where few samples make a time constant. Where they do not show kA, the interval covers a voltage
+    that is held and one that is not. A current that is read at the end of each hold, by the voltage before it, is not
+    the mean of its hold: the shift of the torque is then one of the part that is not induced alone.
     """
-    motor, name = found.motor, rig.axis_kind.inertia
-    known, per_volt = {} if motor is None else motor.parameters, _per_volt(trace, rig, found)
-    if motor is None or per_volt is None or name not in found or "kV" not in known:
-        return found
-    old, period = found[name], trace.sample_period
-    if "kA" in motor.refused and "current" not in trace:
-        least = old.value - 0.5 * period * known["kV"].value * per_volt
-        new, text = old.reaching(least), f"{IF_HELD} gives {least:.3g} {old.unit}; record at a higher rate"
-    elif "current" in trace:
-        if not _read_before(trace, rig):
-            return found
-        shift = found[rig.axis_kind.parameter(MISALIGNMENT)]  # which is only of the part that is not induced
+    assert found.motor is not None
+    old, known, period = found[rig.axis_kind.inertia], found.motor.parameters, trace.sample_period
+    if "current" in trace:
+        shift = found[rig.axis_kind.parameter(MISALIGNMENT)]
         by = old.value + shift.ci95[int(shift.value > 0.0)] * known[BACK_EMF].value * per_volt
-        if old.ci95[0] <= by <= old.ci95[1]:
-            return found
-        new, text = old.reaching(by), f"{IF_HELD} gives {by:.3g} {old.unit}; record at a higher rate"
-    elif "kA" in known and _samples_of(known, trace) < FEW:
-        new, often = replace(known["kA"].times(per_volt), unit=old.unit), _samples_of(known, trace)
-        text = f"it is from the voltage of one sample and the speed at the next, as {often:.2g} make a time constant"
-    else:
-        return found
-    warnings = (*found.warnings, f"{words(name)}: {text}")
-    return replace(found, parameters={**found.parameters, name: new}, warnings=warnings)
+        if old.ci95[0] <= by <= old.ci95[1] or not _read_before(trace, rig):
+            return None
+        why = "the current is read before its voltage changes, and is not the mean between two samples"
+        return old.reaching(by), f"{why}: it may be {by:.3g} {old.unit}; record at a higher rate"
+    if "kA" in found.motor.refused and "kV" in known:
+        least = old.value - 0.5 * period * known["kV"].value * per_volt
+        return old.reaching(least), f"{least:.3g} {old.unit} if the voltage is held between samples; record more often"
+    if "kA" not in known or (often := _samples_of(known, trace)) >= FEW:
+        return None
+    why = f"found from sample to sample, without derivatives, as the motor's time constant has {often:.2g} samples"
+    return replace(known["kA"].times(per_volt), unit=old.unit), why
 
 
 def _read_before(trace: Trace, rig: Rig) -> bool:
-    """Whether the current is rather that of the voltage one sample before, as where a voltage is set after reading.
+    """Whether the current follows from the voltage one sample before, as where a voltage is set after reading.
 
     A drive that controls its current has both at one time.
     """
-    volts, left = rig.voltage(trace), np.zeros(2)
+    volts, speed, left = rig.voltage(trace), measured_velocity(trace), np.zeros(2)
     for part in trace.segments:
         if part.stop - part.start > LEAST:
-            speed = measured_velocity(trace)[part][1:]
-            table = np.column_stack([trace["current"][part][1:], speed, np.ones(speed.size)])
+            table = np.column_stack([trace["current"][part], speed[part], np.ones(part.stop - part.start)])[1:]
             for late in (0, 1):
-                other = volts[part][1 - late : volts[part].size - late]
+                other = volts[part.start + 1 - late : part.stop - late]
                 left[late] += float(np.sum((other - table @ np.linalg.lstsq(table, other, rcond=None)[0]) ** 2))
     return bool(left[1] < left[0])
 
@@ -188,16 +187,16 @@ def require_often(trace: Trace, rig: Rig, found: Estimate) -> None:
     What a current does while a voltage is held between them would pass for an effect. Where the voltage itself is the
     effort, its shift is fitted, and only the square of that remains.
     """
-    motor = found.motor
-    if motor is None or "current" not in trace or not any(IF_HELD in line for line in found.warnings):
+    if found.motor is None or _per_volt(trace, rig, found) is None or not _read_before(trace, rig):
         return
-    often = _samples_of(motor.parameters, trace) if "kA" in motor.parameters else 0.0
+    known = found.motor.parameters
+    often = _samples_of(known, trace) if "kA" in known else FEW * ("kA" not in found.motor.refused)
     if often >= FEW:
         return
-    faster = f", at {FEW / often / trace.sample_period:.2g} Hz or more" if often else ", at a higher rate"
+    faster = f"at {FEW / often / trace.sample_period:.2g} Hz or more" if often else "at a higher rate"
     period = f"{1e3 * trace.sample_period:.3g} ms"
-    reason = f"the voltage may be held for the {period} between samples, in which the motor follows it"
-    raise UndeterminedError("whether the model lacks an effect", reason, f"the motion{faster}")
+    reason = f"the voltage is held for the {period} between samples, in which the motor follows it"
+    raise UndeterminedError("whether the model lacks an effect", reason, f"the motion {faster}")
 
 
 def _per_volt(trace: Trace, rig: Rig, found: Estimate) -> float | None:

@@ -13,6 +13,8 @@ from bench.parameter import Parameter
 from bench.trace.filter import GaussianFilter
 from bench.trace.trace import Trace
 
+#: A constant whose interval is wider to one side than this share of it is not determined.
+DETERMINED = 0.5
 #: Rows for each coefficient, and what to record for them.
 LEAST = 20
 STEPS = "steps in both directions, from standstill to full speed"

@@ -11,13 +11,12 @@ the motor in any case.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from bench.arrays import NORMAL95, Array
 from bench.errors import UndeterminedError
-from bench.fit.regression import STEPS, regressed
+from bench.fit.regression import DETERMINED, STEPS, regressed
 from bench.fit.solution import left_out
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
@@ -34,25 +33,17 @@ BESIDES = {"velocity": (1, -1), "position": (2, 1, -1)}
 LATEST, TURNS = 12, 4
 #: What to record where samples are too far apart.
 FASTER = f"{STEPS}, at a higher rate"
-#: Half width of kA over kA from which on it is not determined.
-WIDE = 0.5
 
 
-@dataclass(frozen=True)
-class BySamples:
-    """Constants of a motor by its samples.
+def sampled(trace: Trace, rig: Rig, load: bool) -> tuple[dict[str, Parameter], float]:
+    """kS, kV, kA and, with a load, kG of a recording with a voltage, and a delay of the voltage beyond its hold - s.
 
-    Attributes:
-        feedforward: kS, kV, kA and, with a load, kG; kA is without L/R of the winding.
-        delay: of the voltage beyond its hold - s -, in which L/R may be.
-    """
+    Of the winding's L/R nothing is in kA; it may be in the delay.
 
-    feedforward: dict[str, Parameter]
-    delay: float
-
-
-def sampled(trace: Trace, rig: Rig, load: bool) -> BySamples:
-    """Of a recording with a voltage; `load`: whether a constant one is fitted.
+    Args:
+        trace: the recording.
+        rig: of the axis.
+        load: whether a constant load is fitted.
 
     Raises:
         UndeterminedError: too few samples move clearly, or there are too few to the time constant.
@@ -67,8 +58,8 @@ def sampled(trace: Trace, rig: Rig, load: bool) -> BySamples:
     names = ["kV", "kS", *(["kG"] if load else [])]
     feedforward = {**dict(zip(names, fitted[1:], strict=False)), "kA": acceleration}
     besides = sum(one.value * by for one, by in zip(fitted[1 + len(names) :], BESIDES[at.source], strict=True))
-    delay = (_held(at.source, acceleration.value / fitted[1].value / period) + late - besides) * period
-    return BySamples(feedforward, delay)
+    delay = (_acts_after(at.source, acceleration.value / fitted[1].value / period) + late - besides) * period
+    return feedforward, delay
 
 
 def _fitted(time: Array, table: Array, noise: Array, loudest: float, smooth: GaussianFilter) -> list[Parameter]:
@@ -87,7 +78,7 @@ def _fitted(time: Array, table: Array, noise: Array, loudest: float, smooth: Gau
         theta = np.array([one.value for one in fitted])
         left = table[-1] - theta @ table[:-1]
         power = min(float(np.mean(left**2)) / float(theta[:2] @ noise @ theta[:2]), loudest**2)
-    # kA may be by the few samples after each step, of which a covariance over blocks of time shows little
+    # the few samples after each step may decide kA, which a covariance over blocks of time hardly shows
     wide = left_out(table[:-1].T, left).tolist()
     return [one.widened(by) for one, by in zip(fitted, wide, strict=True)]
 
@@ -124,7 +115,7 @@ def _acceleration(change: Parameter, speed: Parameter, period: float) -> Paramet
     low, high = _of_hold(ends[0], speed.value, period), _of_hold(ends[1], speed.value, period)
     moved = max(abs(_of_hold(change.value, end, period) - value) for end in ends[2:])
     half = 0.5 * (high - low) + moved
-    if not 0.0 < half < WIDE * value:
+    if not 0.0 < half < DETERMINED * value:
         raise UndeterminedError("kA", _too_slow(period), FASTER)
     return Parameter(value, "", half / NORMAL95, (min(low, value) - moved, max(high, value) + moved))
 
@@ -138,7 +129,7 @@ def _of_hold(change: float, speed: float, period: float) -> float:
     return -period * speed / math.log1p(-speed / change) if 0.0 < speed < change else 0.0
 
 
-def _held(source: str, constant: float) -> float:
+def _acts_after(source: str, constant: float) -> float:
     """Samples after the first of both speeds at which a held voltage acts in the mean, by kA/kV in samples.
 
     Of speeds all that acts between them is one voltage; of mean speeds it is the next one too, by (1 - m)/(1 - q),

@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.errors import UndeterminedError
-from bench.fit.motor import DETERMINED
-from bench.fit.regression import filtered, regressed
+from bench.fit.regression import DETERMINED, filtered, regressed
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter

@@ -95,7 +95,7 @@ def _unknown_scale(model: JointModel | None, kind: AxisKind) -> str:
         return f"{known}([load] eccentric_mass)."
     known = "the MJCF states no armature"
     if model.armature:
-        known = f"its weight contradicts the armature of {model.armature:.3g} {kind.inertia_unit} in the MJCF"
+        known = f"the link's weight contradicts the armature of {model.armature:.3g} {kind.inertia_unit} in the MJCF"
     return f"{known}: state that of motor and gear there, or let the goals turn the link further against gravity."
 
 
