@@ -25,7 +25,7 @@ from bench.effects.torque import Torque
 from bench.fit.estimate import load_inertia
 from bench.fit.fit import Fit, fit, hint, shaped, unbiased
 from bench.fit.hypothesis import BASE, Term
-from bench.fit.quantities import uncertain
+from bench.fit.quantities import strengths_are_sure, uncertain
 from bench.fit.solution import solution_of
 from bench.names import meant
 from bench.parameter import Parameter
@@ -172,7 +172,10 @@ def delay(fitted: Fit, policy: Policy) -> float:
 
 
 def without_size(fitted: Fit, recordings: Recordings) -> dict[str, Reason]:
-    """The effects whose size is not determined, by name: of all their terms the intervals contain their absence."""
+    """The effects whose size is not determined, by name: of all their terms the intervals contain their absence.
+
+    An effect of whose presence a strength is sure has a size, however uncertain its shape makes that.
+    """
     if not fitted.terms:
         return {}
     numbers, sizes = uncertain(fitted), dict[str, list[tuple[str, Parameter]]]()
@@ -180,10 +183,11 @@ def without_size(fitted: Fit, recordings: Recordings) -> dict[str, Reason]:
         values = numbers.quantities(index, partial(_unit, recordings))
         known = [(each.name, values[each.name]) for each in term.effect.quantities if each.null is not None]
         sizes.setdefault(term.effect.name, []).extend(known)
+    sure = {fitted.terms[k].effect.name for k in fitted.owners[strengths_are_sure(fitted)] if isinstance(k, int)}
     return {
         name: Reason("undetermined", {"quantity": known[0][0], "found": known[0][1]})
         for name, known in sizes.items()
-        if known and all(abs(one.value) <= numbers.reach * one.std_error for _, one in known)
+        if known and name not in sure and all(abs(one.value) <= numbers.reach * one.std_error for _, one in known)
     }
 
 

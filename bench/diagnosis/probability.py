@@ -184,6 +184,10 @@ class Contender:
         distance = policy.remaining * (max(self.remaining, LEAST) + self.below) + policy.over * min(self.over, MUCH)
         return -distance - policy.number * self.numbers - policy.outside * self.outside
 
+    def remains(self, policy: Policy) -> bool:
+        """Whether its residual is clearly above the noise that the best hypothesis shows."""
+        return self.over > np.log1p((policy.remainder**2 - 1.0) / BESIDE_NOISE)
+
 
 #: Effects of a hypothesis with how many terms each has.
 Key = frozenset[tuple[Effect, int]]

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.diagnosis.policy import Policy, worth
-from bench.diagnosis.probability import BESIDE_NOISE, Key, key_of, weighed
+from bench.diagnosis.probability import Contender, Key, key_of, weighed
 from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Effect
 from bench.effects.rivals import GAINS, RIVALS, WAVES
@@ -37,7 +37,7 @@ WIDTH = 3
 #: Sets expanded in succession without a higher score before the search ends, if more than noise remains: in some pairs
 #: neither effect explains much without the other.
 LOOKAHEAD = 2
-#: Residual above noise at a grid's shape, over that of the best effect, beyond which a shape is not searched.
+#: Residual above noise at a grid's shape, over that of the best effect or noise, beyond which no shape is searched.
 SCREEN = 4.0
 #: Score below the best one from which on a set is as good as impossible.
 NEGLIGIBLE = 30.0
@@ -79,6 +79,8 @@ class Search:
         self.grown: set[Key] = set()
         self.expanded: dict[Key, None] = {}
         self.further: set[Key] = set()
+        self.settled: set[Key] = set()
+        self.weighed: dict[Key, Contender] = {}
 
     def run(self, most: int) -> None:
         """Visit sets around the most likely one until none is likelier."""
@@ -86,9 +88,7 @@ class Search:
         while True:
             # the shape of what replaces others is fitted to an effect that is still hidden: it is searched again
             replacing = any(term.effect.replaces for term in best.terms)
-            following = (
-                self.next() if waits <= (LOOKAHEAD if self.policy.remains(best) and not replacing else 0) else None
-            )
+            following = self.next() if waits <= (LOOKAHEAD if self.remains(best) and not replacing else 0) else None
             if following is not None and len(following.terms) < most:
                 self.expand(following)
             elif following is not None:
@@ -100,7 +100,7 @@ class Search:
             waits = 0 if key_of(found) != key_of(best) else waits + 1
             best = found
         self.add_decoy_waves(best)
-        self.last, self.stopped = best, self.stopped if self.policy.remains(best) else None
+        self.last, self.stopped = best, self.stopped if self.remains(best) else None
 
     @property
     def visited(self) -> tuple[Fit, ...]:
@@ -121,12 +121,25 @@ class Search:
         key = key_of(fitted)
         if self.policy.physical(fitted) and (key not in self.fits or fitted.squares < self.fits[key].squares):
             self.fits[key] = fitted
+            self.tried.pop(key, None)
+            self.weighed = {}
         return self.fits.get(key, fitted)
+
+    def contenders(self) -> dict[Key, Contender]:
+        """What speaks for each set that was visited and may be a result."""
+        if not self.weighed:
+            found = weighed([*self.fits.values()], None, self.policy)
+            self.weighed = {key_of(each.fitted): each for each in found}
+        return self.weighed
 
     def scores(self) -> dict[Key, float]:
         """Logarithm of the probability of each set that may be a result, up to a constant."""
-        found = weighed([*self.fits.values()], None, self.policy)
-        return {key_of(each.fitted): each.score(self.policy) for each in found}
+        return {key: each.score(self.policy) for key, each in self.contenders().items()}
+
+    def remains(self, fitted: Fit) -> bool:
+        """Whether more than noise remains: of its own colour, which what it lacks may raise, or of the best set's."""
+        contender = self.contenders().get(key_of(fitted))
+        return self.policy.remains(fitted) or (contender is not None and contender.remains(self.policy))
 
     def named(self) -> list[Key]:
         """Those without a decoy, the most likely first."""
@@ -142,7 +155,7 @@ class Search:
         key = next((key for key in self.named() if key not in self.expanded), None)
         if key is None:
             return None
-        return self.add(with_hum(on_its_side(settled(self.fits[key], self.policy), self.policy)))
+        return self.add(with_hum(on_its_side(self.settle(self.fits[key]), self.policy)))
 
     def expand(self, current: Fit) -> None:
         """Visit what a move away is: an effect more, one less, or another in its place."""
@@ -158,13 +171,21 @@ class Search:
         """The fit without some terms, the shapes of the others settled."""
         kept = [term for index, term in enumerate(current.terms) if index not in indices]
         less = fit(current.rows, current.hypothesis.with_terms(kept), current)
-        return self.fits[key_of(less)] if key_of(less) in self.fits else self.add(settled(less, self.policy))
+        known = self.fits.get(key_of(less))
+        if known is not None and (len(kept) < 2 or key_of(less) in self.settled):
+            return known  # the shape of one alone was searched as it was found
+        return self.add(self.settle(min(known or less, less, key=lambda each: each.squares)))
+
+    def settle(self, fitted: Fit) -> Fit:
+        """With the shapes of all terms searched at once."""
+        self.settled.add(key_of(fitted))
+        return settled(fitted, self.policy)
 
     def candidates(self, fitted: Fit) -> tuple[Candidate, ...]:
         """What may be added to a fit, best first; once for each set of effects."""
         key = key_of(fitted)
         if key not in self.tried:
-            decoys = RIVALS if self.policy.remains(fitted) else GAINS if fitted.depends else ()
+            decoys = RIVALS if self.remains(fitted) else GAINS if fitted.depends else ()
             self.tried[key] = (*candidates(fitted, [*self.effects, *decoys]),)
         return self.tried[key]
 
@@ -189,14 +210,14 @@ class Search:
             if width == 0 or rest > SCREEN * least:
                 break
             if self.added(fitted, candidate) is not None:  # what is impossible takes no other effect's place
-                least, width = min(least, max(rest, BESIDE_NOISE * noise)), width - 1
+                least, width = min(least, max(rest, noise)), width - 1
         return least
 
     def added(self, fitted: Fit, candidate: Candidate, together: bool = False) -> Fit | None:
         """The fit with a candidate of searched shape; None if impossible, or no more than damped noise.
 
         `together`: where the candidate is possible and another effect no longer is, all shapes are searched, as those
-        that were found without it are not those next to it.
+        that were found without it are not those next to it; what remains impossible was in the candidate's place.
         """
         effect = candidate.term.effect
         known = self.fits.get(key_of(fitted, effect))
@@ -205,10 +226,13 @@ class Search:
         after = shaped(fitted, fitted.hypothesis.plus(candidate.term), len(fitted.terms))
         after = physical_form(after, self.effects, self.policy)
         if together and not self.policy.physical(after) and self.policy.last_is_physical(after):
-            after = settled(after, self.policy)
+            after = without_impossible(settled(after, self.policy), self.policy)
         if not self.policy.physical(after):
             self.refused[effect] = "impossible"
-        elif self.policy.only_damps(fitted, after):
+            return None
+        if len(after.terms) <= len(fitted.terms):
+            fitted = fit(after.rows, after.hypothesis.without(len(after.terms) - 1), after)
+        if self.policy.only_damps(fitted, after):
             self.refused[effect] = "damps"
         elif worth(fitted, after) < effect.needed * fitted.excess:
             self.refused[effect] = "small"
@@ -228,7 +252,7 @@ class Search:
             self.put_in_place(bare, effect)
             others = [k for k, term in enumerate(best.terms) if term.effect.name in names]
             self.put_in_place(self.without(best, others), effect)
-        if key_of(best) not in self.further and self.policy.remains(best):
+        if key_of(best) not in self.further and self.remains(best):
             self.further.add(key_of(best))
             self.add_many(best, most)
         return (len(self.fits), self.best().squares) != before
@@ -279,11 +303,13 @@ class Search:
         return max(whole / MOST, self.policy.by_chance(fitted))
 
     def add_many(self, fitted: Fit | None, most: int) -> None:
-        """Visit a chain of effects each of which takes its part of the residual above noise."""
-        while fitted is not None and self.policy.remains(fitted) and len(fitted.terms) < most:
+        """Visit a chain of effects each of which takes its part of the residual above noise, no set of them twice."""
+        sets = set[Key]()
+        while fitted is not None and self.remains(fitted) and len(fitted.terms) < most:
             least, known = self.part(fitted), [each for each in self.candidates(fitted) if not each.term.effect.decoy]
             tried = (self.added(fitted, each, together=True) for each in known[:WIDTH] if each.gain > least)
-            fitted = next((after for after in tried if after is not None), None)
+            fitted = next((after for after in tried if after is not None and key_of(after) not in sets), None)
+            sets |= {key_of(fitted)} if fitted is not None else set()
 
     def add_decoy_waves(self, best: Fit) -> None:
         """Visit a wave of any form in the place of those of one number, and a decoy in the place of all waves."""
@@ -297,7 +323,7 @@ class Search:
         for number in sorted(set(numbers.values())):
             alike = [index for index, own in numbers.items() if own == number]
             kept = best.hypothesis.with_terms(term for k, term in enumerate(best.terms) if k not in alike)
-            for decoy in WAVES if len(alike) > 1 else WAVES[:1] if self.policy.remains(best) else ():
+            for decoy in WAVES if len(alike) > 1 else WAVES[:1] if self.remains(best) else ():
                 self.add(fit(best.rows, kept.plus(Term(decoy, (number,))), best))
 
 
@@ -343,6 +369,17 @@ def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit
             if policy.physical(tried):
                 return tried
     return fitted
+
+
+def without_impossible(fitted: Fit, policy: Policy) -> Fit:
+    """Less the effects, the last one aside, that are impossible next to the others."""
+    kept = [
+        term
+        for k, term in enumerate(fitted.terms)
+        if k == len(fitted.terms) - 1 or term.effect.physical(fitted.strengths(k), term.shape, fitted.base)
+    ]
+    less = fit(fitted.rows, fitted.hypothesis.with_terms(kept), fitted) if len(kept) < len(fitted.terms) else fitted
+    return less if policy.physical(less) else fitted
 
 
 def on_its_side(fitted: Fit, policy: Policy) -> Fit:

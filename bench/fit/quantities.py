@@ -11,13 +11,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bench.arrays import NORMAL95, Array
+from bench.arrays import NORMAL95, Array, rms
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
 from bench.effects.effect import Contact, Effect
 from bench.effects.signals import Axis, Signals
 from bench.fit.fit import Fit, least_squares
-from bench.fit.hypothesis import lay_out
+from bench.fit.hypothesis import Layout, depended_on, lay_out
 from bench.fit.rows import Rows
 from bench.fit.solution import NOISE_ALONE, block_edges, estimated, misfit, solved
 from bench.parameter import Parameter
@@ -98,7 +99,7 @@ def uncertain(fitted: Fit) -> Uncertain:
     place = fitted.theta.size
     slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in term.fitted(fitted.scope))
     known = _known(fitted, slots)
-    covariance, reach = _by_residual(fitted, slots, known)
+    covariance, reach = _by_residual(fitted, slots, known, _jacobian(fitted.rows, fitted, slots))
     covariance[place:, place:] += np.diag(known**2)
     for index, term in enumerate(fitted.terms):
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
@@ -111,9 +112,19 @@ def uncertain(fitted: Fit) -> Uncertain:
     return Uncertain(fitted, np.concatenate([fitted.theta, shapes]), covariance, reach, slots)
 
 
-def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) -> tuple[Array, float]:
+def strengths_are_sure(fitted: Fit) -> NDArray[np.bool_]:
+    """Whether each strength surely differs from 0 at the shapes and levels of friction that were found (p,).
+
+    An effect that is absent has no shape, so that of its shape is no error of its presence: friction that decays over
+    as long as the recording lasts is there, though not how far.
+    """
+    covariance, reach = _by_residual(fitted, (), np.empty(0), fitted.columns)
+    return np.abs(fitted.theta) > reach * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+
+
+def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array, jacobian: Array) -> tuple[Array, float]:
     """Covariance (p + s, p + s) from the residual, what exceeds noise included, and the reach of intervals."""
-    conditioning, jacobian = fitted.rows.conditioning, _jacobian(fitted.rows, fitted, slots)
+    conditioning = fitted.rows.conditioning
     acting = fitted.layout.acting(fitted.theta)
     left, floor = acting * fitted.left, acting * fitted.floor
     weight = np.ones(left.size)
@@ -126,6 +137,7 @@ def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array) 
     scores = np.add.reduceat(jacobian * (weight * left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers + fitted.layout.known * noise[:, 0])
     shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots, known), (fitted.theta.size, 0))
+    shown[[*fitted.held]] = False  # its bound counts where other quantities depend on it: a lag has the tick of a drive
     both = np.ix_(shown, shown)
     inverse = np.zeros(noise.shape)
     inverse[both] = solved(((jacobian.T * weight) @ jacobian)[both], numbers[shown], count.sum() * noise[both])[1]
@@ -162,8 +174,8 @@ def _known(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
 
 def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Array:
     """Derivative of the modelled torque by strengths and shapes (m, p + s), what columns take from a fit held."""
-    columns = [fitted.columns]
     here = lay_out(rows, fitted.hypothesis, fitted.found, fitted.missing) if slots else fitted.layout
+    columns = [fitted.columns + _by_others(rows, fitted, here)]
     for index, k in slots:
         term = fitted.terms[index]
         step = term.effect.shapes[k].step * max(abs(term.shape[k]), 1e-3)
@@ -172,6 +184,19 @@ def _jacobian(rows: Rows, fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Ar
         modelled = (other.columns - here.columns) @ fitted.theta - (other.effort - here.effort)
         columns.append(modelled[:, None] / step)
     return np.concatenate(columns, axis=1)
+
+
+def _by_others(rows: Rows, fitted: Fit, here: Layout) -> Array:
+    """What a strength changes in the columns of others, where dry frictions multiply or one follows a load (m, p)."""
+    columns, depends = np.zeros_like(here.columns), depended_on(fitted.hypothesis, fitted.found)
+    for k in range(fitted.theta.size if depends else 0):
+        moved = fitted.theta.copy()
+        moved[k] += (step := STEP * rms(here.effort) / max(rms(here.columns[:, k]), 1e-300))
+        found = here.by_name(moved)
+        if depended_on(fitted.hypothesis, found) != depends:
+            other = lay_out(rows, fitted.hypothesis, found, fitted.missing)
+            columns[:, k] = (other.columns - here.columns) @ fitted.theta / step
+    return columns
 
 
 def _misplaced(fitted: Fit) -> Iterator[Array]:
@@ -221,5 +246,7 @@ def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
     loud = fitted.rows.with_signals(louder)
     layout = lay_out(loud, fitted.hypothesis, fitted.found, fitted.missing)
     jacobian = _jacobian(loud, replace(fitted, rows=loud, layout=layout), slots)
-    left = layout.effort - layout.columns @ fitted.theta
-    yield least_squares(jacobian, left, np.zeros((jacobian.shape[1],) * 2))
+    left, moved = layout.effort - layout.columns @ fitted.theta, np.zeros(jacobian.shape[1])
+    free = np.delete(np.arange(moved.size), fitted.held)
+    moved[free] = least_squares(jacobian[:, free], left, np.zeros((free.size, free.size)))
+    yield moved

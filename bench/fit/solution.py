@@ -71,7 +71,7 @@ LEVELS, QUARTERS = 8, 4
 #: Residual in noise floors above which the residual is more than noise; on 100 recordings of axes that lack nothing
 #: 97 lay below.
 NOISE_ALONE = 1.12
-#: Share of a column's power that one part of the rows may hold at most.
+#: Share of what shows a coefficient that one part of the rows may have at most.
 MOST = 0.9
 #: Rows of a window, longer ones first, and windows of a length that it takes; else white noise is assumed.
 LENGTHS, ENOUGH = (128, 64), 24
@@ -481,18 +481,33 @@ def _edges(power: Array, count: int) -> NDArray[np.intp]:
 def _without_each(table: Array, edges: NDArray[np.intp]) -> Array:
     """Reach of intervals (p,) by coefficients without each part of the rows of columns and residual (m, p + 1).
 
-    A part that has nearly all power of a column, as slow rows have of friction that falls with speed, shows nothing by
-    being left out: that coefficient is held.
+    A part that has nearly all that shows a coefficient, as slow rows have of friction that falls with speed, shows
+    nothing by being left out: that coefficient is held.
     """
     count = edges.size - 1
     if count < 2:
         return np.full(table.shape[1] - 1, np.inf)
     sums = np.array([table[start:stop].T @ table[start:stop] for start, stop in pairwise(edges.tolist())])
     grams, scores = sums[:, :-1, :-1], sums[:, :-1, -1]
-    free = np.einsum("gii->gi", grams) <= MOST * np.einsum("gii->i", grams)
-    others = (grams.sum(axis=0) - grams) * (free[:, :, None] & free[:, None, :])
+    whole, free = grams.sum(axis=0), np.ones(scores.shape, dtype=bool)
+    for _ in range(free.shape[1]):
+        shares = _shown(whole - grams, free) / _shown(whole, free)
+        least = np.argmin(shares, axis=1)
+        short = np.flatnonzero(np.min(shares, axis=1) < 1.0 - MOST)
+        if not short.size:
+            break
+        free[short, least[short]] = False
+    others = (whole - grams) * (free[:, :, None] & free[:, None, :])
     moved = np.einsum("gij,gj->gi", symmetric_inverse(others + np.eye(free.shape[1]) * ~free[:, None], 1e-10), scores)
     return scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * ((free * moved) ** 2).sum(axis=0))
+
+
+def _shown(grams: Array, free: NDArray[np.bool_]) -> Array:
+    """Power of each free column that the other free ones do not explain (g, p), by products of columns (g, p, p)."""
+    among = grams * (free[:, :, None] & free[:, None, :])
+    places = np.arange(free.shape[1])
+    among[:, places, places] += np.where(free, ROUNDING, 1.0)
+    return 1.0 / np.einsum("gii->gi", np.linalg.inv(among))
 
 
 def long_run_covariance(scores: Array) -> tuple[Array, float]:

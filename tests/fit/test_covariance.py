@@ -77,6 +77,17 @@ def test_what_is_left_out_is_what_fits_without_each_part_of_the_rows_say(seed):
     assert left_out(columns, residual) == pytest.approx(expected, rel=1e-4)
 
 
+def test_a_coefficient_that_one_part_alone_shows_is_held_however_columns_are_combined():
+    """What decays within the first fifth of a recording, next to a constant or joined with it: one reach."""
+    columns, residual = rows()
+    decays = np.exp(-40.0 * np.arange(residual.size) / residual.size)[:, None]
+    constant = np.ones_like(decays)
+    alone, joined = (
+        left_out(np.hstack([columns[:, :2], constant, each]), residual) for each in (decays, constant + decays)
+    )
+    assert joined[3] == pytest.approx(alone[3], rel=0.3)
+
+
 def test_a_misfit_counts_from_1_12_floors_on_by_what_stands_above_them():
     columns, residual = rows()
     residual = residual / np.sqrt(np.mean(residual**2))
