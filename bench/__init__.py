@@ -7,13 +7,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.names import OTHER_WORDS, nearest
+from bench.names import instead, same_as
 from bench.presented import Renderer, Shown
 
 if TYPE_CHECKING:
     from bench.baseline.check import Checked, check
     from bench.diagnosis.diagnosis import Diagnosis, diagnose
     from bench.diagnosis.replay import replay
+    from bench.effects.catalogue import list_effects
     from bench.export.effects import Effects
     from bench.fit.estimate import Estimate
     from bench.fit.frequency_response import frequency_response
@@ -42,6 +43,7 @@ __all__ = [
     "diagnose",
     "frequency_response",
     "identify",
+    "list_effects",
     "load_rig",
     "read",
     "replay",
@@ -65,6 +67,7 @@ _MODULES = {
     "diagnose": "bench.diagnosis.diagnosis",
     "frequency_response": "bench.fit.frequency_response",
     "identify": "bench.fit.identify",
+    "list_effects": "bench.effects.catalogue",
     "load_rig": "bench.rig.rig",
     "read": "bench.trace.read",
     "replay": "bench.diagnosis.replay",
@@ -85,10 +88,10 @@ Shown.renderer = staticmethod(_renderer)
 
 
 def __getattr__(name: str) -> object:
-    if OTHER_WORDS.get(name) in __all__:
-        return globals().get(OTHER_WORDS[name]) or __getattr__(OTHER_WORDS[name])
+    if (same := same_as(name, __all__)) is not None:
+        return globals().get(same) or __getattr__(same)
     if name not in _MODULES:
-        raise AttributeError(f"bench has no '{name}'{nearest(name, __all__)}; allowed: {', '.join(__all__)}")
+        raise AttributeError(f"bench has no '{name}'{instead(name, __all__)}")
     return getattr(import_module(_MODULES[name]), name)
 
 

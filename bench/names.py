@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import difflib
+import inspect
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from functools import wraps
 from pathlib import Path
-from typing import TypeVar
+from typing import ParamSpec, TypeVar
 
+P = ParamSpec("P")
 T = TypeVar("T")
 
 #: Control characters (a terminal obeys them), those that turn the direction of text, and halves of surrogates (no
@@ -26,8 +29,26 @@ OTHER_WORDS = {
     "ci": "ci95", "std": "std_error", "stderr": "std_error", "params": "parameters", "r2": "explained",
     "residual": "residuals", "probability": "probabilities", "fs": "sample_rate", "sampling_rate": "sample_rate",
     "dt": "sample_period", "t": "time", "to_pandas": "to_frame", "to_dataframe": "to_frame", "to_csv": "save",
-    "read_csv": "read", "version": "__version__",
+    "read_csv": "read", "load": "read", "version": "__version__", "report": "summary", "to_dict": "model_dump",
+    "residuals": "torque_residuals", "rsquared": "explained", "score": "explained", "fittedvalues": "fitted_values",
+    "cov": "covariance", "corr": "correlation",
 }  # fmt: skip
+#: Methods of a data frame that a result has through its own.
+OF_FRAMES = frozenset(("describe", "head", "sample", "tail"))
+#: What other libraries have under a name that is none here, and what does the same; arguments end with `=`.
+INSTEAD = {
+    "before": ".torque and .velocity, each with .identify (before, after) and .holdout",
+    "compare": "bench.check(recording, rig, baseline)",
+    "error": ".velocity_residuals and .torque_residuals",
+    "plot": ".plot() of a trace or a result",
+    "predict": "bench.replay(found, recording, rig)",
+    "replay": "bench.replay(found, recording, rig)",
+    "simulate": "bench.replay(found, recording, rig)",
+    "kt=": 'rig={"motor": {"torque_constant": kt}}',
+    "time=": 'all signals in one, {"time": ..., "velocity": ...}',
+    "torque_constant=": 'rig={"motor": {"torque_constant": ...}}',
+    "verbose=": "print(result), .checks, .warnings",
+}
 _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 
 
@@ -88,7 +109,34 @@ def _telling(name: str) -> frozenset[str]:
     return frozenset(name.split("_")) - _FILLING
 
 
+def same_as(name: str, known: Collection[str]) -> str | None:
+    """What the bench calls an attribute that other libraries call `name`; None where none of `known` is that."""
+    while (name := OTHER_WORDS.get(name, "")) and name not in known:
+        pass
+    return name or None
+
+
+def instead(name: str, known: Sequence[str]) -> str:
+    """What does the same as an attribute or argument that is not there, or the nearest, and all that are."""
+    other = f"; instead: {INSTEAD[name]}" if name in INSTEAD else nearest(name.rstrip("="), [*known])
+    return f"{other}; allowed: {', '.join(known)}"
+
+
 def nearest(name: str, names: list[str]) -> str:
     """`, did you mean ...?` for a mistyped name, or nothing when no known name is near."""
     match = difflib.get_close_matches(name, names, n=1)
     return f", did you mean '{match[0]}'?" if match else ""
+
+
+def with_known_arguments(function: Callable[P, T]) -> Callable[P, T]:
+    """The function, whose TypeError for an argument that it does not have is one line with those that it has."""
+    known = [*inspect.signature(function).parameters]
+
+    @wraps(function)
+    def called(*args: P.args, **given: P.kwargs) -> T:
+        for name in given:
+            if name not in known:
+                raise TypeError(f"{function.__name__}() has no argument '{name}'{instead(f'{name}=', known)}")
+        return function(*args, **given)
+
+    return called

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeAlias
 
 from bench.errors import InputError
 from bench.files import write_text
-from bench.names import OTHER_WORDS, nearest
+from bench.names import OF_FRAMES, instead, same_as
 
 if TYPE_CHECKING:
     import numpy as np
@@ -52,8 +52,10 @@ class Renderer(Protocol):
         """A row for each sample of signals, or for each quantity."""
         ...
 
-    def residuals(self, result: object, /) -> NDArray[np.float64]:
-        """Measured less modelled effort."""
+    def along(
+        self, result: object, recording: object = None, /
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Time, measured effort, and that less the modelled one, of its own recording or of another."""
         ...
 
     def save(self, result: object, path: Path, /) -> None:
@@ -62,7 +64,7 @@ class Renderer(Protocol):
 
 
 class ByName:
-    """What `[name]` gives is an attribute, too, and so is what other libraries call one of its attributes."""
+    """What `[name]` gives is an attribute, too, as is what other libraries call its attributes."""
 
     if not TYPE_CHECKING:  # a checker of types shall find attributes that are mistyped
 
@@ -74,10 +76,11 @@ class ByName:
                 except (LookupError, TypeError, InputError):
                     kinds = [kind for kind in type(self).__mro__ if not kind.__module__.startswith("pydantic")]
                     known = sorted({each for of in (own, *map(vars, kinds)) for each in of if each[0] != "_"})
-                    if OTHER_WORDS.get(name) in known:
-                        return getattr(self, OTHER_WORDS[name])
-                    found = f"{type(self).__name__} has no '{name}'{nearest(name, known)}; allowed: {', '.join(known)}"
-                    raise AttributeError(found) from None
+                    if (same := same_as(name, known)) is not None:
+                        return getattr(self, same)
+                    if name in OF_FRAMES and "to_frame" in known:
+                        return getattr(self.to_frame(), name)
+                    raise AttributeError(f"{type(self).__name__} has no '{name}'{instead(name, known)}") from None
             raise AttributeError(name)
 
 

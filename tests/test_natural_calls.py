@@ -194,6 +194,22 @@ found.probability is found.probabilities and found.residual is found.residuals a
 found.save("f.csv") is None and {"axis", "cogging_torque"} == set(pd.read_csv("f.csv")["of"])
 rep["velocity"] is rep.velocity and rig["motor"]["torque_constant"] == rig.motor.torque_constant == K_T
 bench.version == bench.__version__
+est.fitted_values.size == est.residuals.size and np.isclose(np.var(est.fitted_values), np.var(0.8 * df.current), 0.2)
+np.nanstd(est.predict(cogged) - 0.8 * bench.Trace.from_arrays(cogged)["current"]) < 1.5 * AMPLITUDE
+est.score == est.r2 == est.rsquared and np.allclose(np.diag(est.corr)[:3], 1)
+np.allclose(np.sqrt(np.diag(est.cov))[:3], [est[name].std_error for name in list(est)[:3]])
+len(trace.head()) == 5 and trace.describe().loc["max", "velocity"] == trace["velocity"].max() and len(est.tail(2)) == 2
+abs(trace[::5].sample_rate - 200) < 0.1 and len(trace.resample(200)) == len(trace[::5])
+np.allclose(trace.resample(200)["velocity"], trace[::5]["velocity"])
+found.effects["cogging_torque"] is found.effects[0] is found["cogging_torque"] and found.effects[:1] == [*found]
+float(found["inertia"]) == float(found.moment_of_inertia) == found.parameters["moment_of_inertia"].value
+found.gap["torque"] is found.torque and found.report() == found.summary()
+found.plot("where").size >= 3 and "position" in found.plot("position").get_xlabel()
+rep.residual.size == rep.time.size and np.isclose(rep.rmse["torque"], np.sqrt(np.nanmean(rep.residuals**2)))
+bench.Rig(**rig.to_dict()).motor == rig.motor and bench.Rig(motor={"force_constant": 2.0}).kind == "linear"
+"cogging_torque" in bench.list_effects() and len(bench.load("bare.csv")) == len(df)
+bench.diagnose(cogged, tables, effects=["quadratic_drag"]).names == []
+bench.simulate("lab.toml", "fast_reversals", duration=2.0).trace.duration == 2.0
 "lambda" not in help_of(bench.diagnose) and "chance=" not in help_of(bench.diagnose)
 """.strip().splitlines()
 
@@ -202,26 +218,47 @@ bench.version == bench.__version__
 def test_results_behave_as_numbers_tables_and_pictures(names, monkeypatch, line):
     folder, known = names
     monkeypatch.chdir(folder)
-    assert eval(line, {**known, "INERTIA": INERTIA, "json": json, "help_of": lambda of: str(inspect.signature(of))})
+    assert eval(
+        line,
+        {
+            **known,
+            "INERTIA": INERTIA,
+            "AMPLITUDE": AMPLITUDE,
+            "json": json,
+            "help_of": lambda of: str(inspect.signature(of)),
+        },
+    )
     pyplot.close("all")
 
 
 #: What a result does not have, and what the one line proposes.
 ABSENT = {
-    "est.covarianc": r"Estimate has no 'covarianc'; allowed: between, ",
-    "rig.to_dict()": r"Rig has no 'to_dict'; allowed: assumed, axis_kind, check, .*motor",
+    "est.covarianc": r"Estimate has no 'covarianc', did you mean 'covariance'\?; allowed: between, ",
+    "rig.to_list()": r"Rig has no 'to_list', did you mean 'to_dict'\?; allowed: assumed, axis_kind, check, .*motor",
     "rep['speed']": r"speed: found none.*allowed: time, position",
     "est.inertia.half_widht": r"Parameter has no 'half_widht', did you mean 'half_width'",
     "trace.sample_rat": r"Trace has no 'sample_rat', did you mean 'sample_rate'",
-    "found['moment_of_inertia']": r"found no such effect; allowed: \.parameters\['moment_of_inertia'\]",
-    "bench.load": r"bench has no 'load', did you mean 'load_rig'",
+    "found['moment_of_inerta']": r"found none, did you mean 'moment_of_inertia'\?; allowed: .*cogging_torque",
+    "found.effects['friction']": r"friction: found none.*; allowed: cogging_torque",
+    "bench.load_rigs": r"bench has no 'load_rigs', did you mean 'load_rig'",
     "trace.plot('speed')": r"plot\(\) of Trace: found 'speed'; allowed: velocity, current, position",
+    "found.plot('speed')": r"plot\(\) of Diagnosis: found 'speed'; allowed: gap, position, .*velocity",
+    "found.replay(trace)": r"Diagnosis has no 'replay'; instead: bench\.replay\(found, recording, rig\); allowed",
+    "rep.error": r"Replay has no 'error'; instead: \.velocity_residuals and \.torque_residuals; allowed",
+    "bench.plot(est)": r"bench has no 'plot'; instead: \.plot\(\) of a trace or a result; allowed",
+    "bench.identify(trace, kt=0.8)": r"no argument 'kt'; instead: rig=.*torque_constant.*; allowed: trace, rig",
+    "bench.diagnose(trace, rig, exclude=[])": r"no argument 'exclude', did you mean 'excluded'\?; allowed: trace, rig",
+    "bench.simulate('lab.toml', duration=1e9)": r"duration: found 1e\+09 s; allowed: 0\.00025 s to ",
+    "trace.resample(0)": r"resample\(rate\): found 0 Hz; allowed: above 0 Hz",
+    "bench.Estimate.load('estimated').covariance": r"correlation: found an estimate from a file; allowed",
+    "bench.load('rig.toml')": r"rig\.toml: found a TOML file; allowed: a recording; bench\.load_rig reads a rig",
 }
 
 
 @pytest.mark.parametrize("line", ABSENT)
-def test_what_a_result_does_not_have_is_one_helpful_line(names, line):
-    with pytest.raises((AttributeError, KeyError, bench.InputError), match=ABSENT[line]) as refused:
+def test_what_a_result_does_not_have_is_one_helpful_line(names, monkeypatch, line):
+    monkeypatch.chdir(names[0])
+    with pytest.raises((AttributeError, KeyError, TypeError, bench.InputError), match=ABSENT[line]) as refused:
         eval(line, dict(names[1]))
     assert "\n" not in str(refused.value)
 
@@ -233,6 +270,7 @@ REFUSED = {
     "bench.identify(df, {'motor': 0.8})": r"^rig: motor: found 0\.8; allowed",
     "bench.identify(df, {'torque_constant': 0.8})": r"^rig: torque_constant: unknown key",
     "bench.identify(df, 0.8)": r"^rig: found 0\.8; allowed: a Rig, a rig file, .*torque_constant",
+    "bench.identify(si['time'], si['velocity'], si['current'])": r"^rig: found ndarray; .*go into the first argument",
     "bench.identify(df, tables, units={'speed': 'rpm'})": r"unit of speed: no such column; found: time, velocity",
     "bench.identify(rpm, tables, units={**rpm_units, 'velocity': 'A'})": r"velocity.*found unit 'A'; allowed: .*rad/s",
     "bench.identify(df, tables, units={'velocity': 'rad/s'})": r'allowed: .*units=\{"\w+": "\w+"\}',

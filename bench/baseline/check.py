@@ -23,7 +23,7 @@ from bench.comparison.difference import CHANGED, RESULTS, SAME, UNDECIDED, Compa
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Occasional
 from bench.errors import InputError
-from bench.names import nearest
+from bench.names import nearest, with_known_arguments
 from bench.presented import Presented
 from bench.rig.given import Given, GivenRig, Units, recordings_of
 from bench.rig.rig import CheckTable, Rig
@@ -54,6 +54,7 @@ POWER, COMPARABLE = 3.0, 1.45
 _MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}
 
 
+@with_known_arguments
 def check(
     trace: Given | Sequence[Given],
     rig: GivenRig | None,

@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -16,7 +17,7 @@ from bench.arrays import Array, known_rms, rms
 from bench.axis_kind import COULOMB, OFFSET, AxisKind
 from bench.comparison.spread import Between
 from bench.diagnosis.add import Added, add
-from bench.diagnosis.name import NamedEffect, Suspects, name
+from bench.diagnosis.name import NamedEffect, NamedEffects, Suspects, name
 from bench.diagnosis.next_experiment import NextExperiment, propose
 from bench.diagnosis.policy import POLICY, Policy, Reason
 from bench.diagnosis.probability import Probabilities
@@ -38,7 +39,7 @@ from bench.fit.stored import Balance
 from bench.gate.check import Check
 from bench.gate.gate import joined, passed
 from bench.gate.signals import clipped
-from bench.names import meant
+from bench.names import meant, with_known_arguments
 from bench.packed import unpack
 from bench.parameter import Parameter
 from bench.plant.model_file import StoredModel, model_xml
@@ -122,7 +123,8 @@ class Considered:
 class Diagnosis(Presented):
     """What is missing from the model of an axis, and the model with it.
 
-    It iterates over its effects, and gives one by its name, which is an attribute, too.
+    It iterates over its effects. It gives an effect, or a parameter of the axis, by its name, which is an attribute,
+    too.
 
     Attributes:
         verdict, effects, parameters: as the contract has them.
@@ -148,7 +150,7 @@ class Diagnosis(Presented):
 
     verdict: str
     objections: tuple[Reason, ...]
-    effects: list[NamedEffect]
+    effects: NamedEffects
     probabilities: Probabilities
     where: list[Where]
     unexplained_share: float
@@ -173,6 +175,9 @@ class Diagnosis(Presented):
     checks: tuple[Check, ...] = ()
     dead_time: DeadTime | None = None
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "effects", NamedEffects(self.effects))
+
     def __iter__(self) -> Iterator[NamedEffect]:
         return iter(self.effects)
 
@@ -185,15 +190,18 @@ class Diagnosis(Presented):
     def __bool__(self) -> bool:
         return True  # without an effect it is a result, too
 
-    def __getitem__(self, name: str) -> NamedEffect:
-        if name in self.parameters:
-            raise KeyError(f"{name}: found no such effect; allowed: .parameters[{name!r}], as it is of the axis")
-        return meant(name, {effect.name: effect for effect in self})
+    def __getitem__(self, name: str) -> Any:  # noqa: ANN401 - an effect, or a parameter of the axis
+        return meant(name, {**self.parameters, **{effect.name: effect for effect in self.effects}})
 
     @property
     def names(self) -> list[str]:
         """Of its effects."""
         return [effect.name for effect in self.effects]
+
+    @property
+    def gap(self) -> dict[str, Gap]:
+        """Gaps of torque and of velocity, as the contract's JSON has them."""
+        return {"torque": self.torque, "velocity": self.velocity}
 
     @property
     def residuals(self) -> Array:
@@ -218,6 +226,7 @@ class Diagnosis(Presented):
         return mujoco.MjSpec.from_string(model_xml(self.model))
 
 
+@with_known_arguments
 def diagnose(
     trace: Given | Sequence[Given],
     rig: GivenRig | None = None,
@@ -226,6 +235,7 @@ def diagnose(
     progress: Callable[[float], None] | None = None,
     policy: Policy | None = None,
     units: Units | None = None,
+    effects: Collection[str] | None = None,
 ) -> Diagnosis:
     """Find what is missing, name it, add it, and show the gap shrink.
 
@@ -238,6 +248,7 @@ def diagnose(
         progress: called with the share done.
         policy: numbers that decide on names, instead of POLICY.
         units: of columns by their names, which replace those of the file or data frame.
+        effects: names of the only effects that are tried, or of one; all of the catalogue by default.
 
     Raises:
         UndeterminedError: the recording is too short, too slow or too quiet to decide.
@@ -245,7 +256,9 @@ def diagnose(
     """
     policy, report = policy or POLICY, progress or (lambda share: None)
     rig, traces = recordings_of(trace, rig, units)
-    left_out = frozenset(named(one, "excluded").name for one in ([excluded] if isinstance(excluded, str) else excluded))
+    left_out = _named(excluded, "excluded")
+    if effects is not None:
+        left_out |= catalogue().keys() - _named(effects, "effects")
     gated = [passed(each, rig) for each in traces]
     unseen = passed(trace_of(holdout, rig, units), rig).trace if holdout is not None else None
     for each in gated:
@@ -261,6 +274,11 @@ def diagnose(
     report(0.9)
     shown, checks = show(bare, added), joined([each.checks for each in gated])
     return replace(shown, checks=checks, warnings=[*shown.warnings, *recordings.warnings, *moves])
+
+
+def _named(names: Collection[str], argument: str) -> frozenset[str]:
+    """Names of effects of the catalogue, of one or of several; InputError for another one."""
+    return frozenset(named(one, argument).name for one in ([names] if isinstance(names, str) else names))
 
 
 def decided(recordings: Recordings, excluded: frozenset[str], policy: Policy) -> tuple[Recordings, Fit, Suspects]:
@@ -296,7 +314,7 @@ def show(bare: Fit, added: Added) -> Diagnosis:
     return Diagnosis(
         verdict=comes_to,
         objections=objections,
-        effects=added.effects,
+        effects=NamedEffects(added.effects),
         probabilities=likely,
         where=where(bare, kind, unit, current, residuals, filtered_away(whole)),
         unexplained_share=whole.excess / max(bare.squares, 1e-300),

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import Any, SupportsIndex, overload
 
 import numpy as np
 
@@ -60,6 +60,18 @@ class NamedEffect(ByName):
     def values(self) -> dict[str, float]:
         """Values of its quantities - SI."""
         return {key: parameter.value for key, parameter in self.parameters.items()}
+
+
+class NamedEffects(list[NamedEffect]):
+    """Effects in their order, each by its place or its name."""
+
+    @overload
+    def __getitem__(self, which: SupportsIndex | str) -> NamedEffect: ...
+    @overload
+    def __getitem__(self, which: slice) -> list[NamedEffect]: ...
+    def __getitem__(self, which: SupportsIndex | str | slice) -> NamedEffect | list[NamedEffect]:
+        """The effect of a name or place; KeyError with the names that there are."""
+        return meant(which, {one.name: one for one in self}) if isinstance(which, str) else super().__getitem__(which)
 
 
 @dataclass(frozen=True)

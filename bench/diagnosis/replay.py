@@ -18,7 +18,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
-from bench.names import meant
+from bench.names import meant, with_known_arguments
 from bench.plant.model_file import LARGEST_VALUE, StoredModel, load_model, read_table
 from bench.plant.tracking import track
 from bench.presented import Shown
@@ -64,11 +64,18 @@ class Replay(Shown):
     @property
     def summary(self) -> str:
         """Both gaps in one line; without the one that the model does not predict."""
-        torque, left = known_rms(self.torque), known_rms(self.torque_residuals)
-        velocity, apart = known_rms(self.velocity), known_rms(self.velocity_residuals)
-        of_torque = f"torque gap {left:.4g} of {torque:.4g} {self.effort_unit}"
-        of_velocity = f"velocity gap {apart:.4g} of {velocity:.4g} {self.speed_unit}"
-        return f"{of_torque}, {of_velocity}" if np.isfinite(self.velocity_simulated).any() else of_torque
+        measured, units = (self.torque, self.velocity), (self.effort_unit, self.speed_unit)
+        return ", ".join(
+            f"{name} gap {gap:.4g} of {known_rms(signal):.4g} {unit}"
+            for (name, gap), signal, unit in zip(self.rmse.items(), measured, units, strict=True)
+            if name == "torque" or math.isfinite(gap)
+        )
+
+    @property
+    def rmse(self) -> dict[str, float]:
+        """RMS of the residuals of torque and velocity - effort_unit, speed_unit; nan where none is simulated."""
+        residuals = {"torque": self.torque_residuals, "velocity": self.velocity_residuals}
+        return {name: known_rms(one) if np.isfinite(one).any() else math.nan for name, one in residuals.items()}
 
     @property
     def velocity_residuals(self) -> Array:
@@ -102,6 +109,7 @@ class Replay(Shown):
         return csv_text(head.split(","), np.column_stack([self.time, *both]).tolist())
 
 
+@with_known_arguments
 def replay(model: Diagnosis | str | Path, trace: Given, rig: GivenRig, units: Units | None = None) -> Replay:
     """Run the model of a diagnosis, or of the `model.toml` that it wrote, along a recording.
 

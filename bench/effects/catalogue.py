@@ -42,6 +42,11 @@ def catalogue() -> MappingProxyType[str, Effect]:
     return MappingProxyType(found)
 
 
+def list_effects() -> dict[str, str]:
+    """Every effect by its name, as `diagnose` takes it, and what it is."""
+    return {name: effect.summary for name, effect in sorted(catalogue().items())}
+
+
 def simpler_forms(effect: Effect, scope: Scope) -> list[Effect]:
     """Effects of fewer quantities that such a recording cannot distinguish from one: it, where some of its are zero."""
     others = [catalogue()[name] for name in effect.ambiguous(scope) if name in catalogue()]

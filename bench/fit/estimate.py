@@ -20,6 +20,7 @@ from bench.gate.check import Check
 from bench.names import meant
 from bench.parameter import Parameter
 from bench.presented import Presented
+from bench.rig.given import Given, trace_of
 from bench.rig.rig import Rig
 from bench.structured import parse_json
 from bench.trace.motion import Motion
@@ -96,6 +97,7 @@ class Estimate(Presented, Mapping[str, Parameter]):
         motor: constants of the motor, where a voltage is recorded.
         coupling: of motor and load, by name, where positions of both are recorded.
         of: rig and recordings, where they are in memory, for a figure.
+        correlations: of the errors of the parameters of the fit, by name and name; empty if it was read from a file.
     """
 
     estimator: str
@@ -115,6 +117,7 @@ class Estimate(Presented, Mapping[str, Parameter]):
     motor: MotorConstants | None = None
     coupling: Mapping[str, Parameter] = field(default_factory=dict)
     of: tuple[Rig, tuple[Trace, ...]] | None = field(default=None, compare=False)
+    correlations: Mapping[str, Mapping[str, float]] = field(default_factory=dict, compare=False)
 
     def __getitem__(self, name: str) -> Parameter:
         return meant(name, self.parameters)
@@ -126,13 +129,60 @@ class Estimate(Presented, Mapping[str, Parameter]):
         return len(self.parameters)
 
     @property
+    def correlation(self) -> Array:
+        """Correlation of the errors of the parameters, in their order (p, p).
+
+        By the least squares; nan for a parameter that they do not give, such as the load's inertia.
+
+        Raises:
+            InputError: an estimate that was read from a file.
+        """
+        if not self.correlations:
+            raise InputError("correlation", "found an estimate from a file", "allowed: one that identify(...) returned")
+        table = self.correlations
+        return np.array([[table[a][b] if a in table and b in table else math.nan for b in self] for a in self])
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of the parameters, in their order - unit times unit (p, p): `correlation` times standard errors.
+
+        The standard errors count margins for misfit and tolerances; of these no correlation is known.
+        """
+        errors = np.array([one.std_error for one in self.parameters.values()])
+        return self.correlation * np.outer(errors, errors)
+
+    @property
     def residuals(self) -> Array:
         """Measured less modelled effort of the first recording, where it moves in one direction - unit - (m,).
 
         Raises:
             InputError: an estimate that was read from a file: it contains no recording.
         """
-        return self.renderer().residuals(self)
+        _, _, left = self.renderer().along(self)
+        return left[np.isfinite(left)]
+
+    @property
+    def fitted_values(self) -> Array:
+        """The effort that is modelled there - unit - (m,); raises as `residuals`."""
+        _, effort, left = self.renderer().along(self)
+        return (effort - left)[np.isfinite(left)]
+
+    def predict(self, recording: Given) -> Array:
+        """The effort modelled along a recording of the axis, as `identify` takes it - unit - (n,).
+
+        Where the direction is uncertain, and within the filter's reach of an end, it is nan.
+
+        Raises:
+            InputError: no recording, or an estimate that was read from a file.
+        """
+        if self.of is None:
+            raise InputError("predict()", "found an estimate from a file", "allowed: one that identify(...) returned")
+        trace = trace_of(recording, self.of[0])
+        time, effort, left = self.renderer().along(self, trace)
+        step = np.diff(time)
+        after = np.clip(np.searchsorted(time, trace.time), 1, step.size)  # rows may be every few samples
+        between = step[after - 1] < 1.5 * float(np.median(step))
+        return np.where(between, np.interp(trace.time, time, effort - left, np.nan, np.nan), np.nan)
 
     @classmethod
     def load(cls, path: str | Path) -> Estimate:

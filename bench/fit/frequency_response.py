@@ -25,6 +25,7 @@ import scipy
 from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array
+from bench.names import with_known_arguments
 from bench.parameter import Parameter
 from bench.rig.given import Given, GivenRig, Units, recordings_of
 from bench.trace.motion import measured_velocity
@@ -70,6 +71,7 @@ class FrequencyResponse:
     antiresonance: Parameter | None
 
 
+@with_known_arguments
 def frequency_response(
     trace: Given, rig: GivenRig | None = None, units: Units | None = None
 ) -> FrequencyResponse | None:

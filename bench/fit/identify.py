@@ -56,6 +56,7 @@ from bench.fit.solution import (
 from bench.fit.two_encoders import coupling
 from bench.gate.check import Check
 from bench.gate.gate import PARTS, Gated, gate, joined, passed, require
+from bench.names import with_known_arguments
 from bench.parameter import Parameter
 from bench.rig.given import Given, GivenRig, Units, given
 from bench.rig.rig import Rig
@@ -66,6 +67,7 @@ from bench.trace.trace import join as join_traces
 Summed = tuple[NormalEquations | None, int, tuple[Check, ...]]
 
 
+@with_known_arguments
 def identify(
     trace: Given | Iterator[Trace] | Sequence[Given | Iterator[Trace]],
     rig: GivenRig | None = None,
@@ -314,7 +316,8 @@ def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
     """Estimate from a solution of a recording, without a constant where it moves in one direction only."""
     kind, unit, parameters = rig.axis_kind, gathered.effort_unit, {}
     require_inertia(gathered.solution.whole, kind)
-    for term in (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else [])):
+    terms = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else []))
+    for term in terms:
         margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
         parameter = _parameter_of(found, term, kind, unit)
         if term == MISALIGNMENT:
@@ -324,7 +327,8 @@ def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
         for moved in (gathered.hinted, {} if depends is None else depends.moved):
             parameter = parameter.reaching(parameter.value + moved.get(term, 0.0))
         parameters[kind.parameter(term)] = parameter
-    estimate = _estimate_of([gathered], [found], parameters, found.power, rig)
+    at = [found.names.index(term) for term in terms]
+    estimate = _estimate_of([gathered], [found], parameters, found.covariance[np.ix_(at, at)], found.power, rig)
     remaining = remainder(estimate, kind, gathered.hint, gathered.depends)
     told = [f"{'; '.join(remaining)}; {TELLS}"] if remaining else []
     late = [] if gathered.late is None else [str(gathered.late)]
@@ -343,10 +347,14 @@ def _estimate_of(
     gathered: Sequence[Gathered],
     solutions: Sequence[Solution],
     parameters: Mapping[str, Parameter],
+    covariance: Array,
     left: float,
     rig: Rig,
 ) -> Estimate:
-    """The estimate of recordings, with what explains them; `left`: squared residuals - the effort's unit squared."""
+    """The estimate of recordings, with what explains them.
+
+    `covariance`: of the parameters by the fit alone (p, p); `left`: squared residuals - the effort's unit squared.
+    """
     kind, counts = rig.axis_kind, np.array([one.solution.whole.count for one in gathered])
     squares, total = (sum(one.measured[k] for one in gathered) for k in (0, 1))
     if squares == 0.0:
@@ -360,6 +368,7 @@ def _estimate_of(
     return Estimate(
         estimator="regression",
         parameters={**parameters, **load_inertia(parameters, rig)},
+        correlations=_correlations([*parameters], covariance),
         residual=Residual(size, floor, relative, unit, on),
         samples_read=sum(one.samples_read for one in gathered),
         samples_used=int(counts @ [smooth.stride for smooth in filters]),
@@ -371,13 +380,21 @@ def _estimate_of(
     )
 
 
+def _correlations(names: Sequence[str], covariance: Array) -> dict[str, dict[str, float]]:
+    """Of estimates by name and name, from their covariance (p, p)."""
+    error = np.sqrt(np.diag(covariance))
+    table = covariance / np.maximum(np.outer(error, error), 1e-300)
+    return {name: dict(zip(names, row, strict=True)) for name, row in zip(names, table.tolist(), strict=True)}
+
+
 def _estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
     """Estimate from several recordings of one axis."""
     _require_distinct(gathered)
     kind, unit = rig.axis_kind, gathered[0].effort_unit
     members = [_member(one, rig) for one in gathered]
     excesses = {term: _excess(members, kind, term) for term in members[0].terms}
-    theta, errors, reaches = _jointly(members, list(excesses.values()))
+    theta, covariance, reaches = _jointly(members, list(excesses.values()))
+    errors = np.sqrt(np.diag(covariance))
     parameters = {}
     for term, value, error, reach in zip(excesses, theta.tolist(), errors.tolist(), reaches.tolist(), strict=True):
         found = Parameter(value, kind.parameter_unit(term, unit), error, (value - reach, value + reach))
@@ -386,7 +403,7 @@ def _estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
     away = [theta - each.theta for each in members]
     left = sum(each.solution.power + float(d @ each.matrix @ d) for each, d in zip(members, away, strict=True))
     estimate = replace(
-        _estimate_of(gathered, [each.solution for each in members], parameters, left, rig),
+        _estimate_of(gathered, [each.solution for each in members], parameters, covariance, left, rig),
         warnings=(
             *(f"{each.alone.origin}: {warning}" for each in members for warning in each.warnings),
             *(f"{each.alone.origin} by itself: {each.alone.reason}" for each in members if each.alone.reason),
@@ -497,7 +514,7 @@ def _without(found: Parameter, reach: float) -> Parameter:
 
 
 def _jointly(members: Sequence[Member], excesses: Sequence[Excess]) -> tuple[Array, Array, Array]:
-    """Coefficients of recordings that vary beyond their own errors, standard errors, half widths at 95 % (s,) each."""
+    """Coefficients of recordings that vary beyond their own errors (s,), their covariance (s, s), half widths (s,)."""
     between = np.array([found.variance for found in excesses])
     # the information of each: its matrix over the mean variance that its covariance implies
     implied = [float(np.trace(each.matrix @ each.covariances[0])) / between.size for each in members]
@@ -506,12 +523,12 @@ def _jointly(members: Sequence[Member], excesses: Sequence[Excess]) -> tuple[Arr
     moment = np.einsum("kij,kj->i", known, np.array([each.theta for each in members]))
     theta, inverse = solved(known.sum(axis=0), moment, np.zeros_like(known[0]))
     wide = between * np.array([found.reach for found in excesses]) ** 2
-    variance, reached = np.zeros(theta.size), np.zeros(theta.size)
+    covariance, reached = np.zeros((theta.size, theta.size)), np.zeros(theta.size)
     for share, each in zip(inverse @ known, members, strict=True):
-        error, half_width = (np.diag(share @ found @ share.T) for found in each.covariances)
-        variance += error + share**2 @ between
-        reached += half_width + share**2 @ wide
-    return theta, np.sqrt(variance), np.sqrt(reached)
+        error, half_width = (share @ found @ share.T for found in each.covariances)
+        covariance += error + (share * between) @ share.T
+        reached += np.diag(half_width) + share**2 @ wide
+    return theta, covariance, np.sqrt(reached)
 
 
 def _require_distinct(gathered: Sequence[Gathered]) -> None:

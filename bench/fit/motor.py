@@ -138,7 +138,8 @@ def with_inertia(found: Estimate, trace: Trace, rig: Rig) -> Estimate:
     if by is None:
         return found
     warnings = (*found.warnings, f"{words(name)}: {by[1]}")
-    return replace(found, parameters={**found.parameters, name: by[0]}, warnings=warnings)
+    by_fit = {one: table for one, table in found.correlations.items() if one != name}
+    return replace(found, parameters={**found.parameters, name: by[0]}, warnings=warnings, correlations=by_fit)
 
 
 def _inertia(found: Estimate, trace: Trace, rig: Rig, per_volt: float) -> tuple[Parameter, str] | None:

@@ -15,7 +15,7 @@ from bench.joints.goals import GivenGain, by_goals, drive_of, with_gains, with_o
 from bench.joints.grade import GradedJoint, graded
 from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
 from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
-from bench.names import meant, nearest
+from bench.names import meant, nearest, with_known_arguments
 from bench.plant.model_file import StoredModel
 from bench.plant.robot import AddedBody, joint_units
 from bench.presented import Shown
@@ -82,6 +82,7 @@ class IdentifiedRobot(Shown):
         return robot_with(self.mjcf, models, out, self.added, kept, stand=self.stand, drives=drives)
 
 
+@with_known_arguments
 def robot(
     logs: str | Path | Sequence[str | Path],
     mjcf: str | Path | Sequence[str | Path],

@@ -200,6 +200,18 @@ class References:
         """Time between ticks - s."""
         return float(self.time[1] - self.time[0])
 
+    def until(self, duration: float) -> References:
+        """Its beginning of such a length - s; InputError where it is shorter than that."""
+        if not self.period <= duration <= self.time[-1]:
+            raise InputError(
+                "duration", f"found {duration:g} s", f"allowed: {self.period:g} s to {self.time[-1]:g} s, as the motion"
+            )
+        count = int(np.searchsorted(self.time, duration, side="right"))
+        torque = None if self.torque is None else self.torque[:count]
+        return References(
+            *(one[:count] for one in (self.time, self.position, self.velocity, self.acceleration)), torque
+        )
+
     def then(self, other: References) -> References:
         """This motion, then another one that starts a tick later from where this one ends, both at rest there."""
         time = np.concatenate([self.time, self.time[-1] + self.period + other.time])

@@ -14,6 +14,7 @@ from bench.arrays import Array, rms
 from bench.effects.present import GivenEffects, Present, given_effects
 from bench.errors import InputError
 from bench.files import write_text
+from bench.names import with_known_arguments
 from bench.plant.axis_model import AxisParameters, effect_values
 from bench.plant.drive import References
 from bench.plant.plant import OF_MECHANICS, Plant, States
@@ -56,6 +57,7 @@ class Simulated(Shown):
         return self.trace[name]
 
 
+@with_known_arguments
 def simulate(
     rig: GivenRig,
     profile: str | Trace | ArrayLike = DEFAULT,
@@ -63,6 +65,7 @@ def simulate(
     references: References | None = None,
     progress: Progress | None = None,
     effects: GivenEffects = (),
+    duration: float | None = None,
 ) -> Simulated:
     """Simulate the axis of a rig.
 
@@ -75,6 +78,7 @@ def simulate(
         progress: called with the share done.
         effects: added to it, in any order; as texts, `unbalance:amplitude=0.1`, or by their names in a dictionary,
             `{"unbalance": {"amplitude": 0.1}}`, with numbers in SI or texts with a unit.
+        duration: of the beginning of the motion that is simulated - s; all of it by default.
 
     Raises:
         InputError: the rig lacks what the simulation needs, or the profile is unknown.
@@ -90,6 +94,8 @@ def simulate(
     profile = str(profile)
     if references is None:
         references = plan(profile, MotionLimits.from_rig(rig, plant.axis.parameters, period))
+    if duration is not None:
+        references = references.until(duration)
     steps = float(references.time[-1]) / plant.timestep
     if steps > MOST_TICKS:
         allowed = f"allowed: up to {MOST_TICKS:g} for this motion"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 
-from bench.effects.catalogue import catalogue
+from bench.effects.catalogue import list_effects
 from bench.effects.effect import DriveLimit, Effect, EncoderFault, Lag, Stage
 from bench.effects.present import named
 from bench.effects.torque import Friction, Inertia, Torque
@@ -23,8 +23,7 @@ STAGES = {
 
 def effects_table() -> Table:
     """Every effect with what it is, a line each."""
-    rows = ((name, effect.summary) for name, effect in sorted(catalogue().items()))
-    return table("", ("effect", "what it is"), rows)
+    return table("", ("effect", "what it is"), list_effects().items())
 
 
 def effect_page(name: str) -> str:

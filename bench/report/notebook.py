@@ -29,7 +29,7 @@ from bench.presented import Size
 from bench.report.check import check_document, check_json
 from bench.report.diagnosis import diagnosis_json, verdict_sentence, write_diagnosis
 from bench.report.document import Chart, Colour, Intervals, Panel, Paragraph, Picture, Style, Table, series
-from bench.report.gap import at_a_glance
+from bench.report.gap import at_a_glance, gap_chart
 from bench.report.identification import identification, identification_json, moved
 from bench.report.numbers import effort_word, sentence, unit_text
 from bench.report.parts import parameters_table
@@ -123,8 +123,13 @@ def _html(table: Table) -> str:
 
 
 def plot(result: object, names: Sequence[str] = (), ax: Axes | None = None, figsize: Size | None = None) -> Any:  # noqa: ANN401 - axes, or an array of them
-    """The parts of a result with these names, each in axes of its own; into given ones the first of them."""
+    """The parts of a result with these names, each in axes of its own; into given ones the first of them.
+
+    Of a diagnosis `where` names the gap over all coordinates.
+    """
     parts = parts_of(result)
+    if isinstance(result, Diagnosis):
+        names = [each for name in names or ("gap",) for each in ([*parts][1:] if name == "where" else [name])]
     for name in names:
         if name not in parts:
             found = f"found {name!r}{nearest(name, [*parts]) if isinstance(name, str) else ''}"
@@ -160,11 +165,14 @@ def parts_of(result: object) -> dict[str, Panel | Intervals]:
                 if np.isfinite(simulated).any()
             }
         case Estimate():
-            time, effort, left = _along(result)
+            time, effort, left = along(result)
             name, unit = effort_word(result.residual.unit), result.residual.unit
             return {name: _over_time(time, name, unit, {"measured": effort, "modelled": effort - left})}
         case Diagnosis():
-            return {"gap": _first_of(at_a_glance(result)[-1])}
+            coordinates = [one.coordinate for one in result.where if one.after]
+            over = gap_chart(result, coordinates)
+            by_name = {name: _labelled(over, panel) for name, panel in zip(coordinates, over.panels, strict=True)}
+            return {"gap": _first_of(at_a_glance(result)[-1]), **by_name}
         case Servo():
             (chart,) = servo(result, "").glance
             return {"position": _first_of(chart)}
@@ -177,7 +185,11 @@ def parts_of(result: object) -> dict[str, Panel | Intervals]:
 
 
 def _first_of(chart: Chart) -> Panel:
-    return chart.panels[0].model_copy(update={"y_label": f"{chart.y_label} / {chart.y_unit}"})
+    return _labelled(chart, chart.panels[0])
+
+
+def _labelled(chart: Chart, panel: Panel) -> Panel:
+    return panel.model_copy(update={"y_label": f"{chart.y_label} / {chart.y_unit}"})
 
 
 def _over_time(time: Array, name: str, unit: str, signals: Mapping[str, Array]) -> Panel:
@@ -190,22 +202,15 @@ def _over_time(time: Array, name: str, unit: str, signals: Mapping[str, Array]) 
     return Panel(x_label="time", x_unit="s", y_label=f"{words(name)} / {unit_text(unit)}", series=tuple(drawn))
 
 
-def _along(estimate: Estimate) -> tuple[Array, Array, Array]:
-    """Time, effort and residual of the first recording where it moves (m,) each - s, unit, unit."""
-    if estimate.of is None or not estimate.of[1]:
+def along(result: object, recording: object = None) -> tuple[Array, Array, Array]:
+    """Time, effort and residual of the first recording, or of another, where it moves (m,) each - s, unit, unit."""
+    if not isinstance(result, Estimate) or result.of is None or not (result.of[1] or recording):
         found = "found an estimate without its recording"
         raise InputError("plot(), residuals", found, "allowed: one of recordings in memory")
-    rig, (first, *_) = estimate.of
-    (one,) = moved([Path(first.origin)], rig, estimate, lambda _: first)
+    rig, known = result.of
+    first = recording if isinstance(recording, Trace) else known[0]
+    (one,) = moved([Path(first.origin)], rig, result, lambda _: first)
     return one.motion.time, one.motion.effort, one.left
-
-
-def residuals(result: object) -> Array:
-    """Measured less modelled effort of an estimate, where its recording moves (m,)."""
-    if not isinstance(result, Estimate):
-        raise TypeError(f"nothing is known of the residuals of {type(result).__name__}")
-    left = _along(result)[2]
-    return left[np.isfinite(left)]
 
 
 def frame(result: object) -> Any:  # noqa: ANN401 - of pandas or polars

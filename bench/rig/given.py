@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 Given: TypeAlias = Trace | str | Path | Arrays
 GivenRig: TypeAlias = Rig | str | Path | Mapping[str, Any]
 Units: TypeAlias = Mapping[str, str]
-#: Keys of a dictionary by which the axis is linear.
-_LINEAR = {"moving_mass", "force_constant", "force_per_volt", "rated_force"}
 
 
 def given(
@@ -71,11 +69,11 @@ def rig_of(given: GivenRig) -> Rig:
     if isinstance(given, Rig):
         return given
     if isinstance(given, Mapping):
-        motor = given.get("motor")
-        kind = "linear" if isinstance(motor, Mapping) and _LINEAR & set(motor) else "rotary"
-        return Rig(**{"name": "axis", "kind": kind, **{str(key): value for key, value in given.items()}})
+        return Rig(**{str(key): value for key, value in given.items()})
     if not isinstance(given, str | Path):
         allowed = 'allowed: a Rig, a rig file, a shipped rig\'s name, or {"motor": {"torque_constant": "0.8 N*m/A"}}'
+        if hasattr(given, "__array__"):
+            raise InputError("rig", f"found {type(given).__name__}", f"{allowed}; signals go into the first argument")
         raise InputError("rig", f"found {short(repr(given))}", allowed)
     return load_rig(given)
 

@@ -25,6 +25,8 @@ from bench.validated import input_error
 
 #: Standard acceleration of free fall - m/s**2. ISO 80000-3: g_n.
 STANDARD_GRAVITY = 9.80665
+#: Keys of `[motor]` by which an axis is linear.
+LINEAR_MOTOR = ("moving_mass", "force_constant", "force_per_volt", "rated_force")
 
 
 class Load(RigTable):
@@ -237,6 +239,9 @@ class Rig(RigTable):
     def __init__(self, /, **table: Any) -> None:  # noqa: ANN401 - any content of a rig file
         """Checked from the keys of a rig file, values with units, or numbers in SI; InputError where they are none."""
         source, motor = str(table.get("source", "rig")), table.get("motor")
+        if "source" not in table:  # of a program and not of a file, which states both
+            linear = isinstance(motor, Mapping) and any(key in motor for key in LINEAR_MOTOR)
+            table = {"name": "axis", "kind": (LINEAR if linear else ROTARY).name, **table}
         if isinstance(motor, dict) and "model" in motor:
             table["motor"] = {**catalogue_motor(motor["model"], f"{source}: motor.model"), **motor}
         kind = LINEAR if table.get("kind") == LINEAR.name else ROTARY
@@ -250,6 +255,10 @@ class Rig(RigTable):
             said = ", ".join(f"{name} in {unit}" for name, unit in numbers.items())
             vars(self)["assumed"] = (f"numbers of the rig without a unit are taken in SI: {said}",)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Its tables in SI, without what is not stated; `Rig(**tables)` makes the same rig."""
+        return self.model_dump(exclude_none=True)
+
     @classmethod
     def of(cls, table: Mapping[str, Any], source: str = "rig") -> Rig:
         """Checked from the table of a rig file, values with units; InputError where it is none."""
@@ -257,7 +266,7 @@ class Rig(RigTable):
 
     @model_validator(mode="after")
     def _values_fit_the_kind(self) -> Rig:
-        wrong = ("moving_mass", "force_constant", "force_per_volt", "rated_force")
+        wrong = LINEAR_MOTOR
         if not self.axis_kind.turns:
             wrong = ("rotor_inertia", "torque_constant", "torque_per_volt", "rated_torque", "continuous_stall_torque")
         for name in wrong:

@@ -74,7 +74,8 @@ def si(unit: str, translated: bool = False) -> WrapValidator:
         own = (context["kind"] if translated and context else ROTARY).translated(unit)
         if (numbers := context.get("numbers")) is not None and isinstance(text, Real) and not isinstance(text, bool):
             numbers[str(info.field_name)] = own
-            text = f"{float(text)!r} {own}"
+            within = f" +/- {text.tolerance!r}" if isinstance(text, Toleranced) else ""
+            text = f"{float(text)!r}{within} {own}"
         try:
             value, tolerance = parse_with_tolerance(text, own, "")
         except InputError as error:

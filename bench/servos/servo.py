@@ -22,6 +22,7 @@ from bench.axis_kind import AxisKind
 from bench.errors import InputError, UndeterminedError
 from bench.gate.check import Check
 from bench.gate.gate import gate, joined
+from bench.names import with_known_arguments
 from bench.parameter import Parameter
 from bench.presented import Presented
 from bench.rig.rig import Rig
@@ -108,6 +109,7 @@ class Servo(Presented):
         return self.found.parameters
 
 
+@with_known_arguments
 def servo(
     log: str | Path | Trace | Sequence[str | Path | Trace],
     rig: Rig | None = None,

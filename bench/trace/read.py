@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from bench.errors import InputError
+from bench.names import with_known_arguments
 from bench.offered import READERS_GROUP, offered
 from bench.trace.channel import Recording, with_units
 from bench.trace.choose import ReadingOptions
@@ -94,10 +95,13 @@ def reader_of(source: Source) -> Reader:
     for reader in readers() if "\0" not in source.head else ():
         if source.ending in reader.endings and not (reader is TABLE and marked_up):
             return reader
+    if source.ending == ".toml":
+        raise InputError(source.path, "found a TOML file", "allowed: a recording; bench.load_rig reads a rig file")
     formats = ", ".join(reader.format for reader in readers())
     raise InputError(source.path, "not a trace in any format the bench reads", f"allowed: {formats}")
 
 
+@with_known_arguments
 def read(
     path: str | Path,
     columns: Mapping[str, str] | ReadingOptions | None = None,

@@ -9,6 +9,7 @@ of them and not the others.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, KeysView, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, partial
@@ -154,7 +155,9 @@ class Trace(Shown):
     def __getitem__(self, name: str | slice) -> NDArray[np.float64] | Trace:
         """Values of a signal, or a part of all; InputError naming the signal that the trace does not hold."""
         if isinstance(name, slice):
-            return replace(self, time=self.time[name], signals={key: own[name] for key, own in self.signals.items()})
+            base = self.time_base and replace(self.time_base, sample_period=(name.step or 1) * self.sample_period)
+            signals = {key: own[name] for key, own in self.signals.items()}
+            return replace(self, time=self.time[name], signals=signals, time_base=base)
         if name not in self.signals:
             raise InputError(self.origin, f"contains no {name}", f"found: {', '.join(self.signals) or 'no signal'}")
         return self.signals[name]
@@ -211,6 +214,13 @@ class Trace(Shown):
         """Linear if position or velocity is in metres, else rotary."""
         lengths = (LINEAR.length_unit, LINEAR.speed_unit)
         return LINEAR if any(self.units.get(name) in lengths for name in ("position", "velocity")) else ROTARY
+
+    def resample(self, rate: float) -> Trace:
+        """The same at another number of samples per second - Hz -, on straight lines between its samples."""
+        if not 0.0 < rate < math.inf:
+            raise InputError("resample(rate)", f"found {rate:g} Hz", "allowed: above 0 Hz")
+        time, signals = _sampled(self, [*self], 1.0 / rate)
+        return replace(self, time=time, signals=signals, time_base=TimeBase(1.0 / rate, resampled=True))
 
     def without(self, name: str) -> Trace:
         """The same without one of its signals."""
