@@ -23,6 +23,7 @@ weights, of `bench.diagnosis.policy`, maximise the likelihood of recordings whos
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -186,7 +187,7 @@ class Contender:
 
     def remains(self, policy: Policy) -> bool:
         """Whether its residual is clearly above the noise that the best hypothesis shows."""
-        return self.over > np.log1p((policy.remainder**2 - 1.0) / BESIDE_NOISE)
+        return self.over > math.log1p((policy.remainder**2 - 1.0) / BESIDE_NOISE)
 
 
 #: Effects of a hypothesis with how many terms each has.

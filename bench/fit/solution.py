@@ -489,7 +489,7 @@ def _without_each(table: Array, edges: NDArray[np.intp]) -> Array:
         return np.full(table.shape[1] - 1, np.inf)
     sums = np.array([table[start:stop].T @ table[start:stop] for start, stop in pairwise(edges.tolist())])
     grams, scores = sums[:, :-1, :-1], sums[:, :-1, -1]
-    whole, free = grams.sum(axis=0), np.ones(scores.shape, dtype=bool)
+    whole, free = grams.sum(axis=0), np.ones_like(scores, dtype=bool)
     for _ in range(free.shape[1]):
         shares = _shown(whole - grams, free) / _shown(whole, free)
         least = np.argmin(shares, axis=1)

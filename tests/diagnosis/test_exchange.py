@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from bench.diagnosis.policy import Policy
-from bench.diagnosis.search import search
+from bench.diagnosis.probability import BESIDE_NOISE, Contender
+from bench.diagnosis.search import search, without_impossible
 from bench.effects.catalogue import catalogue
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Term
 from tests.diagnosis.constructed import COULOMB, bare, likely, moved, recorded, wave
 
 ECCENTRICITY, PHASE = 0.03, 0.8
@@ -86,3 +89,19 @@ def test_decoys_are_visited_and_never_the_result():
     decoys = [fitted for fitted in searched.visited if any(term.effect.decoy for term in fitted.terms)]
     assert any(fitted.chi < 1.1 for fitted in decoys)
     assert not any(term.effect.decoy for term in searched.last.terms)
+
+
+def test_what_the_last_effect_makes_impossible_leaves():
+    """A spring that pushes away from its reference is none; with the wave that is there, none is needed."""
+    motion = moved()
+    pushed = bare(recorded(motion, wave(0.02, 7.0), lambda motion: -1e-3 * motion.position))
+    spring, cogging = (catalogue()[name] for name in ("torsion_spring", "cogging_torque"))
+    both = fit(pushed.rows, pushed.hypothesis.with_terms([Term(spring), Term(cogging, (7.0,))]))
+    assert not Policy().physical(both)
+    assert without_impossible(both, Policy()).hypothesis.names == ("cogging_torque",)
+
+
+@pytest.mark.parametrize(("residual", "remains"), [(1.11, False), (1.13, True)])
+def test_more_than_noise_remains_from_1_12_times_the_noise_of_the_best_set_on(residual, remains):
+    over = float(np.log1p((residual**2 - 1.0) / BESIDE_NOISE))
+    assert Contender(bare(recorded(moved())), 0.0, over, 0.0, 0, outside=False).remains(Policy()) is remains
