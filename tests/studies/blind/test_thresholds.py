@@ -34,10 +34,10 @@ def test_a_sample_holds_every_effect_and_group():
 
 
 def test_right_and_wrong_names_are_counted():
-    assert str(Tally.of(TRUTHS, [Named(("unbalance",)), Named(("backlash",))])) == "1 0 0 0, 1"
+    assert str(Tally.of(TRUTHS, [Named(("unbalance",)), Named(("backlash",))])) == "1 0 0 0 0, 1"
     outside = [{"group": "outside", "effects": ["vibration"]}]
-    assert str(Tally.of(outside, [Named((), True)])) == "0 0 0 1, 0"
-    assert str(Tally.of(outside, [Named((), False)])) == "0 0 0 0, 0"
+    assert str(Tally.of(outside, [Named((), True)])) == "0 0 0 1 0, 0"
+    assert str(Tally.of(outside, [Named((), False)])) == "0 0 0 0 0, 0"
 
 
 def test_a_recording_is_named_under_a_policy():
@@ -54,7 +54,7 @@ def test_a_threshold_that_changes_nothing_is_marked():
     idle = [row for row in rows if "changes nothing here" in row]
     assert len(idle) == len(thresholds()) - 1
     assert next(row for row in rows if row.startswith("| Policy.chance")).split("|")[4:7] == [
-        " 1 0 1 0, 0 ",
+        " 1 0 1 0 0, 0 ",
         "  ",
-        " 0 0 1 0, 1 ",
+        " 0 0 1 0 0, 1 ",
     ]
