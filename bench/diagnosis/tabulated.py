@@ -186,6 +186,7 @@ def smoothed(columns: Array, residual: Array) -> tuple[Array, float]:
     part = np.arange(rows) * BLOCKS // rows % PARTS
     own = [(columns[part == k], residual[part == k]) for k in range(PARTS)]
     grams, products = np.array([x.T @ x for x, _ in own]), np.array([x.T @ y for x, y in own])
+    squares = float(residual @ residual)
     gram, product = grams.sum(axis=0), products.sum(axis=0)
     second = np.diff(np.eye(NODES), 2, axis=0)
     bending = np.kron(np.eye(width // NODES), second.T @ second)
@@ -195,7 +196,7 @@ def smoothed(columns: Array, residual: Array) -> tuple[Array, float]:
     for smoothness in SMOOTHNESS:
         penalty = smoothness * scale * bending + held
         nodes = np.linalg.solve(gram - grams + penalty, (product - products)[..., None])[..., 0]
-        missed = sum(float(np.sum((y - x @ theta) ** 2)) for (x, y), theta in zip(own, nodes, strict=True))
+        missed = squares + float(np.einsum("ki,kij,kj->", nodes, grams, nodes) - 2.0 * np.sum(nodes * products))
         found.append((missed, np.linalg.solve(gram + penalty, product)))
     missed, nodes = min(found, key=lambda one: one[0])
     return nodes, missed

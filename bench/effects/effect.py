@@ -135,8 +135,7 @@ class Effect(ABC):
         replaces: names of effects that it is tried instead of, once no other addition explains more; see `in_place_of`.
         decoy: physics that no catalogue lists: it competes with the names of a search and never gets one.
         copies_torque: its columns are computed from the torque that reaches it, and of the noise of that, see
-            `bench.fit.hypothesis.not_reaching`; each value from its own sample only: those of a recording with
-            holes are made at once.
+            `bench.fit.hypothesis.not_reaching`; it is without memory.
         rescales_torque: its one strength is what the torque that acts has more than the reported one, as share of that.
         of_speed: its torque depends only on speed.
         external: a varying torque that depends only on motion and time: behind a coupling it may act on the load as on
@@ -271,9 +270,12 @@ class Columns(Effect):
 
     Attributes:
         bounded: bounds of strengths in a fit, by their index.
+        memoryless: each value of a column is computed from its own sample only, so those of a recording with holes are
+            made at once.
     """
 
     bounded: ClassVar[Mapping[int, tuple[float, float]]] = {}
+    memoryless: ClassVar[bool] = False
 
     @abstractmethod
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:

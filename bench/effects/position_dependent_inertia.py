@@ -8,7 +8,7 @@ A - relative amplitude; n - harmonic; q - angle - rad. Lagrange's equation of th
 from bench.arrays import namespace
 from bench.effects.shape import Shapes
 from bench.effects.signals import Axis, Number, Signals, Values
-from bench.effects.torque import Inertia, kinetic
+from bench.effects.torque import Inertia
 from bench.effects.waves import PHASE, Wave, harmonics, phase_angle, turned
 from bench.trace.filter import Column
 from bench.units import Quantity
@@ -34,9 +34,11 @@ class PositionDependentInertia(Wave, Inertia):
 
     def columns_of(self, signals: Signals, shapes: Shapes) -> list[Column]:
         """Of several harmonics, whose waves are made at once."""
-        columns = list[Column]()
+        columns, energy = list[Column](), -0.5 * signals.velocity**2
         for number, (sine, cosine) in turned(signals.position, [shape[0] for shape in shapes]):
-            columns += [kinetic(signals, sine, number * cosine), kinetic(signals, cosine, -number * sine)]
+            less = number * energy
+            columns += [[(sine * signals.velocity, 1), (cosine * less, 0)]]
+            columns += [[(cosine * signals.velocity, 1), (-sine * less, 0)]]
         return columns
 
 

@@ -33,12 +33,25 @@ class Vibration(Columns):
     name = "outside_vibration"
     summary = "a torque periodic in time"
     decoy = True
+    memoryless = True
     quantities = (Quantity("frequency", "f", "1/s", lower=0.0),)
     shapes = (Shape(quantities[0], tuple(float(f) for f in np.geomspace(0.4, 120.0, 240)), measure=FREQUENCY),)
 
     def columns(self, signals: Signals, shape: Sequence[float]) -> list[Column]:
-        wave = _turning(2.0 * np.pi * shape[0], signals)
-        return [[(wave.imag, 0)], [(wave.real, 0)]]
+        return self.columns_of(signals, [shape])
+
+    def columns_of(self, signals: Signals, shapes: Shapes) -> list[Column]:
+        """Of several frequencies, of few exponentials each: those of blocks of samples times those within one."""
+        step, first = signals.sample_period, float(np.min(signals.time))
+        passed = np.rint((signals.time - first) / step).astype(np.intp)
+        size = math.isqrt(int(passed.max())) + 1
+        block, within = np.divmod(passed, size)
+        columns, ahead = list[Column](), step * np.arange(size)
+        for rate in (2.0 * np.pi * shape[0] for shape in shapes):
+            blocks = np.exp(1j * rate * (first + size * ahead))
+            wave: NDArray[np.complex128] = blocks.take(block) * np.exp(1j * rate * ahead).take(within)
+            columns += [[(wave.imag, 0)], [(wave.real, 0)]]
+        return columns
 
 
 class Notch(Columns):
@@ -50,6 +63,7 @@ class Notch(Columns):
     name = "outside_notch"
     summary = "a bump at one angle"
     decoy = True
+    memoryless = True
     quantities = (Quantity("angle", "q_0", "rad"), Quantity("width", "w", "rad", lower=0.0))
     shapes = (
         Shape(quantities[0], tuple(float(q) for q in np.arange(36) * np.pi / 18.0), additive=True),
@@ -79,6 +93,7 @@ class Smooth(Columns):
     name = "outside_smooth"
     summary = "a torque that runs smoothly over the travel"
     decoy = True
+    memoryless = True
     quantities = (Quantity("wave_number", "k", "dimensionless", lower=0.0, linear_unit="rad/m"),)
     shapes = (Shape(quantities[0], (0.5 * np.pi,), reach=0.0, measure=TRAVEL),)
 
@@ -128,6 +143,7 @@ class VaryingGain(Columns):
     name = "outside_gain"
     summary = "a torque per ampere that changes with current or speed"
     decoy = True
+    memoryless = True
     stage = Stage.COMMUTATION
     copies_torque = True
     quantities = ()
@@ -148,6 +164,7 @@ class OtherWave(Columns):
     name = "outside_wave"
     summary = "a wave of position of another form"
     decoy = True
+    memoryless = True
     stage = Stage.COMMUTATION
     copies_torque = True
     quantities = (Quantity("harmonic", "n", "dimensionless", lower=0.0, linear_unit="rad/m"),)
@@ -160,15 +177,6 @@ class OtherWave(Columns):
         angle = shape[0] * signals.position
         waves = np.sin(angle), np.cos(angle)
         return [[(factor(signals) * wave, order)] for factor, order in self._factors for wave in waves]
-
-
-def _turning(rate: float, signals: Signals) -> NDArray[np.complex128]:
-    """e**(j*rate*t) at the samples (n,), of few exponentials: those of blocks times those within one."""
-    count = signals.time.size
-    size = math.isqrt(count) + 1
-    ahead = signals.sample_period * np.arange(size)
-    blocks = np.exp(1j * rate * (signals.time[0] + size * ahead))
-    return np.outer(blocks, np.exp(1j * rate * ahead)).ravel()[:count]
 
 
 def _recent_speed(signals: Signals, time_constant: float) -> Array:

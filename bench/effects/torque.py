@@ -28,6 +28,8 @@ Terms = list[tuple[Number, int]]
 class Torque(Columns):
     """A torque of the present state, linear in its strengths."""
 
+    memoryless = True
+
     @abstractmethod
     def torque(self, values: Values, axis: Axis, at: AxisState) -> Number:
         """Torque against the motor's, or what the torque that reaches its stage loses there - N*m (N)."""
@@ -130,9 +132,5 @@ class Inertia(Torque):
     def resisting(self, signals: Signals, strengths: Sequence[float], shape: Sequence[float]) -> Terms:
         """Change of its momentum, less that of its kinetic energy over position."""
         values = self.report(strengths, shape, signals.unit)
-        return kinetic(signals, *self.inertia(values, signals.unit, signals.position))
-
-
-def kinetic(signals: Signals, inertia: Array, slope: Array) -> Terms:
-    """Terms of a column: torque that an inertia of a slope over position takes (n,)."""
-    return [(inertia * signals.velocity, 1), (-0.5 * slope * signals.velocity**2, 0)]
+        inertia, slope = self.inertia(values, signals.unit, signals.position)
+        return [(inertia * signals.velocity, 1), (-0.5 * slope * signals.velocity**2, 0)]

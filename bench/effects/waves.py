@@ -114,7 +114,9 @@ def followed(signals: Signals, number: float) -> Array:
     A cosine between: a wave that breaks off has slow parts, which pass the filter that stops the wave (F. J. Harris,
     Proceedings of the IEEE 66, 1978, 51-83).
     """
-    of_nyquist = number * np.abs(signals.velocity) * signals.sample_period / np.pi
+    of_nyquist = (number * signals.sample_period / np.pi) * np.abs(signals.velocity)
+    if of_nyquist.max(initial=0.0) <= FOLLOWED:  # the same, of which the cosine takes ten times as long
+        return np.ones_like(of_nyquist)
     return 0.5 + 0.5 * np.cos(np.pi * np.clip((of_nyquist - FOLLOWED) / (1.0 - FOLLOWED), 0.0, 1.0))
 
 

@@ -256,14 +256,9 @@ class Fit:
 
     def worth(self, effects: Sequence[Columns]) -> list[float]:
         """Squares that effects without shapes would each take - (N*m)**2 (N**2)."""
-        widths: list[int] = []
-
-        def every(signals: Signals) -> list[Column]:
-            made = [effect.columns(signals, ()) for effect in effects]
-            widths[:] = map(len, made)
-            return list(chain.from_iterable(made))
-
-        table = self.seen(every, False)
+        made = [self.next_rows.columns_of(effect, [()]) for effect in effects]
+        widths = [len(columns) for columns in made]
+        table = self.seen([list(chain.from_iterable(made))], False)
         owner, found = np.repeat(np.arange(len(effects)), widths), np.zeros(len(effects))
         for width in set(widths):
             alike = np.equal(widths, width)
@@ -280,27 +275,25 @@ class Fit:
         return [proposal for part in parts for proposal in self._by_columns(effect, part)]
 
     def _by_columns(self, effect: Columns, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
-        def made(signals: Signals) -> Sequence[Column]:
-            return effect.columns_of(signals, shapes)
-
         rows, (_, resting) = seen_by(self.rows, self.hypothesis), delays(self.rows, self.hypothesis)
         known = effect.columns_of, tuple(shapes)
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
             columns = self.behind(effect.tables_of, shapes)
             worth = self.gains(columns, 1) * (self.residual @ columns > 0.0)  # none without a load behind it
         elif isinstance(effect, Friction | Bristles) or effect.copies_torque or not self.determined.all():
-            columns = self.seen(made, False)
+            columns = self.seen([self.next_rows.columns_of(effect, shapes)], False)
             worth = self.gains(columns, columns.shape[1] // len(shapes))
         else:  # their products with each other are kept, those with what is fitted need none of them filtered
             tables: list[Array] = []
 
             def own() -> Array:
-                tables.append(rows.table(made, resting))
+                tables.append(rows.table([rows.columns_of(effect, shapes)], resting))
                 return _own(tables[0], tables[0].shape[1] // len(shapes))
 
             grams = rows.memory.get((*known, resting, rows.made_by), own)
-            products = tables[0].T @ self._targets if tables else self._against(made)
-            worth = _taken(grams, products, self._targets)
+            targets = self._targets
+            products = tables[0].T @ targets if tables else self._against(self.next_rows.columns_of(effect, shapes))
+            worth = _taken(grams, products, targets)
         return [Proposal(shape, float(gain)) for shape, gain in zip(shapes, worth, strict=True)]
 
     @cached_property
@@ -309,7 +302,7 @@ class Fit:
         return np.column_stack([self.span, self.residual])
 
     @cached_property
-    def _against(self) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
+    def _against(self) -> Callable[[Sequence[Column]], Array]:
         return self.next_rows.against(self._targets, delays(self.rows, self.hypothesis)[1])
 
 
@@ -488,12 +481,12 @@ def _projected(start: Fit, hypothesis: Hypothesis, indices: Sequence[int], over_
     best of points to each side, as it comes from a grid. One without a derivative, as of an instant between two rows,
     is held.
     """
-    from scipy.optimize import least_squares  # 0.2 s, which only a named effect has to pay
-
     rows, scope, terms = start.rows, start.scope, [hypothesis.terms[index] for index in indices]
     counts = [len(term.searched(scope)) for term in terms]
     if not any(counts):
         return fit(rows, hypothesis, start)
+    from scipy.optimize import least_squares  # 0.3 s, which only a shape that is searched has to pay
+
     rows_tried = _kept_behind(start, hypothesis, terms)
 
     def at(offset: Array) -> Hypothesis:

@@ -325,7 +325,7 @@ def _of_term(seen: Rows, hypothesis: Hypothesis, index: int, lag: float, found: 
     if missing is not None:
         return _copied(seen, effect, term.shape, lag, missing)
     if not isinstance(effect, Coupling):
-        columns = seen.kept(effect.columns, term.shape, lag=lag)
+        columns = seen.kept_of(effect, term.shape, lag)
         constant = effect.spring and hypothesis.having(lambda other: other.constant or other.directed)
         return columns * (1.0, 0.0) if constant else columns  # a balance has one constant
     of_terms = [(hypothesis.terms[k], load) for k, load in _loads(hypothesis, found).items()]

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import AxisKind
-from bench.effects.effect import ColumnsOf
+from bench.effects.effect import Columns, ColumnsOf
+from bench.effects.shape import Shapes
 from bench.effects.signals import Scope, Signals
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
@@ -45,7 +46,7 @@ ONE_WAY = 0.02
 #: less than that was kept there, and 600 s took 2.8 times as long as 300 s; with 160 MB 2.0 times.
 KEPT = 160 * 2**20
 #: Signals of which a stretch has a value for each sample; a load may be one number for all.
-SAMPLES = ("time", "position", "velocity", "sign", "effort", "torque", "friction", "load", "of_motion")
+SAMPLES = ("time", "position", "velocity", "sign", "effort", "torque", "friction", "load", "began", "of_motion")
 #: A lag of all columns, or of each - s.
 Lag = float | tuple[float, ...]
 Made = TypeVar("Made", Array, Sequence[Sequence[Column]])
@@ -287,12 +288,18 @@ class Rows:
         """Filtered columns at the used rows (m, k).
 
         Args:
-            columns: of the raw signals of a stretch, or of each stretch.
+            columns: of the raw signals of a stretch, or of each stretch, or of all as they are `joined`.
             lag: time constant of a first-order lag to undo, 1 + j*omega*lag, of all columns or of each - s.
         """
         tables = [columns(part.signals) for part in self.stretches] if callable(columns) else columns
         whole = tables[0] if len(tables) == 1 else self._end_to_end(tables)
         return self.conditioning.filter.columns(whole, lag, self._places).T
+
+    def columns_of(self, effect: Columns, shapes: Shapes) -> list[Column]:
+        """Columns of shapes of an effect, one after the other, of all stretches as they are `joined`."""
+        if effect.memoryless or len(self.stretches) == 1:
+            return effect.columns_of(self.joined, shapes)
+        return self._end_to_end([effect.columns_of(part.signals, shapes) for part in self.stretches])
 
     @cached_property
     def _begins(self) -> NDArray[np.intp]:
@@ -330,34 +337,40 @@ class Rows:
     @cached_property
     def joined(self) -> Signals:
         """All stretches as one, for columns that depend on each sample only; without other known torque."""
+        if len(self.stretches) == 1:
+            return self.stretches[0].signals
         samples = {name: self.laid(attrgetter(name)) for name in SAMPLES}
         return replace(self.stretches[0].signals, **samples, known=())
 
-    def against(self, targets: Array, lag: float = 0.0) -> Callable[[Callable[[Signals], Sequence[Column]]], Array]:
-        """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself."""
+    def against(self, targets: Array, lag: float = 0.0) -> Callable[[Sequence[Column]], Array]:
+        """Inner products (k, t) of columns with targets (m, t), for which no column has to be filtered itself.
+
+        The columns are of all stretches as they are `joined`.
+        """
         smooth = self.conditioning.filter
-        own = np.split(targets.T, np.cumsum([part.places.size for part in self.stretches])[:-1], axis=1)
-        spread = [np.zeros((targets.shape[1], part.used.size)) for part in self.stretches]
-        for part, whole, chosen in zip(self.stretches, spread, own, strict=True):
-            whole[:, part.places] = chosen
+        spread = np.zeros((targets.shape[1], self._places[-1] + 1))
+        spread[:, self._places] = targets.T
 
         @cache
-        def back(number: int, size: int, order: int) -> Array:
-            return smooth.backwards(spread[number], size, order, lag)
+        def back(size: int, order: int) -> Array:
+            return smooth.backwards(spread, size, order, lag)
 
-        def products(columns: Callable[[Signals], Sequence[Column]]) -> Array:
-            found = []
-            for number, part in enumerate(self.stretches):
-                terms = [[back(number, s.size, order) @ s for s, order in each] for each in columns(part.signals)]
-                found.append([np.sum(column, axis=0) for column in terms])
-            return np.sum(np.array(found), axis=0)
+        def product(column: Column) -> Array:
+            found = [back(values.size, order) @ values for values, order in column]
+            return found[0] if len(found) == 1 else np.sum(found, axis=0)
 
-        return products
+        return lambda columns: np.array([product(column) for column in columns])
 
     def kept(self, columns: Callable[..., Sequence[Column]], *values: Hashable, lag: Lag = 0.0) -> Array:
         """The same of columns that a function computes from a stretch's raw signals and some values, made once."""
         key = columns, values, lag, self.made_by
         return self.memory.get(key, lambda: self.table(lambda signals: columns(signals, *values), lag))
+
+    def kept_of(self, effect: Columns, shape: tuple[float, ...], lag: float) -> Array:
+        """The same of the columns of an effect."""
+        return self.memory.get(
+            (effect.columns, shape, lag, self.made_by), lambda: self.table([self.columns_of(effect, [shape])], lag)
+        )
 
 
 def sign_reach(smooth: GaussianFilter, near: bool = False) -> float:

@@ -196,7 +196,7 @@ class _TickedAxis:
         if isinstance(loop.controller, FollowReferences):
             self._drive, self._planned = CascadeDrive(loop.controller, loop.axis), iter(())
         else:
-            self._drive, self._planned = None, _planned([loop.controller], loop.ticks)
+            self._drive, self._planned = None, _planned_of(loop.controller, loop.ticks)
         self._since, self._began = loop.since, loop.began
         self._effects = None if loop.axis.all_native else SteppedEffects([loop.axis], self._step, bristles >= 0)
         self._memory = self._effects and self._effects.start(loop.velocity)
@@ -210,7 +210,7 @@ class _TickedAxis:
         here, velocity = self._position.item(0), self._velocity.item(0)
         position, known = here - self._step / 2.0 * velocity, 0.0
         if self._drive is None:
-            *self._setpoints[:], motor, known = next(self._planned)[0].tolist()
+            *self._setpoints[:], motor, known = next(self._planned)
             setpoint = motor
         else:
             setpoint, motor = self._drive.tick(k, position, velocity)
@@ -236,6 +236,12 @@ class _TickedAxis:
         self._effort[0] = acting - known
         mujoco.mj_step(self._model, self.data)
         return flows, acting
+
+
+def _planned_of(controller: PlannedInputs, ticks: int) -> Iterator[list[float]]:
+    """Those of a lone loop, in numbers."""
+    for start, stop in _blocks(ticks, 256):
+        yield from controller(start, stop).tolist()
 
 
 def _planned(controllers: Sequence[PlannedInputs], ticks: int) -> Iterator[Array]:

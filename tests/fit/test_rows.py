@@ -5,7 +5,7 @@ import pytest
 
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Columns
-from bench.effects.rivals import WAVES
+from bench.effects.rivals import RIVALS, WAVES
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace
 from tests.fit.motions import RIG, recording
@@ -34,13 +34,25 @@ def test_no_row_reaches_over_a_hole():
     assert rows.table(columns, (0.0, 1e-3)) == pytest.approx(np.concatenate(alone, axis=1).T, rel=1e-9, abs=1e-9)
 
 
-COPIES = [effect for effect in catalogue().values() if isinstance(effect, Columns) and effect.copies_torque]
+MEMORYLESS = [
+    each for each in (*catalogue().values(), *RIVALS, *WAVES) if isinstance(each, Columns) and each.memoryless
+]
 
 
-@pytest.mark.parametrize("effect", [*COPIES, *WAVES], ids=lambda effect: effect.name)
-def test_copies_of_torque_are_made_of_each_sample_alone(effect):
-    """Their columns are made of all stretches at once."""
+@pytest.mark.parametrize("effect", MEMORYLESS, ids=lambda effect: effect.name)
+def test_columns_without_memory_are_those_of_each_stretch(effect):
+    """They are made of all stretches at once, each value from its own sample."""
     rows, shape = holed_rows(), tuple(1.5 for _ in effect.shapes)
     by_stretch = rows.table(lambda signals: effect.columns(signals, shape))
-    assert np.array_equal(rows.table([effect.columns(rows.joined, shape)]), by_stretch)
-    assert np.abs(by_stretch).max() > 0.0
+    scale = np.abs(by_stretch).max()
+    assert rows.table([rows.columns_of(effect, [shape])]) == pytest.approx(by_stretch, rel=1e-9, abs=1e-12 * scale)
+
+
+def test_products_with_columns_are_those_of_filtered_ones():
+    """Without the columns being filtered, with a derivative, over holes and behind a lag."""
+    rows = holed_rows()
+    targets = np.random.default_rng(0).normal(size=(rows.time.size, 3))
+    (inertia,) = (effect for effect in MEMORYLESS if effect.name == "position_dependent_inertia")
+    columns = rows.columns_of(inertia, [(1.0,), (2.0,)])
+    filtered = rows.table([columns], 1e-3)
+    assert rows.against(targets, 1e-3)(columns) == pytest.approx(filtered.T @ targets, rel=1e-9)
