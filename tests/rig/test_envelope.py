@@ -11,13 +11,13 @@ from bench.cli import app
 from bench.errors import UndeterminedError
 from bench.rig.envelope import envelope
 
-PERIOD, FINER = 1e-3, 10
+PERIOD, FINER = 1e-3, 4  # speed and torque of an instant belong together at any step
 INERTIA, VISCOUS, COULOMB = 4e-3, 1e-3, 0.05
 
 
-def driven(targets, gain, peak=2.0, slope=0.02, no_load=200.0, noise=(0.01, 0.2), seed=0):  # one value, or (k,)
+def driven(targets, gain, peak, slope, no_load):
     """Speed and torque (n, k) of motors under a proportional controller towards target speeds (n, k) - rad/s."""
-    rng, speed = np.random.default_rng(seed), np.zeros(targets.shape[1])
+    rng, speed = np.random.default_rng(0), np.zeros(targets.shape[1])
     speeds, torques = np.empty((2, *targets.shape))
     for k, target in enumerate(targets):
         for _ in range(FINER):
@@ -26,13 +26,19 @@ def driven(targets, gain, peak=2.0, slope=0.02, no_load=200.0, noise=(0.01, 0.2)
             speeds[k], torques[k] = speed, torque
             friction = VISCOUS * speed + COULOMB * np.tanh(speed / 0.05)
             speed = speed + PERIOD / FINER * (torque - friction) / INERTIA
-    noisy = (one + size * rng.normal(size=one.shape) for one, size in zip((speeds, torques), noise[::-1], strict=True))
+    noisy = (one + size * rng.normal(size=one.shape) for one, size in zip((speeds, torques), (0.2, 0.01), strict=True))
     return SimpleNamespace(**dict(zip(("speed", "torque"), noisy, strict=True)))
 
 
-def steps(reach, motors=1, seed=0):
-    """Target speeds (8000, motors) that jump every 0.4 s - rad/s."""
-    return np.repeat(np.random.default_rng(seed).uniform(-reach, reach, (20, motors)), 400, axis=0)
+def steps(reach):
+    """Target speeds (8000, k) that jump every 0.4 s, up to a reach (k,) - rad/s."""
+    return np.repeat(np.random.default_rng(0).uniform(-reach, reach, (20, reach.size)), 400, axis=0)
+
+
+@pytest.fixture(scope="module")
+def known():
+    """Of a peak torque of 2 N*m and a no-load speed of 200 rad/s: weak and slow, slow, and fast."""
+    return driven(steps(np.array([60.0, 60.0, 240.0])), np.array([0.003, 0.5, 0.5]), 2.0, 0.02, 200.0)
 
 
 def found(speed, torque):
@@ -44,7 +50,7 @@ def test_intervals_of_the_limits_hold_the_truth():
     rng = np.random.default_rng(1)
     peak, no_load = rng.uniform(2.0, 4.0, 40), rng.uniform(120.0, 250.0, 40)
     slope = rng.uniform(1.5, 3.0, 40) * peak / no_load
-    run = driven(steps(1.0, 40) * 1.2 * no_load, 0.5, peak, slope, no_load)
+    run = driven(steps(1.2 * no_load), 0.5, peak, slope, no_load)
     truth = {"peak": peak, "no_load": no_load, "slope": slope, "corner": no_load - peak / slope}
     inside, errors = [], []
     for k in range(40):
@@ -58,16 +64,14 @@ def test_intervals_of_the_limits_hold_the_truth():
     assert np.median(errors) < 1e-3
 
 
-def test_a_limit_that_is_not_reached_is_none():
-    run = driven(steps(60.0), 0.003)
-    one = found(run.speed[:, 0], run.torque[:, 0])
+def test_a_limit_that_is_not_reached_is_none(known):
+    one = found(known.speed[:, 0], known.torque[:, 0])
     assert (one.peak, one.no_load, one.slope, one.corner, one.stall) == (None,) * 5
-    assert one.largest == pytest.approx(np.abs(run.torque).max(), abs=0.05)
+    assert one.largest == pytest.approx(np.abs(known.torque[:, 0]).max(), abs=0.05)
 
 
-def test_the_limit_of_current_alone():
-    run = driven(steps(60.0), 0.5)
-    one = found(run.speed[:, 0], run.torque[:, 0])
+def test_the_limit_of_current_alone(known):
+    one = found(known.speed[:, 1], known.torque[:, 1])
     assert one.peak is not None
     assert one.peak.value == pytest.approx(2.0, rel=2e-3)
     assert one.no_load is None
@@ -95,10 +99,9 @@ def test_what_never_drives_has_no_limits():
         found(np.linspace(1.0, 2.0, 500), np.full(500, -1.0))
 
 
-def test_the_command_tells_the_limits_without_a_datasheet(tmp_path):
-    run = driven(steps(240.0), 0.5)
+def test_the_command_tells_the_limits_without_a_datasheet(known, tmp_path):
     log, told = tmp_path / "log.csv", tmp_path / "limits.json"
-    table = np.column_stack([np.arange(8000) * PERIOD, run.speed[:, 0], run.torque[:, 0]])
+    table = np.column_stack([np.arange(8000) * PERIOD, known.speed[:, 2], known.torque[:, 2]])
     np.savetxt(log, table, delimiter=",", header="time [s],velocity [rad/s],torque [N*m]", comments="", fmt="%.6g")
     done = CliRunner().invoke(app, ["limits", str(log), "--out", str(tmp_path / "limits.png"), "--json", str(told)])
     assert done.exit_code == 0, done.output
