@@ -10,6 +10,7 @@ from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis, write_rig
 from bench.validation.independent.sensors import Noise, Sensors
 from bench.validation.independent.simulate import simulate as integrate
+from tests.recorded import PLAIN, STEP
 
 LIMITS = np.array([1e-3, 1.5e-2, 5e-3])
 
@@ -71,19 +72,17 @@ def test_a_rig_simulated_by_the_plant_gives_its_truth(name):
 
 
 AXES = (
-    Axis("a", 1.5e-3, 8e-4, 0.08, 4e-4, 0.7, 6.0, velocity_gain=0.15, integral_gain=2.0, inertia_feedforward=1.4e-3),
+    PLAIN.axis,
     Axis("b", 4e-3, 2e-3, 0.12, 1e-3, 0.9, 8.0, velocity_gain=0.4, integral_gain=6.0, inertia_feedforward=4.2e-3),
     Axis("c", 6e-4, 5e-4, 0.05, 2e-4, 0.5, 4.0, velocity_gain=0.06, integral_gain=1.0, inertia_feedforward=6e-4),
 )
-
-#: Of the integrator: 5e-5 rad/s off at most (test_order_of_convergence.py), a fraction of the noise - s.
 
 
 def test_traces_of_the_independent_integrator_give_their_truth(tmp_path):
     noise = {"velocity": Noise(white=0.03), "current": Noise(white=8e-3)}
     sensors = Sensors(**noise, encoder_resolution=2e-5, sample_period=1e-3)
     motions = [random_motion(axis, np.random.default_rng(k), 7.0) for k, axis in enumerate(AXES)]
-    recorded = integrate(AXES, motions, [()] * len(AXES), [sensors] * len(AXES), seed=2)
+    recorded = integrate(AXES, motions, [()] * len(AXES), [sensors] * len(AXES), seed=2, longest_step=STEP)
     inside = []
     for axis, run in zip(AXES, recorded, strict=True):
         write_rig(axis, tmp_path / "rig.toml")

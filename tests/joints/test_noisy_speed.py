@@ -15,7 +15,7 @@ import bench
 from bench.plant.robot import Robot, joint_rig, read_log
 from tests.export.two_links import MJCF, motion, shoulder_torque, write_log
 
-ARMATURE, VISCOUS, COULOMB, BENT, SEEDS = 0.02, 0.3, 0.4, 1.5, 8
+ARMATURE, VISCOUS, COULOMB, BENT, SEEDS = 0.02, 0.3, 0.4, 1.5, 5
 #: Noise of a speed - rad/s -, and of angles where speed is recorded and where it is not - rad.
 LOUD, ROUGH = 0.1, {"velocity": 1e-3, "position": 4e-4}
 
