@@ -34,16 +34,10 @@ BESIDE = {
 }
 
 
-#: Gaps, and what is beside them, of the tests that are not slow: recorded together.
-USUAL = [(GAPS[2], ()), (0.02, (BESIDE[0.02],))]
-
-
 def recorded(wide, *beside):
     """A recording of the axis with a gap, and with something else."""
-    cases = USUAL if (wide, beside) in USUAL else [(wide, beside)]
-    effects = {case: (Backlash(case[0], STIFFNESS, DAMPING), *case[1]) for case in cases}
     motion = random_motion(QUIET.axis, np.random.default_rng(SEED), 5.0)
-    return QUIET.record(effects, motion, SEED, dict.fromkeys(cases, 0))[wide, beside]
+    return QUIET.record({0: (Backlash(wide, STIFFNESS, DAMPING), *beside)}, motion, SEED)[0]
 
 
 @pytest.mark.parametrize("wide", [GAPS[2], *(pytest.param(one, marks=pytest.mark.slow) for one in GAPS[:2] + GAPS[3:])])
@@ -60,15 +54,8 @@ NOT_VISITED = pytest.mark.xfail(
 )
 
 
-@pytest.mark.parametrize(
-    "wide",
-    [
-        0.02,
-        pytest.param(0.012, marks=pytest.mark.slow),
-        pytest.param(0.04, marks=[pytest.mark.slow, NOT_VISITED]),
-        *(pytest.param(one, marks=pytest.mark.slow) for one in list(BESIDE)[3:]),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("wide", [pytest.param(one, marks=[NOT_VISITED] if one == 0.04 else ()) for one in BESIDE])
 def test_a_gap_is_among_what_is_weighed_with_something_else(wide):
     visited = search(
         fit_bare(Rows.of(recorded(wide, BESIDE[wide]), QUIET.rig)), list(catalogue().values()), POLICY

@@ -54,7 +54,7 @@ def test_bristles_slide_at_the_level_of_the_other_frictions():
     np.testing.assert_allclose(found, expected.y[0], atol=4e-3)
 
 
-@pytest.mark.parametrize("name", BESIDE)
+@pytest.mark.parametrize("name", [*list(BESIDE)[:-1], pytest.param("rise and warmth", marks=pytest.mark.slow)])
 def test_bristles_are_named_beside_other_frictions(recorded, name):
     fitted = search(fit_bare(Rows.of(recorded[name], QUIET.rig)), list(catalogue().values()), Policy()).last
     hidden = (BRISTLES, *BESIDE[name])

@@ -125,7 +125,7 @@ def wandering(seed, torque):
     return lambda motion: torque * (wander - wander.mean()) / wander.std()
 
 
-@pytest.mark.parametrize("seed", [7, 20])
+@pytest.mark.parametrize("seed", [7, pytest.param(20, marks=pytest.mark.slow)])
 def test_a_torque_that_wanders_is_no_event(seed):
     """Half of what wanders may pass for an event; what stays beside it says that it is none."""
     trace = recorded(MOTION, wandering(seed, 0.1))

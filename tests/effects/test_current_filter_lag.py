@@ -7,7 +7,7 @@ from bench.effects.current_filter_lag import EFFECT
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from tests.effects.axes import PERIOD, VALUES, Reversals, model, plant
-from tests.effects.damaged import AXIS, HIDDEN, SINGLES, diagnosed, filtered, inertia_holds, late, names
+from tests.effects.damaged import AXIS, SINGLES, diagnosed, filtered, inertia_holds, late, names
 
 NAME = "current_filter_lag"
 #: Of a recursive filter of one sample's time constant: the mean of its impulse response, 1/(e - 1) samples - s.
@@ -30,7 +30,8 @@ def test_the_axis_does_not_feel_it():
     assert np.abs(reported_states(model(NAME), states).torque - states.torque).max() > 0.01
 
 
-@pytest.mark.parametrize("single", [pytest.param(None, marks=pytest.mark.slow), *HIDDEN[1:]])
+@pytest.mark.slow  # the lag by itself is among `test_diagnosed.py`
+@pytest.mark.parametrize("single", [None, *SINGLES])
 def test_a_filter_of_a_millisecond_keeps_the_names_of_singles(single):
     found = diagnosed(single or "null", filtered)
     assert names(found) == {NAME, single} - {None}

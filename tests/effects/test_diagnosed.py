@@ -59,12 +59,11 @@ def quantities(diagnosis, effect):
 
 
 #: Its load ratio is 0.5 % off: 1.53 half widths, as 1.41 before derivatives were taken between columns of one state.
-HAIR = pytest.mark.xfail(strict=True, reason="the load ratio is 1.53 half widths off")
+#: With a weight next to it, it also takes as long as ten others.
+HAIR = [pytest.mark.slow, pytest.mark.xfail(strict=True, reason="the load ratio is 1.53 half widths off")]
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(one, marks=HAIR) if one == "directional_load_friction" else one for one in DIAGNOSED]
-)
+@pytest.mark.parametrize("name", [pytest.param(one, marks=HAIR if one in WITH else ()) for one in DIAGNOSED])
 def test_it_is_named_and_recovered(name, hidden, diagnosed):
     found = diagnosed(name)
     assert {effect.name for effect in found.effects} == {name, *(WITH[name].name for _ in range(name in WITH))}
@@ -82,6 +81,7 @@ def test_intervals_of_95_percent_hold_what_is_true(hidden, diagnosed):
     held = [
         one.inside
         for name, effect in hidden.items()
+        if name not in WITH
         for key, one in quantities(diagnosed(name), effect).items()
         if key not in WHOLE
     ]

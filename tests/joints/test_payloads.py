@@ -33,9 +33,11 @@ def directional(free, load, sign):
     return np.where(0.25 * of[0] + 0.05 * load >= 0.0, *of)
 
 
-def swung(folder, names, effort="torque [N*m]", per_torque=1.0, seed=0, stated=None, axis="0 1 0", friction=coulomb):
-    """Logs of some pendulums, and an MJCF of each, with the masses that are `stated`."""
-    rng, time = np.random.default_rng(seed), 2e-3 * np.arange(6000)
+def swung(
+    folder, names, effort="torque [N*m]", per_torque=1.0, stated=None, axis="0 1 0", friction=coulomb, period=2e-3
+):
+    """Logs of 12 s of some pendulums, and an MJCF of each, with the masses that are `stated`."""
+    rng, time = np.random.default_rng(0), period * np.arange(round(12.0 / period))
     for name in names:
         mass, length = PENDULUMS[name]
         omega, size = 2.0 * np.pi * np.array([[0.3], [1.1], [2.3]]), np.array([[1.2], [0.3], [0.1]])
@@ -78,7 +80,7 @@ def test_several_payloads_have_one_armature_and_a_torque_scale_that_nothing_else
 
 
 def test_a_payload_that_its_mjcf_has_wrong_is_reported_with_its_log(tmp_path):
-    logs, mjcfs = swung(tmp_path, "abc", stated={"b": 0.99})
+    logs, mjcfs = swung(tmp_path, "abc", stated={"b": 0.99}, period=5e-3)
     (warning,) = [one for one in bench.robot(logs, mjcfs).joints["j"].warnings if "known weight" in one]
     assert "0.909 ± " in warning.split("in a.csv")[1].split("in b.csv")[0]
 
@@ -116,7 +118,7 @@ def test_an_mjcf_is_of_all_logs_or_of_one_each(tmp_path):
 @pytest.mark.parametrize(("friction", "name"), [(coulomb, "M1"), (directional, "M5")])
 def test_the_friction_model_of_a_servo_is_the_simplest_that_predicts_its_torque(tmp_path, friction, name):
     """M5 includes M1, and M6 both: none that is larger predicts better than the noise of the torque, 0.01 N*m."""
-    logs, mjcfs = swung(tmp_path, "abc", friction=friction)
+    logs, mjcfs = swung(tmp_path, "abc", friction=friction, period=16e-3)
     first = Robot.of(mjcfs[0], "j")
     rig = joint_rig(None, first)
     robots = [first, *(replace(Robot.of(mjcf, "j"), datum=first.inertia) for mjcf in mjcfs[1:])]

@@ -35,7 +35,8 @@ def cpu_time(page):
     return clock
 
 
-@pytest.mark.parametrize("samples", [400_000, pytest.param(10_000_000, marks=pytest.mark.slow)])
+@pytest.mark.slow  # `test_samples.py` bounds what a page holds
+@pytest.mark.parametrize("samples", [400_000, 10_000_000])
 def test_a_long_recording_zooms_as_fluently_as_a_short_one(opened, tmp_path, samples):
     """Its page holds as much from 0.3 million samples on, so that the shorter test sees the same."""
     pages, seconds = [], [[], []]
