@@ -27,9 +27,9 @@ assert elbow.actuator("elbow cogging_torque 0") is not None
 assert np.std(identified[2000:]) > 5.0 * np.std(as_written[2000:])
 """,
     "servo": """
-values = {name: one.value for name, one in found.parameters.items()}
+values = {name: one["value"] for name, one in found["parameters"].items()}
 for name, true in (("kp", 12.0), ("kv", 0.35 + 0.02), ("armature", 0.006)):
-    low, high = found.parameters[name].ci95
+    low, high = found["parameters"][name]["ci95"]
     assert low <= true <= high, name
 assert abs(values["dead_time"] - 0.012) < 5e-4  # a step of the simulation
 assert np.std(simulated - measured) < 0.2 * np.std(guessed - measured)
