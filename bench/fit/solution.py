@@ -438,7 +438,9 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
     degrees = max(independent - PLAIN, 1.0)
     covariance = inverse @ middle @ inverse * independent / degrees
     variance, floor = np.diag(covariance), least * np.diag(inverse)
-    widened = np.sqrt(np.where(variance > 0.0, np.maximum(variance, floor) / np.maximum(variance, 1e-300), 1.0))
+    widened = np.ones_like(variance)
+    np.divide(np.maximum(variance, floor), np.maximum(variance, 1e-300), out=widened, where=variance > 0.0)
+    widened = np.sqrt(widened)
     return covariance * np.outer(widened, widened), float(scipy.special.stdtrit(degrees, 0.975))
 
 

@@ -37,6 +37,11 @@ def test_an_interval_is_never_narrower_than_white_noise_alone_makes_it():
     assert np.diag(covariance) == pytest.approx([201.6, 20.0])
 
 
+def test_a_coefficient_that_no_block_pulls_at_has_no_variance_and_no_overflow():
+    covariance, _ = estimated(np.zeros((14, 1)), np.array([[1e5]]), least=1e5)
+    assert covariance[0, 0] == 0.0
+
+
 def test_the_long_run_covariance_of_two_neighbours_weighs_them_by_the_kernel():
     """S = a**2 + b**2 + 2*k(1/bandwidth)*a*b, k the quadratic spectral kernel."""
     scores = np.zeros((40, 1))

@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -9,10 +10,12 @@ import pytest
 import bench
 from tests.command import bench as command
 
-STEP = 2e-5
+#: A thousandth of the time constants at most, and stable under the friction's slope at rest - s.
+STEP = 5e-5
 NOISE = {"position": 1e-4, "velocity": 0.05, "current": 0.01}
 
 
+@cache
 def driven(voltage, resistance, emf, inertia, viscous, coulomb, inductance=0.0, weight=0.0):
     """Time, position, speed, current and voltage of a motor, sampled before its voltage changes.
 

@@ -8,6 +8,8 @@ from tests.fit.test_motor import MOTOR, Routine, Waves, driven, noisy
 
 CONSTANTS = {"kS": 8e-3 * 1.2 / 0.05, "kV": 0.05 + 1e-4 * 1.2 / 0.05}
 RIG = {"motor": {"torque_constant": 0.05, "resistance": 1.2, "back_emf_constant": 0.05}}
+SYSID = Routine()
+SINES = Waves(0.02, 24.0, (6.0, 0.7), (4.0, 2.3), (3.0, 5.1))
 
 
 class Steps:
@@ -24,7 +26,7 @@ class Steps:
 def run(constant, voltage, late=0):
     """A motor of a time constant - s -, by its inertia; `late`: samples by which its voltage is recorded too early."""
     motor = {**MOTOR, "inertia": constant * 0.05**2 / 1.2}
-    columns = driven(voltage, **motor)
+    columns = dict(driven(voltage, **motor))
     if late:
         columns["voltage"] = np.append(columns["voltage"][late:], [columns["voltage"][-1]] * late)
     return motor["inertia"], columns
@@ -45,12 +47,12 @@ def read_before(columns):
 @pytest.mark.parametrize(
     ("constant", "voltage", "late"),
     [
-        (0.092, Routine(), 0),
-        (0.046, Routine(), 1),
+        (0.092, SYSID, 0),
+        (0.046, SYSID, 1),
         (0.092, Steps(0.02), 3),
         (0.030, Steps(0.01), 0),
         (0.030, Steps(0.005), 1),
-        (0.092, Waves(0.02, 24.0, (6.0, 0.7), (4.0, 2.3), (3.0, 5.1)), 0),
+        (0.092, SINES, 0),
     ],
     ids=["SysId", "SysId late", "late steps", "steps", "late steps of 5 ms", "sines"],
 )
@@ -64,7 +66,7 @@ def test_constants_of_few_samples_to_a_time_constant(source, constant, voltage, 
 
 
 def test_the_inertia_by_a_voltage_that_is_held():
-    inertia, columns = run(0.046, Routine())
+    inertia, columns = run(0.046, SYSID)
     found = bench.identify(noisy({name: columns[name] for name in ("time", "voltage", "velocity")}), RIG)
     within(found["moment_of_inertia"], inertia, 0.01)
     assert any("time constant has" in line for line in found.warnings)
@@ -73,7 +75,7 @@ def test_the_inertia_by_a_voltage_that_is_held():
 @pytest.mark.parametrize(("constant", "period"), [(0.025, 0.02), (0.092, 0.02), (0.092, 0.005), (0.025, 0.001)])
 def test_an_inertia_by_a_current_read_once_in_each_hold_counts_that(constant, period):
     """The current falls while a voltage is held, by what is induced, and is read at its end."""
-    inertia, columns = run(constant, Waves(period, 12.0 if period < 0.02 else 24.0, (6.0, 0.7), (4.0, 2.3), (3.0, 5.1)))
+    inertia, columns = run(constant, SINES if period == 0.02 else Waves(period, 12.0, *SINES.parts))
     found = bench.identify(noisy(read_before(columns)), RIG)
     low, high = found["moment_of_inertia"].ci95
     assert low <= inertia <= high
@@ -99,14 +101,14 @@ def test_a_voltage_in_steps_is_no_sensor_that_stands_still():
 @pytest.mark.parametrize("constant", [0.092, 0.025])
 def test_a_hold_of_the_voltage_is_no_missing_effect(constant):
     """A torsion spring was named beside the current, by what the motor does while a voltage is held."""
-    _, columns = run(constant, Waves(0.02, 24.0, (6.0, 0.7), (4.0, 2.3), (3.0, 5.1)))
+    _, columns = run(constant, SINES)
     given = noisy({name: read_before(columns)[name] for name in ("time", "voltage", "velocity", "current")})
     with pytest.raises(bench.UndeterminedError, match=r"is held for the 20 ms between samples.*(rate|or more)"):
         bench.diagnose(given, RIG)
 
 
 def test_a_motor_with_many_samples_is_diagnosed():
-    _, columns = run(0.092, Waves(0.001, 12.0, (6.0, 0.7), (4.0, 2.3), (3.0, 5.1)))
+    _, columns = run(0.092, Waves(0.001, 12.0, *SINES.parts))
     found = bench.diagnose(noisy({name: columns[name] for name in ("time", "voltage", "current", "velocity")}), RIG)
     assert not found.names
 
