@@ -47,18 +47,19 @@ def examples(name: str) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```", PAGES[name], re.MULTILINE | re.DOTALL)
 
 
-def run_commands(page: str, change: Callable[[str], str] = str) -> list[Done]:
-    """Run all commands of the bench on a page, in the working folder, which holds what the page supposes.
+def run_commands(page: str | list[str], change: Callable[[str], str] = str) -> list[Done]:
+    """Run commands of the bench, in the working folder, which holds what they suppose.
 
     Args:
-        page: its text, or a part of it.
+        page: text of a page, or of a part of it; or some of its commands.
         change: of a command, before it is run; an empty one is not.
     """
+    lines = bench_commands(page) if isinstance(page, str) else page
+    assert lines or not isinstance(page, str), "no command"
     done = []
-    for line in filter(None, map(change, bench_commands(page))):
+    for line in filter(None, map(change, lines)):
         done.append(bench(*shlex.split(line)[1:]))
         assert done[-1].status == 0, f"{line}: {done[-1].err}"
-    assert done, "no command"
     return done
 
 

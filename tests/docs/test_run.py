@@ -1,4 +1,4 @@
-"""Commands of the pages run as they stand, each page in a folder as it supposes it; a page has a row in the table."""
+"""Commands of the pages run as they stand, in a folder as a page supposes it; a page has a row in the table."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ from bench.rig.rig import load_rig
 from bench.trace.write import write
 from tests.baseline.test_command import again
 from tests.diagnosis.command import RIG as OWN_RIG
-from tests.docs.pages import PAGES, run_commands, run_examples
+from tests.docs.pages import PAGES, bench_commands, run_commands, run_examples
 from tests.export.two_links import MJCF, log, write_log
 
 RIG = asset("data", "rigs", "sh30701p.toml")
@@ -31,9 +31,9 @@ def supposed(tmp_path_factory):
     folder = tmp_path_factory.mktemp("supposed")
     rig, hidden = load_rig(RIG), [parse_effect("cogging_torque:amplitude=0.05,harmonic=6")]
     for seed, name in enumerate(RECORDINGS):
-        write(simulate(rig, seed=seed, effects=hidden).trace, folder / name)
+        write(simulate(rig, "fast_reversals", seed=seed, effects=hidden).trace, folder / name)
     for seed, name in enumerate(("run1", "run2")):
-        write(simulate(rig, seed=10 + seed, effects=hidden).trace, folder / f"{name}.csv.gz")
+        write(simulate(rig, "fast_reversals", seed=10 + seed, effects=hidden).trace, folder / f"{name}.csv.gz")
     (folder / "robot.xml").write_text(MJCF, encoding="utf-8")
     write_log(folder / "log.csv", log())
     rows = ["file,rig,axis,time", "run1.csv,rig.toml,press,1", "run2.csv,rig.toml,press,2"]
@@ -41,6 +41,12 @@ def supposed(tmp_path_factory):
     shutil.copytree(asset("data", "rigs"), folder / "data" / "rigs")
     shutil.copy(RIG, folder / "rig.toml")
     return folder
+
+
+@pytest.fixture(scope="module")
+def done():
+    """Commands that pages have done in the folder that several suppose."""
+    return set()
 
 
 def rig_alone():
@@ -74,6 +80,7 @@ def reported():
     written = ("found/report.html", "result/identification.pdf", "replay.html", "simulated.html", "inspected.html")
     for path in (*written, "pages.js"):
         assert Path(path).stat().st_size > 1000
+    assert Path("result/identification.pdf").read_bytes().startswith(b"%PDF")
 
 
 def driven():
@@ -87,7 +94,7 @@ def driven():
 
 
 class Page(NamedTuple):
-    """What a page supposes, None for all that is supposed, and what is there when its commands have run."""
+    """What a page supposes, None for the folder that several suppose, and what is there when its commands have run."""
 
     before: Callable[[], None] | None = None
     after: Callable[[], None] = lambda: None
@@ -121,23 +128,35 @@ ELSEWHERE = {
 }
 
 
+#: Commands that are run where those pages are tested.
+OF_OTHERS = {line for name in ELSEWHERE for line in bench_commands(PAGES[name])}
+
+
 def brief(line):
-    """Monte Carlo with one recording, of MuJoCo; a draft is not written over the rig of the next command."""
+    """Monte Carlo with one recording, of MuJoCo; a draft is not written over the rig of the next command; a motion of
+    2 s in place of 7.
+    """
+    if line in OF_OTHERS:
+        return ""
     line = re.sub(r"--rigs \d+", "--rigs 1 --workers 1 --seed 4", line)
+    line += " --profile fast_reversals" * (line.startswith("bench simulate") and "--profile" not in line)
     return line.replace("--draft rig.toml", "--draft draft.toml")
 
 
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.slow] if page.slow else []) for name, page in HERE.items()]
 )
-def test_the_commands_of_a_page_run(name, supposed, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_the_commands_of_a_page_run(name, supposed, done, tmp_path, monkeypatch):
     page = HERE[name]
-    if page.before is None:
-        shutil.copytree(supposed, tmp_path, dirs_exist_ok=True)
+    if page.before is None:  # what another page has done in the same folder is not done again
+        monkeypatch.chdir(supposed)
+        lines = [line for line in bench_commands(PAGES[name]) if line not in done]
+        done.update(lines)
     else:
+        monkeypatch.chdir(tmp_path)
         page.before()
-    run_commands(PAGES[name], brief)
+        lines = bench_commands(PAGES[name])
+    run_commands(lines, brief)
     page.after()
 
 

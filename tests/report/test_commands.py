@@ -17,39 +17,42 @@ def text_of(page):
     return page.read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
 
 
-def test_identify_leaves_a_page(bench, tmp_path):
+def blocks(page, kind):
+    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
+
+
+def test_identify_leaves_a_page_and_figures_in_the_format_asked_for(bench, tmp_path):
     for k in (1, 2):
         write(run_of(seed=k), f"run{k}.csv")
-    status, out, _ = bench("identify", "run1.csv", "run2.csv", "--rig", "rig.toml", "--out", "result")
+    status, out, _ = bench(
+        "identify", "run1.csv", "run2.csv", "--rig", "rig.toml", "--out", "result", "--figures", "pdf"
+    )
     assert status == 0
     assert "wrote result/report.html" in out
     page = read_document(tmp_path / "result" / "report.json")
     assert page.verdict.startswith("The moment of inertia is")
-    graphs = [block for section in page.sections for block in section.blocks if isinstance(block, TimeGraph)]
-    assert len(graphs) == 2
+    assert len(blocks(page, TimeGraph)) == 2
     assert "run2.csv" in text_of(tmp_path / "result" / "report.html")
+    assert "wrote result/identification.pdf" in out
+    assert (tmp_path / "result" / "identification.pdf").read_bytes()[:4] == b"%PDF"
 
 
-@pytest.mark.parametrize(("ending", "head"), [("pdf", b"%PDF"), ("svg", b"<?xml"), ("png", b"\x89PNG")])
-def test_figures_come_in_the_format_asked_for(bench, tmp_path, ending, head):
+def test_a_figure_and_a_chart_have_the_estimates_and_the_floor(bench, tmp_path):
     write(run_of(), "run.csv")
-    status, out, _ = bench("identify", "run.csv", "--rig", "rig.toml", "--out", "result", "--figures", ending)
-    assert status == 0
-    assert f"wrote result/identification.{ending}" in out
-    assert (tmp_path / "result" / f"identification.{ending}").read_bytes()[: len(head)] == head
-
-
-def test_figures_say_the_estimates_the_floor_and_what_was_found(found, bench, tmp_path):
-    for name in ("run.csv",):
-        write(run_of(), name)
     bench("identify", "run.csv", "--rig", "rig.toml", "--out", "result", "--figures", "svg")
     root = xml.etree.ElementTree.parse(tmp_path / "result" / "identification.svg").getroot()
     text = " ".join(" ".join(root.itertext()).split())
     assert "moment of inertia" in text
     assert "±" in text
+    (chart,) = blocks(read_document(tmp_path / "result" / "report.json"), Chart)
+    assert {one.style for panel in chart.panels for one in panel.series} == {"band", "dots"}
+    assert len({panel.series[0].high for panel in chart.panels}) == 1
+
+
+def test_figures_of_a_diagnosis_are_drawn(found):
     for name in ("where.png", "gaps.png"):
         with Image.open(found / name) as picture:
-            assert picture.width > 1000
+            assert picture.format == "PNG" and picture.width > 1000
             assert np.asarray(picture.convert("L")).std() > 10.0
 
 
@@ -81,12 +84,3 @@ def test_friction_writes_a_page_where_asked(bench, tmp_path):
     assert "Stribeck friction (static friction 0.07" in text
     (speed,) = re.findall(r"Stribeck velocity ([\d.]+) rad/s\)", text)[:1]
     assert float(speed) == pytest.approx(STRIBECK, rel=0.1)
-
-
-def test_a_chart_of_identify_has_one_scale_and_a_floor(bench, tmp_path):
-    write(run_of(), "run.csv")
-    bench("identify", "run.csv", "--rig", "rig.toml", "--out", "result")
-    page = read_document(tmp_path / "result" / "report.json")
-    (chart,) = [block for section in page.sections for block in section.blocks if isinstance(block, Chart)]
-    assert {one.style for panel in chart.panels for one in panel.series} == {"band", "dots"}
-    assert len({panel.series[0].high for panel in chart.panels}) == 1
