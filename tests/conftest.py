@@ -2,17 +2,22 @@
 
 import os
 import shutil
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 from xdist.scheduler import LoadScopeScheduling
 
+#: Folders whose robots are sound: this process compiles them, as a worker process does, which saves one for each.
+SOUND = ("docs", "export", "faults", "gate", "joints", "plant", "report", "servos", "view")
 #: Files that share a fixture of the session, by its name; every other file goes its own way.
 TOGETHER = {
     "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "follow", "model_file", "soft_tracking")),
     "lab": ("tests/course/",),
 }
 
+ROOT = Path(__file__).parent
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
 FLAGS += ["--disable-sync"]
@@ -44,6 +49,14 @@ def pytest_xdist_auto_num_workers(config):
     return 0 if alone else None
 
 
+@pytest.fixture(scope="module", autouse=True)
+def watched(request):
+    with pytest.MonkeyPatch.context() as patch:
+        if request.path.relative_to(ROOT).parts[0] in SOUND:
+            patch.setenv("SERVOBENCH_WATCHED", "1")
+        yield
+
+
 @pytest.fixture(scope="session")
 def browser():
     if CHROMIUM is None:
@@ -55,13 +68,14 @@ def browser():
         chromium.close()
 
 
-@pytest.fixture
-def opened(browser):
+@contextmanager
+def opening(browser):
     """Opens a file in a browser without a network; a complaint of the page, or anything it asks for, is a failure."""
     contexts, complaints = [], []
 
     def open_page(path, width=1280, **options):
         context = browser.new_context(viewport={"width": width, "height": 900}, offline=True, **options)
+        context.set_default_timeout(0.0)  # a busy machine is no failure
         contexts.append(context)
         page = context.new_page()
         page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
@@ -75,3 +89,9 @@ def opened(browser):
     for context in contexts:
         context.close()
     assert complaints == []
+
+
+@pytest.fixture
+def opened(browser):
+    with opening(browser) as open_page:
+        yield open_page

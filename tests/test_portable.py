@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-from tests.hostile import RIG, ROOT, TABLE
+from tests.hostile import ROOT
 
 #: Modules and calls of POSIX are missing for the bench and for filelock; other libraries ask for the platform.
 WITHOUT_POSIX = """
@@ -37,14 +37,10 @@ def without_posix(*arguments, cwd):
     return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=300, check=False)
 
 
-def test_an_identification_and_the_demo(tmp_path):
-    (tmp_path / "rig.toml").write_text(RIG)
-    (tmp_path / "run.csv").write_text(TABLE)
-    done = without_posix("identify", "run.csv", "--rig", "rig.toml", "--out", "found", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+def test_the_demo(tmp_path):
     done = without_posix("demo", "--out", "shown", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    made = {path.name for folder in ("found", "shown") for path in (tmp_path / folder).iterdir()}
+    made = {path.name for path in (tmp_path / "shown").iterdir()}
     assert {"identify.json", "diagnosis.json", "model.toml", "trace.csv.gz"} <= made
     assert not any(name.startswith(".bench") for name in made)
 

@@ -1,5 +1,6 @@
 """`bench check` as a user has it: statuses, JUnit, annotations, and text from files that stays text."""
 
+import contextlib
 import json
 import re
 import shutil
@@ -17,6 +18,8 @@ from bench.cli.common import WRITTEN
 from bench.names import plain
 from bench.report.continuous_integration import MOST, command, xml_text
 from bench.trace.write import write
+from tests.command import bench as run
+from tests.diagnosis.command import RIG
 from tests.fit.motions import Truth, recording
 from tests.hostile import room_for
 
@@ -39,11 +42,21 @@ def again(seed, truth=AS_IT_WAS, cogging=0.0):
     return replace(first, signals={**first.signals, **noisy})
 
 
-@pytest.fixture
-def axis(bench):
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
     """A folder with a baseline, made of one recording without names."""
-    write(again(1), Path("before.csv"))
-    assert bench("check", "before.csv", *BASE[1:], "--update", "--without-names")[0] == 0
+    folder = tmp_path_factory.mktemp("made")
+    (folder / "rig.toml").write_text(RIG, encoding="utf-8")
+    with contextlib.chdir(folder):
+        write(again(1), Path("before.csv"))
+        assert run("check", "before.csv", *BASE[1:], "--update", "--without-names").status == 0
+    return folder
+
+
+@pytest.fixture
+def axis(bench, made):
+    """Runs `bench` in a copy of that folder."""
+    shutil.copytree(made, Path.cwd(), dirs_exist_ok=True)
     return bench
 
 

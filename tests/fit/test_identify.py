@@ -140,7 +140,7 @@ def test_a_hole_costs_its_samples_and_nothing_else():
 def test_the_default_is_better_than_the_labs_in_every_measure():
     rng, truth = np.random.default_rng(8), Truth()
     ours, labs = [], []
-    for _ in range(60):
+    for _ in range(25):
         trace = recording(rng, truth)
         ours.append(errors(identify(trace, RIG), truth))
         labs.append(errors(identify_as_in_the_lab(trace, RIG), truth))

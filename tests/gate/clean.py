@@ -13,6 +13,7 @@ from bench.validation.independent.effects import any_effects
 from bench.validation.independent.rig import write_rig
 from tests.cases import hidden, record
 from tests.diagnosis.public_axes import EMPS, LAAS, XL330, emps
+from tests.recorded import STEP
 from tests.shared import SHARED
 
 #: Their own README says that their speed column has a wrong scale.
@@ -58,7 +59,7 @@ def independent(count: int, folder, duration: float = 4.0) -> Iterator[Recording
         )
         for k, rng in enumerate(rngs)
     ]  # fmt: skip
-    for case, (run, _) in zip(cases, record(cases, seed=5), strict=True):
+    for case, (run, _) in zip(cases, record(cases, seed=5, longest_step=STEP), strict=True):
         write_rig(case.axis, folder / "rig.toml")
         yield (
             f"{case.name} {' '.join(effect.name for effect in case.effects)}",

@@ -23,7 +23,7 @@ def ran(cwd, *arguments):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("runs", [300, pytest.param(1500, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("runs", [100, pytest.param(1500, marks=pytest.mark.slow)])
 def test_nothing_is_found_without_coverage(tmp_path, runs):
     done = ran(tmp_path, "-m", "tests.studies.fuzz.plain", *TARGETS, "--runs", str(runs))
     assert done.returncode == 0, done.stderr[-3000:]
@@ -31,7 +31,7 @@ def test_nothing_is_found_without_coverage(tmp_path, runs):
 
 def test_nothing_is_found_by_structure(tmp_path):
     grammars = ("rig", "model", "mjcf", "manifest", "store", "baseline")
-    done = ran(tmp_path, "-m", "tests.studies.fuzz.grammar", *grammars, "--runs", "25", "--seconds", "20")
+    done = ran(tmp_path, "-m", "tests.studies.fuzz.grammar", *grammars, "--runs", "10", "--seconds", "20")
     assert done.returncode == 0, done.stderr[-3000:]
     assert [line.split(":")[0] for line in done.stdout.splitlines()] == list(grammars)
 

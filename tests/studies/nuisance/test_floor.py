@@ -8,10 +8,7 @@ from tests.studies.nuisance.score import RIGHT, WRONG
 from tests.studies.nuisance.table import not_right
 
 #: A current early, of another axis or a speed of another scale are the gate's own tests.
-CASES = (
-    *("nuisance-0-1", "position-wrapped-0-0", "differenced-speed-1-0"),
-    *("current-late-0-1", "current-sign-0-1", "hum-1-0"),
-)
+CASES = (*("position-wrapped-0-0", "differenced-speed-1-0", "current-late-0-1", "current-sign-0-1", "hum-1-0"),)
 
 
 @pytest.fixture(scope="module")
