@@ -1,0 +1,96 @@
+"""A link that a soft or loose gear lets lag behind its motor: what it asks of its neighbours is that of its own motion.
+
+The truth is the Newton-Euler equations of `tests/joints/ur5e.py` along the links' motion; logs have the motors'.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.interpolate import make_interp_spline
+
+import bench
+from bench.plant.robot import Robot, joint_rig, read_along
+from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
+from tests.export import two_links
+from tests.export.two_links import write_log
+from tests.joints import ur5e
+
+SOFT = 3
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """MJCF, log of the motors, motion of the links, and by how much the soft one is ahead of its motor."""
+    folder = tmp_path_factory.mktemp("soft")
+    (folder / "arm.xml").write_text(ur5e.mjcf())
+    time, q, w, a = ur5e.motion(6.0)
+    ahead, omega = 0.02, 2.0 * np.pi * 8.0
+    twist = ahead * np.sin(omega * time), ahead * omega * np.cos(omega * time)
+    q[:, SOFT], w[:, SOFT], a[:, SOFT] = q[:, SOFT] + twist[0], w[:, SOFT] + twist[1], a[:, SOFT] - omega**2 * twist[0]
+    columns = {"time [s]": time}
+    for k, name in enumerate(ur5e.NAMES):
+        own = (q[:, k] - twist[0], w[:, k] - twist[1]) if k == SOFT else (q[:, k], w[:, k])
+        signals = ("position [rad]", "velocity [rad/s]", "torque [N*m]")
+        columns |= {f"{name}.{signal}": values for signal, values in zip(signals, (*own, q[:, k]), strict=True)}
+    write_log(folder / "log.csv", columns)
+    return folder, (time, q, w, a), twist
+
+
+def read(folder, name, twists):
+    robot = replace(Robot.of(folder / "arm.xml", name), twists=twists)
+    trace, _ = read_along(folder / "log.csv", joint_rig(None, robot), robot, {})
+    return robot, trace
+
+
+@pytest.mark.parametrize("joint", [1, 2, 4])
+def test_neighbours_feel_the_link_where_it_is(log, joint):
+    folder, (time, q, w, a), twist = log
+    name, own = ur5e.NAMES[joint], ur5e.NAMES[SOFT]
+    true = ur5e.asked(q, w, a)[:, joint]
+
+    def wrong(twists):
+        robot, trace = read(folder, name, twists)
+        known = trace[KNOWN_TORQUE] + np.gradient(trace[KNOWN_MOMENTUM], time) + robot.inertia * a[:, joint]
+        return np.abs(known - true)[5:-5].max() / np.abs(true).max()
+
+    assert wrong({own: (time, *twist)}) < 2e-3 < 5e-3 < wrong({})
+
+
+def test_the_slope_of_the_known_torque_is_that_of_the_links(log):
+    folder, (_, q, w, _), _ = log
+    step, still = 1e-5 * (np.arange(6) == 1), np.zeros_like(w)
+    ahead, behind = (ur5e.asked(q + side * step, still, still)[:, 1] for side in (1.0, -1.0))
+    expected = (ahead - behind) / 2e-5
+    slope = Robot.of(folder / "arm.xml", ur5e.NAMES[1]).slope(q, still)
+    assert slope == pytest.approx(expected, abs=1e-4 * np.abs(expected).max())
+
+
+#: Of both motors of the two links: kg*m**2, N*m*s/rad, N*m; of the elbow's gear, 10 Hz with the forearm - N*m/rad.
+ARMATURE, VISCOUS, COULOMB = 0.03, 0.08, 0.3
+STIFFNESS = (two_links.I2 + two_links.M2 * two_links.C2**2) * (2.0 * np.pi * 10.0) ** 2
+
+
+@pytest.mark.slow
+def test_an_elastic_elbow_is_found_and_spares_the_shoulder(tmp_path):
+    """Its motor is ahead of the forearm by the links' torque over the stiffness: exact without an integrator."""
+    time, upper, fore = two_links.motion(12.1, 2e-3)
+    lift, gear = (of(*upper, *fore) for of in (two_links.shoulder_torque, two_links.elbow_torque))
+    ahead = make_interp_spline(time, fore[0] + gear / STIFFNESS, k=7)
+    columns, rng, kept = {"time [s]": time[time < 12.0]}, np.random.default_rng(3), time < 12.0
+    for name, moved, known in (("shoulder", upper, lift), ("elbow", [ahead(time, nu) for nu in range(3)], gear)):
+        angle, speed, acceleration = moved
+        torque = known + ARMATURE * acceleration + VISCOUS * speed + COULOMB * np.sign(speed)
+        signals = {"position [rad]": (angle, 2e-5), "velocity [rad/s]": (speed, 1e-3), "torque [N*m]": (torque, 1e-2)}
+        for signal, (exact, loud) in signals.items():
+            columns[f"{name}.{signal}"] = exact[kept] + loud * rng.standard_normal(kept.sum())
+    (tmp_path / "arm.xml").write_text(two_links.MJCF)
+    found = bench.robot(write_log(tmp_path / "log.csv", columns), tmp_path / "arm.xml")
+    elbow, shoulder = found["elbow"], found["shoulder"]
+    assert elbow.diagnosis.names == ["elastic_coupling"]
+    assert elbow.diagnosis["elastic_coupling"].parameters["stiffness"].value == pytest.approx(STIFFNESS, rel=0.1)
+    assert elbow.parameters["armature"].value == pytest.approx(ARMATURE, rel=0.02)
+    assert not shoulder.diagnosis.names
+    assert shoulder.diagnosis.verdict == "nothing_missing"
+    low, high = shoulder.parameters["armature"].ci95
+    assert low < ARMATURE < high
