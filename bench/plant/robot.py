@@ -1,13 +1,13 @@
 """The rest of a robot, as a joint feels it along a log: gravity, the links' inertia, what other joints do to it.
 
-By MuJoCo's inverse dynamics of the user's own MJCF, the joint's armature, damping and friction set to zero. With the
-robot's mass matrix M and p = row of the joint of M*w,
+Of MuJoCo's kinematics of the user's own MJCF, the joint's armature, damping and friction set to zero. With the spatial
+momentum h of all that the joint carries, its spatial axis S, the momentum p = S.h along it, and the weight W,
 
-    M_rest = dp/dt + r,  r = bias - passive - (dM/dt*w),
+    M_rest = dp/dt + r,  r = -(dS/dt).h - S.W - passive,
 
 so that no acceleration is needed from the log (`bench.trace.trace`). The joint's own inertia at the
 configuration of the MJCF is estimated by the balance, together with the armature: noise of its speed is then weighted
-correctly.
+correctly (R. Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 2).
 """
 
 from __future__ import annotations
@@ -221,13 +221,16 @@ class Robot:
         """Of all that the joint carries, the datum or in the configuration of the MJCF - kg*m**2 (kg)."""
         if self.datum is not None:
             return self.datum
-        unit = np.zeros((1, self.model.nv))
-        unit[0, self._dof] = 1.0
-        return float(self._momentum(self.model.qpos0[None], unit)[0])
+        return float(self._own_inertia(self.model.qpos0[None])[0])
 
     @property
     def _dof(self) -> int:
         return int(self.model.joint(self.joint).dofadr[0])
+
+    @cached_property
+    def _carried(self) -> NDArray[np.bool_]:
+        """Bodies that the joint carries (nbody,)."""
+        return _carried(self.model, int(self.model.joint(self.joint).bodyid[0]))
 
     def rest(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         """The load of the links on the joint in addition to its own inertia: r - N*m (N) - and p - N*m*s (N*s) -, (n,)
@@ -239,13 +242,15 @@ class Robot:
         torque, momentum = np.empty((2, len(position)))
         for part in _parts(len(position)):
             q, w = self._posed(position[part], velocity[part])
-            step = ASIDE * velocity[part]
-            poses = (self._posed(position[part] + side * step, step)[0] for side in (1.0, -1.0))
-            ahead, behind = (self._momentum(pose, w) for pose in poses)
-            turning = (ahead - behind) / (2.0 * ASIDE)
-            bias, passive, matrix = self._evaluated(q, w, "qfrc_bias", "qfrc_passive", "M")
-            torque[part] = bias[:, dof] - passive[:, dof] - turning
-            momentum[part] = self._row(matrix, w) - self.inertia * w[:, dof]
+            inertias, speeds, axes, turning, passive = self._evaluated(
+                q, w, "cinert", "cvel", "cdof", "cdof_dot", "qfrc_passive"
+            )
+            inertias, speeds = inertias[:, self._carried], speeds[:, self._carried]
+            carried, heavy = _spatial_momentum(inertias, speeds).sum(axis=1), inertias.sum(axis=1)
+            gravity = self.model.opt.gravity
+            weight = np.hstack([np.cross(heavy[:, 6:9], gravity), heavy[:, 9:] * gravity])
+            torque[part] = -np.sum(turning[:, dof] * carried + axes[:, dof] * weight, axis=1) - passive[:, dof]
+            momentum[part] = np.sum(axes[:, dof] * carried, axis=1) - self.inertia * w[:, dof]
         return torque, momentum
 
     def slope(self, position: Array, velocity: Array) -> Array:
@@ -259,10 +264,15 @@ class Robot:
         """The joint's own inertia at positions of `joints` (n, joints) less `inertia` - kg*m**2 (kg) - (n,)."""
         found = np.empty(len(position))
         for part in _parts(len(position)):
-            q, unit = self._posed(position[part], np.zeros_like(position[part]))
-            unit[:, self._dof] = 1.0
-            found[part] = self._momentum(q, unit) - self.inertia
+            q, _ = self._posed(position[part], np.zeros_like(position[part]))
+            found[part] = self._own_inertia(q) - self.inertia
         return found
+
+    def _own_inertia(self, position: Array) -> Array:
+        """Of all that the joint carries at coordinates (n, nq) - kg*m**2 (kg) - (n,)."""
+        inertias, axes = self._evaluated(position, np.zeros((len(position), self.model.nv)), "cinert", "cdof")
+        own = axes[:, self._dof]
+        return np.sum(own * _spatial_momentum(inertias[:, self._carried].sum(axis=1), own), axis=1)
 
     def asked(self, added: Sequence[AddedBody], position: Array, velocity: Array) -> list[tuple[Array, Array]]:
         """The load of each of some additions on the joint in addition to that, r and p as `rest` has them.
@@ -325,20 +335,6 @@ class Robot:
         q[:, model.jnt_qposadr[joints]], w[:, model.jnt_dofadr[joints]] = position, velocity
         return q, w
 
-    def _momentum(self, position: Array, velocity: Array) -> Array:
-        """Of the joint, (n,): its row of the mass matrix times the velocities."""
-        (matrix,) = self._evaluated(position, np.zeros_like(velocity), "M")
-        return self._row(matrix, velocity)
-
-    def _row(self, matrix: Array, velocity: Array) -> Array:
-        """The joint's row of mass matrices (n, entries), of which MuJoCo has the lower half, times velocities (n,)."""
-        dof, column = self._dof, self.model.M_colind
-        row = np.repeat(np.arange(self.model.nv), self.model.M_rownnz)
-        found = np.zeros(len(velocity))
-        for k in np.flatnonzero((row == dof) | (column == dof)):
-            found += matrix[:, k] * velocity[:, column[k] if row[k] == dof else row[k]]
-        return found
-
     def _evaluated(self, position: Array, velocity: Array, *fields: str) -> list[Array]:
         """Fields of MuJoCo's data at poses, (n, ...) each."""
         batch = Batch(self.model, len(position))
@@ -346,6 +342,14 @@ class Robot:
         batch.bind("qpos")[:], batch.bind("qvel")[:] = position, velocity
         batch.forward()
         return [np.array(values) for values in bound]
+
+
+def _spatial_momentum(inertia: Array, speed: Array) -> Array:
+    """Of spatial inertias (..., 10) and speeds (..., 6), rotation first, as MuJoCo has them: (..., 6)."""
+    about = inertia[..., [[0, 3, 4], [3, 1, 5], [4, 5, 2]]]
+    moment, mass, turning, moving = inertia[..., 6:9], inertia[..., 9:], speed[..., :3], speed[..., 3:]
+    angular = np.squeeze(about @ turning[..., None], -1) + np.cross(moment, moving)
+    return np.concatenate([angular, mass * moving - np.cross(moment, turning)], axis=-1)
 
 
 def _parts(poses: int) -> Iterator[slice]:
@@ -370,7 +374,12 @@ def _bound(model: mujoco.MjModel, joint: int) -> Iterator[str]:
         yield "an equality that couples it with another joint"
     driven = model.actuator_trnid[model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_TENDON), 0]
     for k in _moved_tendons(model, joint):
-        if k in driven or model.tendon_frictionloss[k] > 0.0 or k in ends[of["TENDON"]]:
+        if (
+            k in driven
+            or model.tendon_frictionloss[k] > 0.0
+            or model.tendon_armature[k] > 0.0
+            or k in ends[of["TENDON"]]
+        ):
             yield f"the tendon '{model.tendon(k).name}' on it"
     carried = _carried(model, int(model.jnt_bodyid[joint]))
     closing = [int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD)]

@@ -57,6 +57,15 @@ def test_neighbours_feel_the_link_where_it_is(log, joint):
     assert wrong({own: (time, *twist)}) < 2e-3 < 5e-3 < wrong({})
 
 
+@pytest.mark.parametrize("joint", range(6))
+def test_known_torque_and_momentum_are_those_of_newton_and_euler(log, joint):
+    robot, rng, step = Robot.of(log[0] / "arm.xml", ur5e.NAMES[joint]), np.random.default_rng(1), 1e-5
+    q, w, a = rng.uniform(-1.5, 1.5, (3, 50, 6))
+    ahead, behind = (robot.rest(q + side * step * w, w + side * step * a)[1] for side in (1.0, -1.0))
+    found = robot.rest(q, w)[0] + (ahead - behind) / (2.0 * step) + robot.inertia * a[:, joint]
+    assert found == pytest.approx(ur5e.asked(q, w, a)[:, joint], abs=1e-7)
+
+
 def test_the_slope_of_the_known_torque_is_that_of_the_links(log):
     folder, (_, q, w, _), _ = log
     step, still = 1e-5 * (np.arange(6) == 1), np.zeros_like(w)
