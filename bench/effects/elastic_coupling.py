@@ -117,6 +117,7 @@ def _column(signals: Signals, antiresonance: float, damping: float, loads: Seque
         (pull, slope), (level, rate) = signals.pull, _first_pull(signals, antiresonance)
         line, drift = level + rate * step * np.arange(free.size), -rate / spring
         bent, twist = drift * loss / -spring - line / spring, np.zeros_like(free)
+        forced = np.zeros_like(driven)
         for _ in range(BENDS):
             pulling = pull + slope * twist - line
             forced, _ = _driven(state, np.array([0.0, -1.0]), step, np.stack([pulling[:-1], np.diff(pulling)]))

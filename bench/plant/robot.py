@@ -513,7 +513,9 @@ def _known(
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
     ratio = (own.load or Load()).gear_ratio
-    grown, slope = robot.grown(position) / ratio**2, robot.slope(position, velocity) / ratio**2
+    grown = robot.grown(position) / ratio**2
+    # of a twist that is known it is the torque already
+    slope = None if robot.joint in robot.twists else robot.slope(position, velocity) / ratio**2
     known = [with_known(trace, asked / ratio, moving / ratio, own.effort_unit, grown, slope) for asked, moving in every]
     standing = _standing(position, velocity, torque, robot, stand, ratio)
     return [replace(one, notes=(*robot.notes, *one.notes), metadata={**one.metadata, **standing}) for one in known]
@@ -567,8 +569,7 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
         if name in robot.twists:
             time, *twist = robot.twists[name]
             angle, rate = (np.interp(trace.time, time, more) for more in twist)
-            # where its own link is, the joint's effects take into account by the slope of the torque
-            motion[name] = found[0] + (0.0 if name == robot.joint else angle), found[1] + rate
+            motion[name] = found[0] + angle, found[1] + rate
         _require_within(found[0], name, robot, path)
     position, velocity = (np.column_stack([motion[name][k] for name in robot.names]) for k in (0, 1))
     return trace, position, velocity, stand
