@@ -497,7 +497,7 @@ def _projected(start: Fit, hypothesis: Hypothesis, indices: Sequence[int], over_
 
     @cache
     def residual_at(place: tuple[float, ...]) -> Array:
-        found = fit(rows_tried, at(np.array(place)), start)
+        found = fit(rows_tried, at(np.array(place)), start) if any(place) else first
         return found.residual / (found.noise.white if over_noise else scale)
 
     def residual(offset: Array) -> Array:
@@ -507,7 +507,8 @@ def _projected(start: Fit, hypothesis: Hypothesis, indices: Sequence[int], over_
         steps = SHAPE_STEP * np.eye(offset.size)
         return np.stack([(residual(offset + step) - residual(offset)) / SHAPE_STEP for step in steps], axis=1)
 
-    scale, starts = fit(rows_tried, hypothesis, start).rms or 1.0, np.zeros((1, sum(counts)))
+    first, starts = fit(rows_tried, hypothesis, start), np.zeros((1, sum(counts)))
+    scale = first.rms or 1.0
     if len(terms) == 1:
         starts = np.concatenate([starts, ASIDE * np.eye(counts[0]), -ASIDE * np.eye(counts[0])])
     begun = min(starts, key=lambda offset: float(np.sum(residual(offset) ** 2)))

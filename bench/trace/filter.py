@@ -104,14 +104,12 @@ class GaussianFilter:
         found = np.empty((len(columns), rows if places is None else places.size))
         windows, row = np.zeros((blocks + 1, size)), np.empty((blocks, size // self.stride))
         padded, laid = windows.reshape(-1), None
-        passed: dict[tuple[int, float], Array] = {}
         for out, column, late in zip(found, columns, np.broadcast_to(lag, len(columns)).tolist(), strict=True):
             for place, (values, order) in enumerate(column):
                 if values is not laid:
                     padded[:count] = laid = values
-                if (order, late) not in passed:
-                    passed[order, late] = self._passed(order, late)
-                ahead, behind = passed[order, late][:size], passed[order, late][size:]
+                passed = _passed(self, size, order, late)
+                ahead, behind = passed[:size], passed[size:]
                 if place:
                     row += windows[:-1] @ ahead
                 else:
@@ -128,7 +126,7 @@ class GaussianFilter:
         size, blocks = self._layout(count)
         placed = np.zeros((len(targets), blocks * size // self.stride))
         placed[:, : targets.shape[1]] = targets
-        sent = placed.reshape(len(targets), blocks, -1) @ self._passed(order, lag).T
+        sent = placed.reshape(len(targets), blocks, -1) @ _passed(self, size, order, lag).T
         found = np.zeros((len(targets), blocks + 1, size))
         found[:, :-1] += sent[:, :, :size]
         found[:, 1:] += sent[:, :, size:]
@@ -143,14 +141,15 @@ class GaussianFilter:
         size = self.stride * -(-(2 * self.margin + 1) // self.stride)
         return size, -(-self._rows(count) * self.stride // size)
 
-    def _passed(self, order: int, lag: float) -> Array:
-        """What each row of a block has of the samples of it and of the next (2*size, rows)."""
-        kernel = _kernel(self, order) + lag * _kernel(self, order + 1) if lag else _kernel(self, order)
-        size, _ = self._layout(0)
-        rows = size // self.stride
-        shifted = np.zeros((rows, 2 * size + self.stride))
-        shifted[:, : kernel.size] = kernel
-        return shifted.ravel()[: rows * 2 * size].reshape(rows, 2 * size).T
+
+@lru_cache(maxsize=16)
+def _passed(smooth: GaussianFilter, size: int, order: int, lag: float) -> Array:
+    """What each row of a block of so many samples has of those of it and of the next (2*size, rows)."""
+    kernel = _kernel(smooth, order) + lag * _kernel(smooth, order + 1) if lag else _kernel(smooth, order)
+    rows = size // smooth.stride
+    shifted = np.zeros((rows, 2 * size + smooth.stride))
+    shifted[:, : kernel.size] = kernel
+    return shifted.ravel()[: rows * 2 * size].reshape(rows, 2 * size).T
 
 
 @lru_cache(maxsize=64)
