@@ -30,3 +30,19 @@ def found(tmp_path_factory):
     finally:
         os.chdir(before)
     return folder / "found"
+
+
+@pytest.fixture
+def sound(opened):
+    """Opens a page on a phone in the dark and in a wide light window; it is as wide, and axe finds nothing."""
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe-playwright-python")
+
+    def opened_soundly(path):
+        for width, scheme in ((390, "dark"), (1280, "light")):
+            page = opened(path, width, color_scheme=scheme, bypass_csp=True)
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            found = axe.Axe().run(page).response["violations"]
+            assert [(one["id"], [node["html"] for node in one["nodes"]][:3]) for one in found] == []
+        return page
+
+    return opened_soundly

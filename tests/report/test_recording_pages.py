@@ -101,14 +101,9 @@ def test_simulate_writes_its_page_beside_the_trace(bench, tmp_path):
     assert "slow reversals were simulated." in (tmp_path / "run.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (390, "dark")])
 @pytest.mark.parametrize("name", ["inspection", "simulation"])
-def test_a_page_opens(opened, inspected, simulated, tmp_path, name, width, scheme):
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe-playwright-python")
+def test_a_page_opens(sound, inspected, simulated, tmp_path, name):
     write_html(tmp_path / "page.html", inspected[0] if name == "inspection" else simulation(simulated, NAME))
-    page = opened(tmp_path / "page.html", width, color_scheme=scheme, bypass_csp=True)
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page = sound(tmp_path / "page.html")
     assert page.locator("script:not([type])").count() == 1
     assert "alert(1)" in page.locator("header").inner_text()
-    violations = axe.Axe().run(page).response["violations"]
-    assert [(one["id"], [node["html"] for node in one["nodes"]][:3]) for one in violations] == []
