@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import matplotlib as mpl
+
 from tests.hostile import ROOT
 
 #: Modules and calls of POSIX are missing for the bench and for filelock; other libraries ask for the platform.
@@ -33,7 +35,8 @@ main()
 
 def without_posix(*arguments, cwd):
     command = [sys.executable, "-c", WITHOUT_POSIX, *map(str, arguments)]
-    env = {"PATH": "", "PYTHONPATH": str(ROOT), "HOME": str(cwd)}
+    # the list of fonts is not made anew in a home of its own
+    env = {"PATH": "", "PYTHONPATH": str(ROOT), "HOME": str(cwd), "MPLCONFIGDIR": mpl.get_cachedir()}
     return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=300, check=False)
 
 
