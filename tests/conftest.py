@@ -9,8 +9,8 @@ import pytest
 from hypothesis import HealthCheck, settings
 from xdist.scheduler import LoadScopeScheduling
 
-#: Folders whose robots are sound: this process compiles them, as a worker process does, which saves one for each.
-SOUND = ("docs", "export", "faults", "gate", "joints", "plant", "report", "servos", "view")
+#: Folders whose robots and MDF4 files end no process: this one reads them, as a worker does, which saves one for each.
+SOUND = ("docs", "export", "faults", "gate", "joints", "plant", "report", "servos", "trace", "view")
 #: Files that share a fixture of the session, by its name; every other file goes its own way.
 TOGETHER = {
     "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "follow", "model_file", "soft_tracking")),
