@@ -20,9 +20,9 @@ from bench.report.numbers import unit_text
 
 Values = NDArray[np.floating]
 
-#: Numbers of a page's graphs: FEW where samples are few, then MORE for each of them, at most MOST. A
-#: number takes 2.7 bytes: that is 0.7 MB for 10 s at 1 kHz, and 3.7 MB for ten million samples.
-FEW, MORE, MOST = 250_000, 5, 1_400_000
+#: Numbers of a page's graphs: FEW where samples are few, then MORE for each of them, at most MOST; so much more where
+#: each sample is one. A page deflates them to 1 to 2.5 bytes: that is 0.4 MB for 10 s at 1 kHz.
+FEW, MORE, MOST, EXACT = 170_000, 5, 1_400_000, 1.5
 #: Steps between lowest and highest value, and the code of no value.
 STEPS, NOTHING = 65534, -32768
 
@@ -43,7 +43,7 @@ class Grid:
         period = float(np.median(np.diff(time[: min(time.size, 10_000)])))
         span = float(time[-1] - time[0])
         samples = round(span / period) + 1
-        if samples <= most:
+        if samples <= EXACT * most:
             return cls(float(time[0]), period, samples, True)
         count = max(2, int(most / 2))
         return cls(float(time[0]), span / (count - 1), count, False)

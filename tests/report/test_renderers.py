@@ -28,7 +28,7 @@ from bench.report.document import (
     series,
     table,
 )
-from bench.report.html import Ruler, drawn
+from bench.report.html import Ruler, drawn, line
 from bench.report.publish import markdown
 from bench.report.serial import known, picked, serialised
 from bench.report.terminal import rendered, show, writable
@@ -106,6 +106,20 @@ def test_a_rulers_ends_and_middle():
     assert [label for _, label in Ruler(0.5, 2000.0, 0.0, 1.0, log=True).ticks()] == ["1", "10", "100", "1000"]
 
 
+def places(path):
+    """Points of a path of steps (n, 2)."""
+    start, steps = path.removeprefix("M").split("l")
+    every = [[float(value) for value in point.split(",")] for point in (start, *steps.split())]
+    return np.cumsum(every, axis=0)
+
+
+def test_a_path_in_steps_goes_through_its_points():
+    points = np.round(np.random.default_rng(1).uniform(0.0, 760.0, (500, 2)), 1)
+    points[1] = points[0] + 0.1  # a step below one has no zero before its point, and one of ten has its own
+    points[2] = points[1] + [10.0, -0.5]
+    np.testing.assert_allclose(places(line([*map(tuple, points)])), points, atol=1e-6)
+
+
 def test_panels_with_labels_of_their_own_have_scales_of_their_own():
     """On one scale, a panel of 0 to 1 beside one of 0 to 100 takes a hundredth of the height; stacked, all of it."""
     small, large = (series("x", "line", "ink", np.arange(2.0), top * np.arange(2.0)) for top in (1.0, 100.0))
@@ -114,11 +128,8 @@ def test_panels_with_labels_of_their_own_have_scales_of_their_own():
         panels = tuple(
             Panel(x_label="x", y_label=y, series=(one,)) for y, one in zip(labels, (small, large), strict=True)
         )
-        points = [
-            [float(point.split(",")[1]) for point in placed.marks[0].points.split()]
-            for placed in drawn(Chart(title="t", alternative="a", panels=panels))
-        ]
-        return [abs(ends[0] - ends[1]) for ends in points]
+        points = [places(placed.marks[0].line) for placed in drawn(Chart(title="t", alternative="a", panels=panels))]
+        return [abs(ends[0][1] - ends[1][1]) for ends in points]
 
     beside, stacked = heights("", ""), heights("one", "other")
     assert beside[0] == pytest.approx(0.01 * beside[1], abs=0.2)
@@ -127,7 +138,7 @@ def test_panels_with_labels_of_their_own_have_scales_of_their_own():
 
 def test_a_logarithmic_panel_draws_what_is_positive():
     (placed,) = drawn(Chart(title="t", alternative="a", panels=(Panel(x_label="x", log=True, series=(LINE,)),)))
-    assert len(placed.marks[0].points.split()) == 2
+    assert len(places(placed.marks[0].line)) == 2
 
 
 def test_a_picture_has_every_part_in_its_place(tmp_path):

@@ -2,9 +2,15 @@
 (() => {
   const NOTHING = -32768, HEIGHT = { first: 170, other: 130, paper: 90 }, LEAST = 8, DENSE = 8;
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
-  const numbers = (text) => {
-    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-    return new Int16Array(bytes.buffer);
+  const numbers = async (text) => { // differences, folded, upper bytes before lower ones, deflated (bench/report/html.py)
+    const packed = new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]);
+    const bytes = new Uint8Array(await new Response(packed.stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+    const found = new Int16Array(bytes.length / 2);
+    for (let k = 0, value = 0; k < found.length; k++) {
+      const folded = (bytes[k] << 8) | bytes[k + found.length];
+      found[k] = value = (value + ((folded >>> 1) ^ -(folded & 1))) & 0xffff;
+    }
+    return found;
   };
   const line = uPlot.paths.linear();
   const shown = (value, unit) => (value == null ? "–" : Number(value.toPrecision(4)) + (unit ? " " + unit : ""));
@@ -47,19 +53,23 @@
   };
 
   class TimeGraph {
-    constructor(figure) {
-      this.data = JSON.parse(figure.querySelector("script[type='application/json']").textContent);
+    static async of(figure) {
+      const data = JSON.parse(figure.querySelector("script[type='application/json']").textContent);
+      await Promise.all(data.panels.flatMap((panel) => panel.curves).map(async (curve) => {
+        const { low, high } = curve.samples;
+        curve.low = await numbers(low);
+        curve.high = high === null ? curve.low : await numbers(high);
+      }));
+      return new TimeGraph(figure, data);
+    }
+
+    constructor(figure, data) {
+      this.data = data;
       this.place = figure.querySelector(".graph");
       this.range = figure.querySelector(".range");
       this.choice = Math.max(0, this.data.choices.length - 1);
       this.whole = [-0.5, this.data.count - 0.5]; // in intervals of the grid
       this.view = [...this.whole];
-      for (const panel of this.data.panels)
-        for (const curve of panel.curves) {
-          const { low, high } = curve.samples;
-          curve.low = numbers(low);
-          curve.high = high === null ? curve.low : numbers(high);
-        }
       this.single = this.data.panels.every((p) => p.curves.every((c) => c.samples.high === null));
       this.listen(figure);
       this.build();
@@ -250,5 +260,5 @@
     }
   }
 
-  document.querySelectorAll("figure.time").forEach((figure) => new TimeGraph(figure));
+  document.querySelectorAll("figure.time").forEach(TimeGraph.of);
 })();
