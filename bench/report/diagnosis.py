@@ -463,8 +463,11 @@ def _suspects(found: Diagnosis) -> doc.Section:
     headings = ("effect", "added", "probability>", "of the gap>", "of the residual>", "reason~")
     shown = [one.accepted or one.probability > LEAST_SHOWN for one in found.considered]
     likely, rest = (list(compress(rows, kept)) for kept in (shown, [not kept for kept in shown]))
-    marked = (k for k, one in enumerate(compress(found.considered, shown)) if one.accepted)
-    tables = [doc.table(caption, headings, likely, marked)] if likely else []
+    accepted = [one.effect.name if one.accepted else "" for one in compress(found.considered, shown)]
+    place = {name: f"#parameters-{k}" for k, name in enumerate(found.names, 2)}  # after the table of the axis
+    tables = [doc.table(caption, headings, likely, (k for k, name in enumerate(accepted) if name))] if likely else []
+    if likely:
+        tables[0] = tables[0].model_copy(update={"links": tuple(place.get(name, "") for name in accepted)})
     if rest:
         limit = f"{len(rest)} effects with a probability of at most {share(LEAST_SHOWN)}"
         tables.append(doc.table(limit, headings, rest).model_copy(update={"folded": True}))

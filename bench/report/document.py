@@ -39,8 +39,10 @@ class Part(BaseModel):
 
 #: Largest number that a drawing has a place for; of a logarithmic one the smallest is its inverse.
 LARGEST = 1e100
-#: A file near the page, by its path from there: it leads to no other machine.
-Address = Annotated[str, Field(pattern=r"^(\.\./)*([A-Za-z0-9_][A-Za-z0-9_.-]*/)*([A-Za-z0-9_][A-Za-z0-9_.-]*)?$")]
+#: A file near the page, by its path from there, or a part of the page: it leads to no other machine.
+Address = Annotated[
+    str, Field(pattern=r"^((\.\./)*([A-Za-z0-9_][A-Za-z0-9_.-]*/)*([A-Za-z0-9_][A-Za-z0-9_.-]*)?|#[a-z]+-[0-9]+)$")
+]
 
 
 def _require(right: bool, allowed: str) -> None:
@@ -120,7 +122,7 @@ class Table(Part):
 
     Attributes:
         marked: numbers of rows to be noticed.
-        links: where the names of rows lead to, a page each, "" for none; () without.
+        links: where the names of rows lead to, a page or a part of this one, "" for none; () without.
         sketches: what is drawn small into the second cell of each row, without axes; () without.
         sought: whether a reader can seek rows by words.
         folded: whether a page shows only its caption until a reader opens it.

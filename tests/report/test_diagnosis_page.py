@@ -204,3 +204,15 @@ def test_the_stretch_that_is_shown_moves():
     bare = np.where(stands, 0.0, measured + 0.3 * np.sin(25.0 * time))
     _, part = _telling(np.stack([measured, bare, bare]), [slice(0, time.size)])
     assert part is not None and not stands[part].any()
+
+
+def test_a_suspect_that_was_added_leads_to_its_fit(found, page):
+    (suspects,) = (section for section in page.sections if section.key == "suspects")
+    table = suspects.blocks[0]
+    led = {row[0]: link for row, link in zip(table.rows, table.links, strict=True) if link}
+    assert set(led) == {row[0] for row in table.rows if row[1] == "yes"} == {"unbalance"}
+    text = (found / "report.html").read_text(encoding="utf-8")
+    for name, link in led.items():
+        assert f'<a href="{link}">{name}</a>' in text
+        _, _, fit = text.partition(f'id="{link.removeprefix("#")}"')
+        assert fit.startswith(f' tabindex="0" role="region" aria-label="Parameters: {name.capitalize()}: ')
