@@ -7,12 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.interpolate import make_interp_spline
 
-import bench
 from bench.plant.robot import Robot, joint_rig, read_along
 from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
-from tests.export import two_links
 from tests.export.two_links import write_log
 from tests.joints import ur5e
 
@@ -73,33 +70,3 @@ def test_the_slope_of_the_known_torque_is_that_of_the_links(log):
     expected = (ahead - behind) / 2e-5
     slope = Robot.of(folder / "arm.xml", ur5e.NAMES[1]).slope(q, still)
     assert slope == pytest.approx(expected, abs=1e-4 * np.abs(expected).max())
-
-
-#: Of both motors of the two links: kg*m**2, N*m*s/rad, N*m; of the elbow's gear, 10 Hz with the forearm - N*m/rad.
-ARMATURE, VISCOUS, COULOMB = 0.03, 0.08, 0.3
-STIFFNESS = (two_links.I2 + two_links.M2 * two_links.C2**2) * (2.0 * np.pi * 10.0) ** 2
-
-
-@pytest.mark.slow
-def test_an_elastic_elbow_is_found_and_spares_the_shoulder(tmp_path):
-    """Its motor is ahead of the forearm by the links' torque over the stiffness: exact without an integrator."""
-    time, upper, fore = two_links.motion(12.1, 2e-3)
-    lift, gear = (of(*upper, *fore) for of in (two_links.shoulder_torque, two_links.elbow_torque))
-    ahead = make_interp_spline(time, fore[0] + gear / STIFFNESS, k=7)
-    columns, rng, kept = {"time [s]": time[time < 12.0]}, np.random.default_rng(3), time < 12.0
-    for name, moved, known in (("shoulder", upper, lift), ("elbow", [ahead(time, nu) for nu in range(3)], gear)):
-        angle, speed, acceleration = moved
-        torque = known + ARMATURE * acceleration + VISCOUS * speed + COULOMB * np.sign(speed)
-        signals = {"position [rad]": (angle, 2e-5), "velocity [rad/s]": (speed, 1e-3), "torque [N*m]": (torque, 1e-2)}
-        for signal, (exact, loud) in signals.items():
-            columns[f"{name}.{signal}"] = exact[kept] + loud * rng.standard_normal(kept.sum())
-    (tmp_path / "arm.xml").write_text(two_links.MJCF)
-    found = bench.robot(write_log(tmp_path / "log.csv", columns), tmp_path / "arm.xml")
-    elbow, shoulder = found["elbow"], found["shoulder"]
-    assert elbow.diagnosis.names == ["elastic_coupling"]
-    assert elbow.diagnosis["elastic_coupling"].parameters["stiffness"].value == pytest.approx(STIFFNESS, rel=0.1)
-    assert elbow.parameters["armature"].value == pytest.approx(ARMATURE, rel=0.02)
-    assert not shoulder.diagnosis.names
-    assert shoulder.diagnosis.verdict == "nothing_missing"
-    low, high = shoulder.parameters["armature"].ci95
-    assert low < ARMATURE < high
