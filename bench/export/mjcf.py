@@ -16,6 +16,7 @@ recordings determine it, the interval of one more, which includes how the axis d
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Mapping, Sequence
@@ -105,12 +106,14 @@ class PositionDrive:
     Attributes:
         kp, kd: its gains - N*m/rad (N/m), N*m*s/rad (N*s/m).
         delay: of its goal - s.
+        limit: of its torque - N*m (N); infinite where none is known.
         lacking: what MuJoCo's position actuator does not have of it, in sentences.
     """
 
     kp: float
     kd: float
     delay: float
+    limit: float
     lacking: tuple[str, ...] = ()
 
 
@@ -168,7 +171,11 @@ def _driven(spec: mujoco.MjSpec, name: str, drive: PositionDrive) -> list[str]:
     actuator.gear = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     actuator.set_to_position(drive.kp, kv=drive.kd)
     actuator.delay, actuator.nsample = drive.delay, buffered(drive.delay, spec.option.timestep)
-    lines = [f"{name}: '{actuator.name}' has kp {drive.kp:.4g}, kv {drive.kd:.4g} and a delay of {drive.delay:.4g} s"]
+    has = f"kp {drive.kp:.4g}, kv {drive.kd:.4g} and a delay of {drive.delay:.4g} s"
+    if math.isfinite(drive.limit):
+        actuator.forcerange, actuator.forcelimited = [-drive.limit, drive.limit], mujoco.mjtLimited.mjLIMITED_TRUE
+        has = f"{has}, and a force limit of {drive.limit:.4g}"
+    lines = [f"{name}: '{actuator.name}' has {has}"]
     return lines + [f"{name}: not carried: {text}" for text in drive.lacking]
 
 

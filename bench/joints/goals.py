@@ -168,4 +168,4 @@ def drive_of(joint: IdentifiedJoint) -> PositionDrive | None:
     lacking = [f"joint bias of {known['joint_bias']}: add it to the goals"]
     lacking += [] if static is None else [f"static friction of {static}"]
     gains = goals.found.gains
-    return PositionDrive(gains.kp, gains.kd, max(known["dead_time"].value, 0.0), tuple(lacking))
+    return PositionDrive(gains.kp, gains.kd, max(known["dead_time"].value, 0.0), gains.limit, tuple(lacking))

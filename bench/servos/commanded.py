@@ -14,6 +14,9 @@ signal E[n*n''] = -E[n'**2], so kp*q adds kp*E[n'**2] to the moment of alpha; th
 the configuration of the MJCF takes dJ*E[n''**2] from it. Both are taken out with the noise of the columns themselves.
 What remains uncertain of the noise's level is in the covariance, and of several filters the one with the least errors
 is taken.
+
+A controller at its force limit l, which nobody stated, makes the torque +-l, whatever it requests. The balance is
+fitted to samples within the limit; where more is requested, the same balance gives the torque, whose mean is l.
 """
 
 from __future__ import annotations
@@ -58,6 +61,11 @@ DETERMINED = 0.5
 EXPLAINS = 0.9
 #: Share by which the links' weight may be off before the gains are doubted.
 OFF = 0.02
+#: Shares of the largest request within which a balance is sought that no limit disturbs; request over a limit at which
+#: it is surely reached; rounds in which both are found together, and steps to a level in each of them.
+BEGINNINGS, SURELY, ROUNDS, LEVELS = tuple(0.6 * 0.7**k for k in range(10)), 1.1, 3, 30
+#: Relative step at which a level has converged, and fewest times that a limit has to be reached.
+SETTLED, TIMES = 1e-4, 3
 #: Name of the column of the links' load.
 LINKS = "links"
 #: Ratio of the spread of joints' delays to their errors above which they are not one delay.
@@ -97,6 +105,7 @@ class Coefficients:
         theta: of TERMS: J, K_w + kd, K_0, less the dead time, -kp*b (5,).
         covariance: (5, 5).
         reach: of an interval of 95 % in standard errors.
+        limit: of the controller's torque, where the log reaches one that is not stated.
     """
 
     kind: AxisKind
@@ -104,6 +113,7 @@ class Coefficients:
     theta: Array
     covariance: Array
     reach: float
+    limit: Parameter | None = None
 
     @property
     def delay(self) -> Delay:
@@ -138,7 +148,7 @@ class Coefficients:
         found[ARMATURE] = _moved(base[INERTIA], -link_inertia)
         found["dead_time"] = self._parameter(MISALIGNMENT, "s", -1.0)
         found["joint_bias"] = self._parameter(OFFSET, kind.length_unit, -1.0 / kp)
-        return found
+        return found if self.limit is None else {**found, "force_limit": self.limit}
 
     def _parameter(self, term: str, unit: str, factor: float = 1.0) -> Parameter:
         k = TERMS.index(term)
@@ -170,16 +180,19 @@ class JointBalance:
         late = self.found.delay.value / self.trace.sample_period + 0.5
         return np.interp(places - late, np.arange(len(self.trace)), self.trace["position_reference"])
 
-    def with_effort(self, trace: Trace) -> Trace:
-        """A log of the joint with the torque of its controller, without its goal."""
+    def request(self, trace: Trace) -> Array:
+        """What the controller requests, in whatever limit - N*m (N) - (n,)."""
         position, speed = trace["position"], np.empty(len(trace))
         for part in trace.segments:
             speed[part] = slope(position[part], trace.sample_period) if part.stop - part.start > 1 else 0.0
         goal = replace(self, trace=trace).goal(np.arange(len(trace), dtype=np.float64))
-        gains, kind = self.found.gains, self.found.kind
-        effort = gains.kp * (goal + self.found.bias - position) - gains.kd * speed
+        return self.found.gains.kp * (goal + self.found.bias - position) - self.found.gains.kd * speed
+
+    def with_effort(self, trace: Trace) -> Trace:
+        """A log of the joint with the torque of its controller, without its goal."""
+        limit, kind = self.found.gains.limit, self.found.kind
+        limited = np.clip(self.request(trace), -limit, limit)
         trace = trace.without("position_reference")
-        limited = np.clip(effort, -gains.limit, gains.limit)
         return trace.with_signals({kind.effort: limited}, {kind.effort: kind.effort_unit})
 
 
@@ -199,6 +212,29 @@ def balance(trace: Trace, rig: Rig, gains: Gains) -> JointBalance:
         UndeterminedError: the joint never moves clearly, or the log does not determine its inertia.
     """
     first = Rows.of(_as_known(trace, gains), rig, width=LEAST_WIDTH * trace.sample_period)
+    best = _best(trace, first, gains)
+    if math.isinf(gains.limit):
+        best = _limited(replace(best, rows=first)) or best
+    gains = best.found.gains
+    whole = replace(best, rows=first)  # a wide filter may keep only the slow parts, in which no limit is reached
+    explained = _explained(whole if math.isinf(gains.limit) else replace(whole, rows=_within(whole, gains.limit)))
+    if explained < EXPLAINS:
+        reason = f"goal, position and gains explain {max(explained, 0.0):.0%} of the torque only: "
+        reason += "the controller has other gains or is at a force limit"
+        raise UndeterminedError("the joint's inertia", reason, "smaller and slower goals, which the joint follows")
+    if not best.found.reach * best.found.errors[0] < DETERMINED * best.found.theta[0]:
+        reason = "the goal and the position do not show how it accelerates"
+        record = "goals of 0.1 to 2 Hz, 20 s or more"
+        if (share := float(np.mean(np.abs(best.request(trace)) >= gains.limit))) > 0.0:
+            reason = f"the controller is at its force limit of {gains.limit:.3g} {trace.axis_kind.effort_unit} "
+            reason, record = f"{reason}for {share:.0%} of the log", "smaller and slower goals, which the joint follows"
+        raise UndeterminedError("the joint's inertia", reason, record)
+    return best
+
+
+def _best(trace: Trace, first: Rows, gains: Gains) -> JointBalance:
+    """The balance through the filter with the least errors; UndeterminedError where a limit leaves nothing of the
+    log."""
     best, delay = None, None
     for rows in _filtered(first):
         if delay is None:
@@ -206,7 +242,7 @@ def balance(trace: Trace, rig: Rig, gains: Gains) -> JointBalance:
         one = _fitted(trace, rows, gains, delay)
         if math.isfinite(gains.limit):
             try:
-                one = _fitted(trace, _within_limit(one), gains, one.found.delay.value)
+                one = _fitted(trace, _within(one, gains.limit), gains, one.found.delay.value)
             except UndeterminedError:
                 continue
         if best is None or _size(one) < _size(best):
@@ -216,15 +252,6 @@ def balance(trace: Trace, rig: Rig, gains: Gains) -> JointBalance:
     if best is None:
         reason = f"the controller is nearly always at its limit of {gains.limit:.3g} {trace.axis_kind.effort_unit}"
         raise UndeterminedError("the joint's inertia", reason, "smaller and slower goals, which the joint follows")
-    whole = replace(best, rows=first)  # a wide filter may keep only the slow parts, in which no limit is reached
-    explained = _explained(whole if math.isinf(gains.limit) else replace(whole, rows=_within_limit(whole)))
-    if explained < EXPLAINS:
-        reason = f"goal, position and gains explain {max(explained, 0.0):.0%} of the torque only: "
-        reason += "the controller has other gains or is at a force limit"
-        raise UndeterminedError("the joint's inertia", reason, "smaller and slower goals, which the joint follows")
-    if not best.found.reach * best.found.errors[0] < DETERMINED * best.found.theta[0]:
-        reason = "the goal and the position do not show how it accelerates"
-        raise UndeterminedError("the joint's inertia", reason, "goals of 0.1 to 2 Hz, 20 s or more")
     return best
 
 
@@ -332,12 +359,15 @@ def wrong_scale(one: JointBalance) -> str:
     )
 
 
-def _within_limit(one: JointBalance) -> Rows:
-    """The rows in whose reach the controller stays within its limit."""
-    trace, smooth, gains = one.trace, one.rows.conditioning.filter, one.found.gains
-    free = replace(one, found=replace(one.found, gains=replace(gains, limit=math.inf)))
-    demand = free.with_effort(trace)[trace.axis_kind.effort]
-    beyond = np.convolve(np.abs(demand) >= gains.limit, np.ones(2 * smooth.margin + 1), "same") > 0.5
+def _within(one: JointBalance, limit: float) -> Rows:
+    """The rows in whose reach the controller requests less than a limit."""
+    return _where(one, np.abs(one.request(one.trace)) < limit)
+
+
+def _where(one: JointBalance, holds: NDArray[np.bool_]) -> Rows:
+    """The rows in whose reach something holds for every sample (n,); UndeterminedError where there are none."""
+    trace, margin = one.trace, one.rows.conditioning.filter.margin
+    beyond = np.convolve(~holds, np.ones(2 * margin + 1), "same") > 0.5
     start = trace.time[0]
 
     def kept(time: Array) -> NDArray[np.bool_]:
@@ -347,6 +377,89 @@ def _within_limit(one: JointBalance) -> Rows:
     if not any(part.used.any() for part in rows.stretches):
         raise UndeterminedError("the balance", "the controller is at its limit", "goals that it follows")
     return rows
+
+
+def _limited(one: JointBalance) -> JointBalance | None:
+    """The balance with the limit that its controller reaches, by one of all rows; None where it reaches none."""
+    gains, trace, first = one.found.gains, one.trace, one.rows
+    largest = float(np.quantile(np.abs(one.request(trace)), 0.999))
+    for share in BEGINNINGS:
+        level = share * largest
+        try:
+            within = _fitted(trace, _within(one, level), gains, one.found.delay.value)
+        except UndeterminedError:
+            continue
+        if _explained(within) >= EXPLAINS:
+            break
+    else:
+        return None
+    for _ in range(ROUNDS):
+        settled = _settled(replace(within, rows=first), level)
+        if settled is None:
+            return None
+        level = settled
+        try:
+            within = _best(trace, first, replace(gains, limit=level))
+        except UndeterminedError:
+            return None
+    limit = _level(replace(within, rows=first), level)
+    return limit and replace(within, found=replace(within.found, limit=limit, gains=replace(gains, limit=limit.value)))
+
+
+def _settled(one: JointBalance, level: float) -> float | None:
+    """Limit of the torque - N*m (N) -, from a level of it; None where nothing is above it.
+
+    Where a controller requests more than a level, its mean torque is above the level if that is below the limit, and is
+    the limit if not: repeated, the level settles at the limit, or rises until nothing is above it.
+    """
+    for _ in range(LEVELS):
+        torques = [torque for _, torque, _ in _beyond(one, level)]
+        if not torques:
+            return None
+        last, level = level, float(np.concatenate(torques).mean())
+        if level <= 0.0:  # the balance is none
+            return None
+        if abs(level - last) < SETTLED * level:
+            break
+    return level
+
+
+def _beyond(one: JointBalance, level: float) -> Iterator[tuple[Array, Array, Array]]:
+    """Where the controller surely requests more than a level: times, torque in that direction by the balance - N*m
+    (N) - (r,), and its slopes over J, K_w and K_0 (r, 3)."""
+    request, found = one.request(one.trace), one.found
+    theta = found.theta[:3] - np.array([0.0, found.gains.kd, 0.0])
+    for side in (1.0, -1.0):
+        try:
+            rows = _where(one, side * request > SURELY * level)
+        except UndeterminedError:
+            continue
+        columns = side * lay_out(rows, Hypothesis()).columns[:, :3]
+        links = side * (rows.kept(known_of)[:, 0] - found.gains.kp * rows.kept(_position)[:, 0])
+        yield rows.time, columns @ theta + links, columns
+
+
+def _level(one: JointBalance, level: float) -> Parameter | None:
+    """The mean torque where more than a level is requested; None where that is too seldom.
+
+    Its variance is that of the times at which the limit is reached, and of the balance.
+    """
+    sums, slope, width = list[float](), np.zeros(3), one.rows.conditioning.filter.width
+    parts = [*_beyond(one, level)]
+    count = sum(time.size for time, _, _ in parts)
+    if not count:
+        return None
+    value = sum(float(torque.sum()) for _, torque, _ in parts) / count
+    for time, torque, columns in parts:
+        edges = np.flatnonzero(np.diff(time, prepend=-np.inf) > 2.0 * width)
+        sums += np.add.reduceat(torque - value, edges).tolist()
+        slope += columns.sum(axis=0) / count
+    if len(sums) < TIMES:
+        return None
+    variance = float(np.square(sums).sum()) / count**2 * len(sums) / (len(sums) - 1)
+    variance += float(slope @ one.found.covariance[:3, :3] @ slope)
+    error, reach = math.sqrt(variance), float(scipy.special.stdtrit(len(sums) - 1, 0.975))
+    return Parameter(value, one.found.kind.effort_unit, error, (value - reach * error, value + reach * error))
 
 
 def shared(found: Sequence[Delay]) -> Delay | None:

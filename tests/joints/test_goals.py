@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.errors import InputError
-from bench.joints.goals import by_goals, with_gains, with_one_delay
+from bench.joints.goals import by_goals, drive_of, with_gains, with_one_delay
 from bench.joints.identified import JointLogs
 from bench.servos.commanded import Delay, Gains, shared
 from tests.command import bench as command
@@ -15,6 +15,8 @@ from tests.studies.quadruped import KD, KP, hidden, joints_of, mjcf, moved, writ
 
 LEG = ("FL",)
 HIP, THIGH, CALF = joints_of(LEG)
+#: Reached for a part of the log - N*m.
+LIMIT = 2.2
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +26,7 @@ def leg(tmp_path_factory):
     of = hidden(3, rng)
     write_log(folder / "log.csv", moved(of, rng, 12.0, LEG), LEG)
     write_log(folder / "limited.csv", moved(of, rng, 6.0, LEG, limit=1.2), LEG)
+    write_log(folder / "some.csv", moved(of, np.random.default_rng(5), 12.0, LEG, limit=LIMIT), LEG)
     (folder / "robot.xml").write_text(mjcf(LEG), encoding="utf-8")
     (folder / "bare.xml").write_text(mjcf(LEG, actuators=False), encoding="utf-8")
     return folder, of
@@ -49,6 +52,7 @@ def found(leg):
 def test_all_parameters_of_a_joint_are_found(leg, found):
     _, of = leg
     joint = json.loads((found / "robot.json").read_text(encoding="utf-8"))["joints"][THIGH]
+    assert "force_limit" not in joint["parameters"]
     for name, truth in of.items():
         low, high = joint["parameters"][name]["ci95"]
         assert abs(joint["parameters"][name]["value"] - truth[1]) < high - low, name
@@ -92,7 +96,18 @@ def test_friction_below_zero_is_refused(leg):
     assert "viscous_friction_coefficient" not in one.parameters
 
 
-def test_a_limit_that_nobody_stated_is_refused(leg):
+def test_a_limit_that_nobody_stated_is_found_with_what_it_disturbs(leg):
+    folder, of = leg
+    asked = JointLogs(HIP, folder / "robot.xml", (folder / "some.csv",), goals=True, gains=Gains(KP, KD))
+    one = with_one_delay({HIP: by_goals(asked)})[HIP]
+    limit = one.parameters["force_limit"]
+    assert limit.unit == "N*m" and abs(limit.value - LIMIT) < limit.half_width < 0.15 * LIMIT
+    for name in ("armature", "viscous_friction_coefficient", "coulomb_friction_torque"):
+        assert abs(one.parameters[name].value - of[name][0]) < 2.0 * one.parameters[name].half_width, name
+    assert drive_of(one).limit == limit.value
+
+
+def test_a_limit_that_is_nearly_always_reached_is_refused(leg):
     one = thigh(leg[0], Gains(KP, KD), "limited.csv")
     assert not one.parameters
     assert "force limit" in one.refused["effects"]
