@@ -233,8 +233,7 @@ def balance(trace: Trace, rig: Rig, gains: Gains) -> JointBalance:
 
 
 def _best(trace: Trace, first: Rows, gains: Gains) -> JointBalance:
-    """The balance through the filter with the least errors; UndeterminedError where a limit leaves nothing of the
-    log."""
+    """The balance through the filter with the least errors; UndeterminedError if it is nearly always at its limit."""
     best, delay = None, None
     for rows in _filtered(first):
         if delay is None:
@@ -364,10 +363,10 @@ def _within(one: JointBalance, limit: float) -> Rows:
     return _where(one, np.abs(one.request(one.trace)) < limit)
 
 
-def _where(one: JointBalance, holds: NDArray[np.bool_]) -> Rows:
-    """The rows in whose reach something holds for every sample (n,); UndeterminedError where there are none."""
+def _where(one: JointBalance, met: NDArray[np.bool_]) -> Rows:
+    """The rows in whose reach every sample meets a condition (n,); UndeterminedError where there are none."""
     trace, margin = one.trace, one.rows.conditioning.filter.margin
-    beyond = np.convolve(~holds, np.ones(2 * margin + 1), "same") > 0.5
+    beyond = np.convolve(~met, np.ones(2 * margin + 1), "same") > 0.5
     start = trace.time[0]
 
     def kept(time: Array) -> NDArray[np.bool_]:

@@ -27,8 +27,8 @@ from bench.servos.model import NULL, STEP, Stretches, simulated
 FORGETS, SHORTEST, LONGEST, STRETCHES = 0.5, 0.25, 1.0, 24
 #: Least number of them, below which there is no interval.
 FEWEST = 6
-#: Factor on the standard errors of the jackknife, which is linearised and does not include the controller's own
-#: period: without it intervals of 95 % cover 70 to 87 % (`python -m tests.studies.servos --seed 1`).
+#: Factor on the standard errors of the jackknife, which is linearised, of a model whose controller has neither counts
+#: nor a period: without it intervals of 95 % cover 85 % (`python -m tests.studies.servos`, seeds 5 and 6).
 WIDER = 1.7
 #: Longest dead time that is tried - s.
 LONGEST_DEAD_TIME = 0.25

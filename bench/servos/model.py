@@ -12,8 +12,9 @@ position error; y is q behind a play, as an encoder on the output has it.
 
 Each step is exact for the linear part (the 2x2 matrix exponential of its regime: in control, or with no torque that
 depends on position); a stop inside a step is located and the rest of the step continues from there, so that the error
-is of second order in the step also with stick-slip. Stretches and parameter sets are stepped together, since a NumPy
-call costs about the same for one state and for 200.
+is of second order in the step also with stick-slip. The steps of a parameter set begin where its delayed goal jumps, as
+a jump inside a step at the limit is an error of first order; between them samples are interpolated. Stretches and
+parameter sets are stepped together, since a NumPy call costs about the same for one state and for 200.
 """
 
 from __future__ import annotations
@@ -92,32 +93,42 @@ def simulated(values: Mapping[str, Array], stretches: Stretches) -> tuple[Array,
     """
     sets = next(iter(values.values())).size
     given = {name: np.asarray(values.get(name, np.full(sets, null)))[:, None] for name, null in NULL.items()}
-    h = stretches.period / stretches.steps
-    goal, slope = _delayed(given["dead_time"][:, 0], stretches, bool(given["feedforward"].any()))
+    h, dead_time = stretches.period / stretches.steps, given["dead_time"][:, 0]
+    whole = np.floor(dead_time / h + 1e-9)
+    part = np.maximum(dead_time / h - whole, 0.0)
+    goal = _delayed(whole, stretches)
+    slope = None
+    if given["feedforward"].any():
+        slope = (goal - _delayed(whole + stretches.steps, stretches)) / stretches.period
     load = None
     if given["mobility"].any():
-        between = (0.5 * (one + np.append(one[1:], one[-1])) for one in (stretches.known, stretches.known_slope))
-        load = np.array([_held(one, stretches) for one in between])
-    return _integrated(given, h, goal, slope, load, stretches)
+        load = np.array([_between(one, part, stretches) for one in (stretches.known, stretches.known_slope)])
+    return _integrated(given, h, part[:, None], goal, slope, load, stretches)
 
 
 def _integrated(
-    given: Mapping[str, Array], h: float, goal: Array, slope: Array | None, load: Array | None, stretches: Stretches
+    given: Mapping[str, Array],
+    h: float,
+    part: Array,
+    goal: Array,
+    slope: Array | None,
+    load: Array | None,
+    stretches: Stretches,
 ) -> tuple[Array, Array]:
-    """The integration; `goal` and `slope` (steps, p, w), `load` (2, steps, w)."""
+    """The integration; `part` of a step by which the steps begin after the samples (p, 1), `goal` and `slope` (steps,
+    p, w), `load` (2, steps, p, w)."""
     a, k, b, f, limit = (given[name] for name in ("stiffness", "drive_damping", "damping", "friction", "limit"))
     slack, play = given["dead_band"], 0.5 * given["play"]
     limited, slacked, played = bool(np.isfinite(limit).any()), bool(slack.any()), bool(play.any())
     gravity = bool(given["sine"].any() or given["cosine"].any())
     slewed = bool(np.isfinite(given["speed_limit"]).any())
     control, drift, coast = (_exact(*one, h) for one in ((a, b + k), (0.0 * a, b + k), (0.0 * a, b)))
-    q = np.broadcast_to(stretches.position, (a.size, stretches.starts.size)).copy()
-    w, y = np.broadcast_to(stretches.speed, q.shape).copy(), q.copy()
+    w = np.broadcast_to(stretches.speed, (a.size, stretches.starts.size)).copy()
+    q = stretches.position + part * h * w
+    y = q.copy()
     out, u, most = np.empty((stretches.length, *q.shape)), goal[0], np.zeros_like(q)
-    count = stretches.steps
-    for step in range(stretches.length * count):
-        if step % count == 0:
-            out[step // count] = y
+    count, out[0] = stretches.steps, stretches.position
+    for step in range((stretches.length - 1) * count):
         u = u + np.clip(goal[step] - u, -given["speed_limit"] * h, given["speed_limit"] * h) if slewed else goal[step]
         error, regime = u - y, control
         if slacked:
@@ -139,7 +150,10 @@ def _integrated(
             force = force + given["sine"] * np.sin(ahead) + given["cosine"] * np.cos(ahead)
         if load is not None:
             force = force - given["mobility"] * (load[0, step] + load[1, step] * ahead)
-        q, w = _moved(q, w, force, f, regime, h)
+        before, (q, w) = (q, w), _moved(q, w, force, f, regime, h)
+        if (step + 1) % count == 0:
+            at = _inside(before, (q, w), 1.0 - part, h)
+            out[(step + 1) // count] = np.clip(y, at - play, at + play) if played else at
         y = np.clip(y, q - play, q + play) if played else q
     return np.moveaxis(out, 0, -1), (most / np.where(np.isfinite(limit), limit, 1.0)).max(axis=1)
 
@@ -178,25 +192,21 @@ def _exact(a: Array, b: Array, h: float) -> list[Array]:
     return [exponential[:, i, j][:, None] for i, j in ((0, 1), (0, 2), (1, 1), (1, 2))]
 
 
-def _delayed(dead_time: Array, stretches: Stretches, differenced: bool) -> tuple[Array, Array | None]:
-    """The goal after a dead time (p,), mean over each step, and its slope over a sample where wanted: (steps, p, w).
-
-    The mean makes the motion depend smoothly on the dead time, of which a step is only a part.
-    """
-    times, which = np.unique(dead_time, return_inverse=True)
-    goals = np.array([_held(stretches.goal, stretches, one) for one in times])
-    goal = np.moveaxis(goals[which], 0, 1)
-    if not differenced:
-        return goal, None
-    before = np.array([_held(stretches.goal, stretches, one + stretches.period) for one in times])
-    return goal, (goal - np.moveaxis(before[which], 0, 1)) / stretches.period
+def _inside(before: tuple[Array, Array], after: tuple[Array, Array], share: Array, h: float) -> Array:
+    """Position at a share of a step from positions and speeds at its ends, by the cubic through them."""
+    (q, w), (end, speed) = before, after
+    late = share * share * (3.0 - 2.0 * share)
+    return q + late * (end - q) + share * (1.0 - share) * h * ((1.0 - share) * w - share * speed)
 
 
-def _held(samples: Array, stretches: Stretches, dead_time: float = 0.0) -> Array:
-    """Samples held after each and delayed, mean over each step (steps, w)."""
-    count = stretches.length * stretches.steps
-    at = stretches.starts + (np.arange(count + 1)[:, None] / stretches.steps - dead_time / stretches.period)
-    total = np.concatenate([[0.0], np.cumsum(samples)])
-    whole = np.clip(np.floor(at).astype(np.int64), 0, samples.size - 1)
-    sums = total[whole] + samples[whole] * (at - whole)
-    return np.diff(sums, axis=0) * stretches.steps
+def _delayed(late: Array, stretches: Stretches) -> Array:
+    """The goal, held after each sample, as many whole steps later (p,): (steps, p, w)."""
+    steps = np.arange((stretches.length - 1) * stretches.steps)[:, None] - late
+    at = stretches.starts + np.floor(steps / stretches.steps).astype(np.int64)[:, :, None]
+    return stretches.goal[np.clip(at, 0, stretches.goal.size - 1)]
+
+
+def _between(samples: Array, part: Array, stretches: Stretches) -> Array:
+    """Samples, interpolated in the middles of steps that begin parts of a step (p,) after them: (steps, p, w)."""
+    middles = (np.arange((stretches.length - 1) * stretches.steps)[:, None] + 0.5 + part) / stretches.steps
+    return np.interp(stretches.starts + middles[:, :, None], np.arange(samples.size), samples)

@@ -18,12 +18,14 @@ from __future__ import annotations
 import argparse
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 import bench
 from bench.errors import UndeterminedError
+from bench.servos.model import NULL
 from bench.servos.servo import free_run
 from bench.trace.trace import Trace
 
@@ -76,12 +78,15 @@ def motion(servo: Truth, goal: np.ndarray) -> np.ndarray:
     q = y = float(goal[0])
     w = z = torque = 0.0
     out = np.empty(goal.size)
-    logged, values = 0, goal.tolist()
+    logged, values, last = 0, goal.tolist(), q
     for step in range(round(goal.size * period / h) + 2):
         at = step * h
         while logged < goal.size and logged * period <= at + 1e-12:
-            out[logged] = round((y if load else q) / resolution) * resolution
+            encoder = y if load else q
+            sampled = encoder + (logged * period - at) / h * (encoder - last)
+            out[logged] = round(sampled / resolution) * resolution
             logged += 1
+        last = y if load else q
         if step % tick == 0:
             known = math.floor((at - servo.dead_time) / period + 1e-9)
             u = values[min(max(known, 0), goal.size - 1)]
@@ -161,14 +166,24 @@ def log(servo: Truth, rng: np.random.Generator, seconds: float = 20.0) -> Trace:
     return Trace.from_arrays(signals, {"time": "s", "position": "rad", "position_reference": "rad"})
 
 
-def judged(servo: Truth, rng: np.random.Generator) -> dict[str, object]:
-    """What is found of a servo: verdict, relative errors and whether intervals cover the truth, by quantity."""
-    recording, other, begun = log(servo, rng), log(servo, rng, 8.0), time.process_time()
-    try:
-        found = bench.servo(recording)
-    except UndeterminedError as error:
-        return {"refused": str(error)}
-    truth = servo.effective
+@dataclass(frozen=True)
+class Found:
+    """What a method finds of a servo.
+
+    Attributes:
+        verdict: of the method.
+        values: of the servo that it simulates, parameters of `bench.servos.model.NULL`.
+        quantities: as in `Truth.effective`: value and interval, which is not a number where the method has none.
+    """
+
+    verdict: str
+    values: dict[str, float]
+    quantities: dict[str, tuple[float, float, float]]
+
+
+def by_bench(recording: Trace) -> Found:
+    """What `bench.servo` finds."""
+    found = bench.servo(recording)
     names = {
         "kp": "kp/moment_of_inertia",
         "damping": "(kv + viscous_friction_coefficient)/moment_of_inertia",
@@ -178,15 +193,24 @@ def judged(servo: Truth, rng: np.random.Generator) -> dict[str, object]:
     }
     every = {**found.parameters, **found.found.inseparable}
     parts = ["kv/moment_of_inertia", "viscous_friction_coefficient/moment_of_inertia"]
+    quantities = {key: (every[name].value, *every[name].ci95) for key, name in names.items() if name in every}
+    if parts[0] in every:
+        quantities["damping"] = (sum(every[one].value for one in parts), math.nan, math.nan)
+    return Found(found.verdict, dict(found.values), quantities)
+
+
+def judged(servo: Truth, rng: np.random.Generator, method: Callable[[Trace], Found] = by_bench) -> dict[str, object]:
+    """What a method finds of a servo: verdict, CPU time, by quantity the error, the truth and whether the interval
+    contains it, and the free-running error on another motion over that of the true servo."""
+    recording, other, begun = log(servo, rng), log(servo, rng, 8.0), time.process_time()
+    try:
+        found = method(recording)
+    except UndeterminedError as error:
+        return {"refused": str(error)}
+    truth = servo.effective
     result: dict[str, object] = {"verdict": found.verdict, "seconds": time.process_time() - begun}
-    for key, name in names.items():
-        if name in every:
-            value, low, high = every[name].value, *every[name].ci95
-        elif key == "damping" and parts[0] in every:
-            value, low, high = sum(every[one].value for one in parts), -math.inf, math.inf
-        else:
-            continue
-        result[key] = (value - truth[key], truth[key], None if math.isinf(high) else low <= truth[key] <= high)
+    for key, (value, low, high) in found.quantities.items():
+        result[key] = (value - truth[key], truth[key], None if math.isnan(high) else low <= truth[key] <= high)
     own = {"stiffness": truth["kp"], "damping": servo.viscous / servo.inertia, "friction": truth["friction"]}
     own |= {
         "drive_damping": truth["damping"] - own["damping"],
@@ -196,7 +220,7 @@ def judged(servo: Truth, rng: np.random.Generator) -> dict[str, object]:
     nothing = np.zeros(len(other))
     skipped = round(0.5 * servo.rate)
     errors = [
-        np.sqrt(np.mean((other["position"] - free_run(one, other, (nothing, nothing)))[skipped:] ** 2))
+        np.sqrt(np.mean((other["position"] - free_run({**NULL, **one}, other, (nothing, nothing)))[skipped:] ** 2))
         for one in (found.values, own)
     ]
     result["held out"] = float(errors[0] / errors[1])
