@@ -477,6 +477,10 @@ class DriveLimit(Effect):
 
     stage = Stage.CURRENT_LOOP
 
+    def sought(self, scope: Scope) -> bool:
+        """The torque balance is of the effort that flows."""
+        return False
+
     @abstractmethod
     def flowing(
         self, values: Values, axis: Axis, velocity: Number, demand: Number, before: Number, step: float

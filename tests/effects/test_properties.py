@@ -48,6 +48,13 @@ def without_fault(effect, seen):
 
 
 @every
+def test_it_is_sought_in_the_torque_balance_only_if_it_changes_that(effect):
+    """By columns, by a delay of them, or by another motion; what only the drive shows is detected elsewhere."""
+    changes = isinstance(effect, Columns | Lag | Distortion)
+    assert changes or not any(effect.sought(scope) for scope in SCOPES)
+
+
+@every
 def test_it_copies_torque_if_its_columns_are_made_of_torque(effect):
     other = np.roll(RECORDED.torque, 300)
     assert (effect.copies_torque or effect.rescales_torque) == changed(effect, torque=other)
