@@ -43,8 +43,6 @@ class Signals:
         began: the recording, since the start of the first of several that are joined - s.
         known: other known torque - N*m (N) -, as a column; () where none is.
         known_inertia: by which the momentum in that has the noise of the speed - kg*m**2 (kg) - (n,).
-        known_slope: by which it differs where the load is not where the motor is - N*m/rad (N/m) - (n,).
-        link_inertia: of the links on which it acts, as the motor has it - kg*m**2 (kg); 0 where it acts on none.
         of_motion: what the motion takes from the effort before it is `effort` - N*m (N) -: induced voltage, a known
             weight. A shift of the effort's signal against the motion does not move it.
     """
@@ -63,8 +61,6 @@ class Signals:
     began: float = 0.0
     known: Column = ()
     known_inertia: Array | float = 0.0
-    known_slope: Array | float = 0.0
-    link_inertia: float = 0.0
     of_motion: Array | float = 0.0
 
     @property
@@ -79,18 +75,6 @@ class Signals:
     def unit(self) -> Axis:
         """The axis of J = K_w = K_0 = 1, for which a strength is the quantity itself."""
         return Axis(1.0, 1.0, 1.0, peak_effort=self.peak_effort)
-
-    @cached_property
-    def pull(self) -> tuple[Array, Array] | None:
-        """Deceleration of links by known torque on them - rad/s**2 (m/s**2) -, and its slope - 1/s**2 -; None of none.
-
-        That of links where the motor is, and by how much it grows as they are ahead: (n,) each.
-        """
-        if not self.known or not self.link_inertia > 0.0:
-            return None
-        derived = [np.gradient(values, self.sample_period) if order else values for values, order in self.known]
-        slope = np.broadcast_to(self.known_slope, self.time.shape)
-        return np.sum(derived, axis=0) / self.link_inertia, slope / self.link_inertia
 
     @cached_property
     def course(self) -> Array:

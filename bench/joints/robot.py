@@ -17,12 +17,10 @@ from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_e
 from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
 from bench.names import meant, nearest, with_known_arguments
 from bench.plant.model_file import StoredModel
-from bench.plant.robot import AddedBody, Twist, joint_units
+from bench.plant.robot import AddedBody, joint_units
 from bench.presented import Shown
 from bench.rig.given import GivenRig, rig_of
 
-#: Times at most that all joints are identified again with the motion of links behind soft or loose gears.
-ROUNDS = 2
 #: Share of the progress in which a payload is sought.
 SEEKING = 0.3
 
@@ -152,13 +150,6 @@ def _answered(
     added = sought.added if sought is not None else payload
     work = carrying(work, [added]) if isinstance(added, AddedBody) else work
     found = _identified(work, lambda share: progress(SEEKING + (1.0 - SEEKING) * share))
-    twists: dict[Path, dict[str, Twist]] = {}
-    for _ in range(ROUNDS):
-        before, twists = twists, _twists(found)
-        if not before and not twists:
-            break
-        work = [replace(asked, twists=twists) for asked in work]
-        found = _identified(work, progress)
     open_ = [one for one in found.values() if one.diagnosis and one.diagnosis.verdict == "unexplained_remainder"]
     links = doubt_links(work) if open_ else []
     if links:
@@ -166,15 +157,6 @@ def _answered(
         found = _identified(work, progress)
     added = work[0].added if work else ()
     return IdentifiedRobot(of_all.mjcf, found, sought, tuple(links), tuple(warnings), added, of_all.stand)
-
-
-def _twists(found: Mapping[str, IdentifiedJoint]) -> dict[Path, dict[str, Twist]]:
-    """By how much links are ahead of their motors in each log, by joint: no other joint's encoder measures them."""
-    twists = dict[Path, dict[str, Twist]]()
-    for name, joint in found.items():
-        for log, twist in joint.twists.items():
-            twists.setdefault(log, {})[name] = twist
-    return twists
 
 
 def _mjcfs(mjcf: str | Path | Sequence[str | Path], logs: Sequence[Path]) -> tuple[Path, dict[Path, Path]]:
