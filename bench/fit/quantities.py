@@ -99,14 +99,15 @@ def uncertain(fitted: Fit) -> Uncertain:
     place = fitted.theta.size
     slots = tuple((index, k) for index, term in enumerate(fitted.terms) for k in term.fitted(fitted.scope))
     known = _known(fitted, slots)
-    covariance, reach = _by_residual(fitted, slots, known, _jacobian(fitted.rows, fitted, slots))
+    jacobian = _jacobian(fitted.rows, fitted, slots)
+    covariance, reach = _by_residual(fitted, slots, known, jacobian)
     covariance[place:, place:] += np.diag(known**2)
     for index, term in enumerate(fitted.terms):
         own = [place + slot for slot, (owner, _) in enumerate(slots) if owner == index]
         if own and isinstance(term.effect, Contact):
             spread, made_of = term.effect.spread, (term.effect.spread, fitted.hypothesis)
             covariance[np.ix_(own, own)] += fitted.rows.memory.get(made_of, partial(spread, fitted, term.shape))
-    for moved in (*_misplaced(fitted), *_louder(fitted, slots)):
+    for moved in (*_misplaced(fitted), *_louder(fitted, slots), *_at_bounds(fitted, jacobian)):
         covariance[: moved.size, : moved.size] += np.outer(moved, moved)
     shapes = np.array([fitted.terms[index].shape[k] for index, k in slots])
     return Uncertain(fitted, np.concatenate([fitted.theta, shapes]), covariance, reach, slots)
@@ -137,7 +138,7 @@ def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array, 
     scores = np.add.reduceat(jacobian * (weight * left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers + fitted.layout.known * noise[:, 0])
     shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots, known), (fitted.theta.size, 0))
-    shown[[*fitted.held]] = False  # its bound counts where other quantities depend on it: a lag has the tick of a drive
+    shown[[*fitted.held]] = False  # see `_at_bounds`
     both = np.ix_(shown, shown)
     inverse = np.zeros(noise.shape)
     inverse[both] = solved(((jacobian.T * weight) @ jacobian)[both], numbers[shown], count.sum() * noise[both])[1]
@@ -223,6 +224,21 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
     yield refitted(older) / NORMAL95
     if scope.drift:
         yield refitted(lambda s: replace(s, position=s.position + scope.drift))
+
+
+def _at_bounds(fitted: Fit, jacobian: Array) -> Iterator[Array]:
+    """Standard changes of strengths and shapes (p + s,) were a strength that is at a bound anywhere between its bounds.
+
+    No residual says where, as it would leave them; all places between them are alike.
+    """
+    free = np.delete(np.arange(jacobian.shape[1]), fitted.held)
+    noise = np.pad(fitted.layout.noise, (0, jacobian.shape[1] - fitted.theta.size))[np.ix_(free, free)]
+    for place in fitted.held:
+        moved = np.zeros(jacobian.shape[1])
+        moved[place], (low, high) = 1.0, fitted.layout.bounds[place]
+        moved[free] = -least_squares(jacobian[:, free], jacobian[:, place], noise)
+        if np.isfinite(high - low):
+            yield moved * (high - low) / np.sqrt(12.0)
 
 
 def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
