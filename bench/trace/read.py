@@ -96,7 +96,7 @@ def reader_of(source: Source) -> Reader:
         if source.ending in reader.endings and not (reader is TABLE and marked_up):
             return reader
     if source.ending == ".toml":
-        raise InputError(source.path, "found a TOML file", "allowed: a recording; `--rig` and bench.load_rig read a rig file")
+        raise InputError(source.path, "found a TOML file", "allowed: a recording; `--rig` and bench.load_rig take a rig")
     formats = ", ".join(reader.format for reader in readers())
     raise InputError(source.path, "not a trace in any format the bench reads", f"allowed: {formats}")
 
