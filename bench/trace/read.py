@@ -96,7 +96,7 @@ def reader_of(source: Source) -> Reader:
         if source.ending in reader.endings and not (reader is TABLE and marked_up):
             return reader
     if source.ending == ".toml":
-        allowed = "allowed: a recording; `--rig` and bench.load_rig take a rig"
+        allowed = "allowed: a recording; --rig and bench.load_rig take a rig"
         raise InputError(source.path, "found a TOML file", allowed)
     formats = ", ".join(reader.format for reader in readers())
     raise InputError(source.path, "not a trace in any format the bench reads", f"allowed: {formats}")
