@@ -208,9 +208,8 @@ class References:
             )
         count = int(np.searchsorted(self.time, duration, side="right"))
         torque = None if self.torque is None else self.torque[:count]
-        return References(
-            *(one[:count] for one in (self.time, self.position, self.velocity, self.acceleration)), torque
-        )
+        position, velocity, acceleration = self.position[:count], self.velocity[:count], self.acceleration[:count]
+        return References(self.time[:count], position, velocity, acceleration, torque)
 
     def then(self, other: References) -> References:
         """This motion, then another one that starts a tick later from where this one ends, both at rest there."""
