@@ -229,7 +229,7 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
 def _at_bounds(fitted: Fit, jacobian: Array) -> Iterator[Array]:
     """Standard changes of strengths and shapes (p + s,) were a strength that is at a bound anywhere between its bounds.
 
-    No residual says where, as it would leave them; all places between them are alike.
+    The residual does not show where, as it is least outside of them; all places between them are alike.
     """
     free = np.delete(np.arange(jacobian.shape[1]), fitted.held)
     noise = np.pad(fitted.layout.noise, (0, jacobian.shape[1] - fitted.theta.size))[np.ix_(free, free)]
