@@ -309,7 +309,8 @@ class Search:
             least, known = self.part(fitted), [each for each in self.candidates(fitted) if not each.term.effect.decoy]
             tried = (self.added(fitted, each, together=True) for each in known[:WIDTH] if each.gain > least)
             fitted = next((after for after in tried if after is not None and key_of(after) not in sets), None)
-            sets |= {key_of(fitted)} if fitted is not None else set()
+            if fitted is not None:
+                sets.add(key_of(fitted))
 
     def add_decoy_waves(self, best: Fit) -> None:
         """Visit a wave of any form in the place of those of one number, and a decoy in the place of all waves."""

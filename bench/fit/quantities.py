@@ -138,7 +138,7 @@ def _by_residual(fitted: Fit, slots: tuple[tuple[int, int], ...], known: Array, 
     scores = np.add.reduceat(jacobian * (weight * left)[:, None], edges[:-1])
     scores += np.outer(count, noise @ numbers + fitted.layout.known * noise[:, 0])
     shown = np.linalg.norm(jacobian, axis=0) >= np.pad(_least(fitted, slots, known), (fitted.theta.size, 0))
-    shown[[*fitted.held]] = False  # see `_at_bounds`
+    shown[_between(fitted)] = False  # see `_at_bounds`
     both = np.ix_(shown, shown)
     inverse = np.zeros(noise.shape)
     inverse[both] = solved(((jacobian.T * weight) @ jacobian)[both], numbers[shown], count.sum() * noise[both])[1]
@@ -229,16 +229,21 @@ def _misplaced(fitted: Fit) -> Iterator[Array]:
 def _at_bounds(fitted: Fit, jacobian: Array) -> Iterator[Array]:
     """Standard changes of strengths and shapes (p + s,) were a strength that is at a bound anywhere between its bounds.
 
-    The residual does not show where, as it is least outside of them; all places between them are alike.
+    The residual does not show where, as it is least outside of them: it is evenly distributed between them, with a
+    deviation of their distance over sqrt(12).
     """
-    free = np.delete(np.arange(jacobian.shape[1]), fitted.held)
+    free = np.delete(np.arange(jacobian.shape[1]), _between(fitted))
     noise = np.pad(fitted.layout.noise, (0, jacobian.shape[1] - fitted.theta.size))[np.ix_(free, free)]
-    for place in fitted.held:
-        moved = np.zeros(jacobian.shape[1])
-        moved[place], (low, high) = 1.0, fitted.layout.bounds[place]
+    for place in _between(fitted):
+        moved, (low, high) = np.zeros(jacobian.shape[1]), fitted.layout.bounds[place]
+        moved[place] = 1.0
         moved[free] = -least_squares(jacobian[:, free], jacobian[:, place], noise)
-        if np.isfinite(high - low):
-            yield moved * (high - low) / np.sqrt(12.0)
+        yield moved * (high - low) / np.sqrt(12.0)
+
+
+def _between(fitted: Fit) -> list[int]:
+    """Places of strengths at one of two bounds; one that is bounded to one side only is as uncertain as a free one."""
+    return [place for place in fitted.held if np.isfinite(np.subtract(*fitted.layout.bounds[place]))]
 
 
 def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
@@ -263,6 +268,6 @@ def _louder(fitted: Fit, slots: tuple[tuple[int, int], ...]) -> Iterator[Array]:
     layout = lay_out(loud, fitted.hypothesis, fitted.found, fitted.missing)
     jacobian = _jacobian(loud, replace(fitted, rows=loud, layout=layout), slots)
     left, moved = layout.effort - layout.columns @ fitted.theta, np.zeros(jacobian.shape[1])
-    free = np.delete(np.arange(moved.size), fitted.held)
+    free = np.delete(np.arange(moved.size), _between(fitted))
     moved[free] = least_squares(jacobian[:, free], left, np.zeros((free.size, free.size)))
     yield moved

@@ -44,3 +44,16 @@ def test_friction_that_decays_longer_than_the_recording_lasts_is_sure_without_it
     assert amplitude > 0.0
     assert size.ci95[0] < 0.0
     assert strengths_are_sure(slow)[slow.owners == 1][0]
+
+
+def test_damping_of_bristles_at_its_bound_of_zero_has_an_interval():
+    """Bristles without damping: noise may take it to the bound, where no other bound says how large it is at most."""
+    bristles = catalogue()["presliding_friction"]
+    held = next(
+        one
+        for seed in range(12)
+        if (one := fit(Rows.of(recorded(MOTION, seed=seed), RIG), Hypothesis((Term(bristles, (60.0,)),)))).held
+        if one.held[-1] == one.theta.size - 1
+    )
+    assert held.theta[-1] == 0.0
+    assert uncertain(held).covariance[held.theta.size - 1, held.theta.size - 1] > 0.0
