@@ -137,7 +137,7 @@ def nearly_as_good(added: Added, model: AxisModel) -> Iterator[Alternatives]:
             continue
         other = fit(added.recordings.rows, visited.hypothesis, visited)
         if other.rms < NEARLY * whole.rms:
-            reason = f"{rival.name} has a torque residual only {other.rms / whole.rms - 1.0:.0%} larger"
+            reason = f"{rival.name} has a residual only {other.rms / whole.rms - 1.0:.0%} larger"
             try:
                 instead = stored_model(other, added.extension.outside, added.recordings.rig).model
             except InputError:

@@ -44,7 +44,7 @@ def reason(one: Reason) -> str:
             change = f"{figures['before']:.3g} -> {figures['after']:.3g} {figures['unit']}".rstrip()
             return f"the {figures['gap']} gap {where} grows with it: {change}"
         case "residual":
-            return f"the torque residual is {figures['times_noise']:.3g} times the noise"
+            return f"the residual is {figures['times_noise']:.3g} times the noise"
         case "refused":
             return f"{words(figures['parameter'])} is not determined: {figures['reason']}"
         case "moves_otherwise":

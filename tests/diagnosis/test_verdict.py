@@ -164,7 +164,7 @@ def test_a_search_that_was_cut_or_kept_from_a_name_explains_nothing(stopped, wit
     assert "".join(against(stopped=stopped, withheld=withheld).values()) == said
 
 
-@pytest.mark.parametrize(("chi", "said"), [(1.11, ""), (1.13, "the torque residual is 1.13 times the noise")])
+@pytest.mark.parametrize(("chi", "said"), [(1.11, ""), (1.13, "the residual is 1.13 times the noise")])
 def test_twelve_hundredths_above_the_floor_remain(chi, said):
     assert "".join(against(chi=chi).values()) == said
 
