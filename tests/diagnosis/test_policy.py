@@ -12,7 +12,6 @@ from bench.errors import UndeterminedError
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Term
 from bench.fit.rows import Rows
-from bench.report.verdict import reasons
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import (
     INERTIA,
@@ -98,7 +97,7 @@ def test_what_no_effect_explains_is_reported():
     others = frozenset(catalogue()) - {"unbalance"}
     found, less = (diagnose(trace, RIG, excluded=others, policy=policy) for policy in (POLICY, without("remains")))
     assert found.verdict == "unexplained_remainder"
-    assert [any("torque residual" in one for one in reasons(each)) for each in (found, less)] == [True, False]
+    assert [any(one.criterion == "residual" for one in each.objections) for each in (found, less)] == [True, False]
 
 
 def test_noise_alone_is_no_remainder():
