@@ -9,12 +9,12 @@ Source: P. J. Huber, E. M. Ronchetti, Robust Statistics, 2nd ed., 2009, ch. 7; B
 Introduction to the Bootstrap, 1993, sec. 8.6.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from bench.arrays import Array, symmetric_inverse
+from bench.arrays import Array, column_rms
 from bench.effects.dead_zone import dead_zone_columns
 from bench.effects.effect import Fitted
 from bench.effects.shape import FREQUENCY, extended
@@ -37,6 +37,8 @@ SPREAD = (0.12, 0.4, 0.5)
 ROUNDS, STARTS, ALL_STARTS = 6, 3, 2
 #: Residual in noise floors beyond which a row counts less and less, and reweightings of the least squares.
 SCALE, REWEIGHTED = 3.0, 6
+#: Added to the squares of each column, as share of them: columns that are alike share what they explain.
+RIDGE = 1e-12
 #: Samples of all shapes tried at once, which bounds memory: 8 bytes each, some four times over.
 TOGETHER = 4_000_000
 #: Factors e**x around a shape that are compared for its spread: of gap, frequency and damping.
@@ -70,11 +72,11 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
 
     None where no shape of the first grid takes squares that promise more.
     """
+    robust = Robust(fitted.columns, fitted.effort, SCALE * fitted.floor)
 
     def likeliest(shapes: Array, columns: Array) -> Likely:
         found = []
-        for shape, column in zip(shapes, columns.T, strict=True):
-            theta, unlikely = cauchy(np.vstack([fitted.columns.T, column]), fitted.effort, SCALE * fitted.floor)
+        for shape, (theta, unlikely) in zip(shapes, robust.with_each(columns), strict=True):
             rate, stiffness = float(shape[3]), _stiffness(fitted, theta[:-1])
             if rate > 0.0 and theta[-1] > 0.0 and stiffness > 0.0:
                 rate = stiffness / float(theta[-1])
@@ -88,12 +90,16 @@ def likeliest_shape(fitted: Fitted, promises: Callable[[float], bool]) -> tuple[
     springs = np.unique([0.0, pulled])
     grid = np.stack(np.meshgrid(contacts, np.array(GAPS) * travel, [DAMPING], springs, indexing="ij"), axis=-1)
     grid = grid[..., [1, 0, 2, 3]]  # each contact in steps of its own, of which a soft one needs few
-    few, shapes = (part.reshape(len(contacts), -1, 4) for part in (grid[:, EVERY // 2 :: EVERY], grid))
-    if not promises(BETTER * max(float(fitted.gains(_columns(fitted, part), 1).max()) for part in few)):
+    shapes, sampled = grid.reshape(len(contacts), -1, 4), np.zeros((len(GAPS), springs.size), dtype=bool)
+    sampled[EVERY // 2 :: EVERY] = True
+    few, others = sampled.ravel(), ~sampled.ravel()
+    columns = [_columns(fitted, part[few]) for part in shapes]
+    if not promises(BETTER * max(float(fitted.gains(table, 1).max()) for table in columns)):
         return None
-    columns = [_columns(fitted, part) for part in shapes]
+    columns = [np.hstack([table, _columns(fitted, part[others])]) for part, table in zip(shapes, columns, strict=True)]
     if not promises(float(fitted.gains(np.concatenate(columns, axis=1), 1).max())):
         return None
+    shapes = np.concatenate([shapes[:, few], shapes[:, others]], axis=1)
     starts = sorted(map(likeliest, shapes, columns), key=lambda likely: likely.misfit)[:STARTS]
     for level in range(1, ROUNDS):
         offsets = np.exp(OFFSETS * np.array(SPREAD) * 0.6 ** (level - 1))
@@ -122,17 +128,43 @@ def _stiffness(fitted: Fitted, theta: Array) -> float:
     return float(theta[fitted.places(lambda effect: effect.spring)][:1].sum())
 
 
-def cauchy(columns: Array, effort: Array, scale: float) -> tuple[Array, Array]:
-    """Coefficients (p,) of columns (p, m) by reweighted least squares; each row's -log of Cauchy's likelihood (m,)."""
-    size = np.sqrt(np.einsum("ij,ij->i", columns, columns) / effort.size) + 1e-300
-    columns = columns / size[:, None]
-    weight, left, theta = np.ones(effort.size), effort, np.zeros(size.size)
-    for _ in range(REWEIGHTED):
-        weighted = columns * weight
-        theta = symmetric_inverse(weighted @ columns.T, 1e-12) @ (weighted @ effort)
-        left = effort - theta @ columns
-        weight = 1.0 / (1.0 + (left / scale) ** 2)
-    return theta / size, np.log1p((left / scale) ** 2)
+class Robust:
+    """Fits of fixed columns (m, p) and one more to an effort (m,) by reweighted least squares.
+
+    Products of the fixed columns are made once: a fit weighs them all by one product of matrices.
+    """
+
+    def __init__(self, fixed: Array, effort: Array, scale: float) -> None:
+        self.scale, self.size = scale, column_rms(fixed) + 1e-300
+        self.known = np.column_stack([fixed / self.size, effort]).T.copy()
+        first, second = np.triu_indices(len(self.known))
+        self.products = self.known[first] * self.known[second]
+        self.place = np.empty((len(self.known),) * 2, dtype=np.intp)
+        self.place[first, second] = self.place[second, first] = np.arange(first.size)
+
+    def with_each(self, columns: Array) -> Iterator[tuple[Array, Array]]:
+        """For each of the columns (m, k) coefficients (p + 1,), and each row's -log of Cauchy's likelihood (m,)."""
+        few = max(1, TOGETHER // len(columns))
+        for begin in range(0, columns.shape[1], few):
+            yield from zip(*self._together(columns[:, begin : begin + few].T), strict=True)
+
+    def _together(self, columns: Array) -> tuple[Array, Array]:
+        """Coefficients (k, p + 1) and unlikelihoods (k, m) with each column (k, m)."""
+        size, fixed, effort = np.sqrt(np.mean(columns**2, axis=1)) + 1e-300, self.known[:-1], self.known[-1]
+        columns = columns / size[:, None]
+        weight, theta, away = np.ones_like(columns), np.empty(0), np.empty(0)
+        gram = np.empty((len(columns), len(self.known), len(self.known)))
+        ridge = RIDGE * effort.size * np.eye(len(self.known))
+        for _ in range(REWEIGHTED):
+            weighted = weight * columns
+            among, across = (weight @ self.products.T)[:, self.place], weighted @ self.known.T
+            gram[:, :-1, :-1], gram[:, -1, -1] = among[:, :-1, :-1], np.einsum("km,km->k", weighted, columns)
+            gram[:, -1, :-1] = gram[:, :-1, -1] = across[:, :-1]
+            moment = np.column_stack([among[:, :-1, -1], across[:, -1]])
+            theta = np.linalg.solve(gram + ridge, moment[..., None])[..., 0]
+            away = ((effort - theta[:, :-1] @ fixed - theta[:, -1:] * columns) / self.scale) ** 2
+            weight = 1.0 / (1.0 + away)
+        return np.column_stack([theta[:, :-1] / self.size, theta[:, -1] / size]), np.log1p(away)
 
 
 def open_torque(fitted: Fitted, shape: Sequence[float]) -> Array:
@@ -156,12 +188,10 @@ def spread(fitted: Fitted, shape: Sequence[float], place: int) -> Array:
     contact, spring_rate = np.array(shape[:3]), shape[3]
     offsets = np.stack([m.ravel() for m in np.meshgrid(*AROUND, indexing="ij")], axis=1)
     shapes = np.column_stack([contact * np.exp(offsets), np.full(len(offsets), spring_rate)])
-    others, time = fitted.columns.T.copy(), fitted.time
+    others, time = np.delete(fitted.columns, place, axis=1), fitted.time
     edges = np.unique(np.searchsorted(time, np.arange(time[0], time[-1], STRETCH)))
-    misfits = []
-    for column in _columns(fitted, shapes).T:
-        others[place] = column
-        misfits.append(np.add.reduceat(cauchy(others, fitted.effort, SCALE * fitted.floor)[1], edges))
+    robust = Robust(others, fitted.effort, SCALE * fitted.floor)
+    misfits = [np.add.reduceat(unlikely, edges) for _, unlikely in robust.with_each(_columns(fitted, shapes))]
     rng = np.random.default_rng(0)
     drawn = rng.multinomial(edges.size, np.full(edges.size, 1.0 / edges.size), size=DRAWS)
     likeliest = offsets[np.argmin(np.stack(misfits) @ drawn.T, axis=0)]
