@@ -36,6 +36,7 @@ class Where:
             effects explain without what the filter takes from it.
         after: the same means with all effects, then with the tables of an unknown effect; () of a frequency.
         curve: what the effects together explain, in finer bins - unit, N*m (N) - (c,); None of a frequency.
+        bins: which of the bins contains each row (m,), -1 of a row in none of them; None of a frequency.
     """
 
     coordinate: str
@@ -46,6 +47,7 @@ class Where:
     means: Array
     after: tuple[Array, ...] = ()
     curve: tuple[Array, Array] | None = None
+    bins: NDArray[np.int16] | None = None
 
 
 #: A coordinate along the rows of a recording: its name, as `Where` has it, the values by which rows are sorted into
@@ -181,7 +183,8 @@ def _account(coordinate: Coordinate, fitted: Fit, after: Sequence[Array], explai
     centres, before, *later = (means_in(index, of)[kept] for of in (labels, *gaps))
     smooth = equal_bins_of(values, FINER * DRAWN) if fine else few
     curve = None if explained is None else _curve(smooth, labels, explained)
-    return Where(name, region, unit, share, centres, before, tuple(later), curve)
+    bins = np.where(kept, np.cumsum(kept) - 1, -1)[index].astype(np.int16)
+    return Where(name, region, unit, share, centres, before, tuple(later), curve, bins)
 
 
 def _curve(index: NDArray[np.int64], labels: Array, explained: Array) -> tuple[Array, Array]:

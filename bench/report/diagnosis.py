@@ -184,6 +184,7 @@ def diagnosis(
     ]
     tables += recordings_table(found.recordings, found.between, found.parameters)
     notes, verdict, following = _notes(found), verdict_sentence(found), found.next_experiment
+    graphs = [_over_time(found, series) for series in found.time_series]
     glance, units = at_a_glance(found), [(unit, 1.0) for unit in (_kind(found).length_unit, found.velocity.unit)]
     return doc.Document(
         title=title,
@@ -193,9 +194,9 @@ def diagnosis(
         answers=_answers(found),
         glance=glance,
         sections=(
-            _motion(found),
+            _motion(found, graphs),
             *moving,
-            _where(found),
+            _where(found, graphs[0]),
             doc.section("parameters", "Parameters", *tables),
             *([doc.section("notes", "Further results", doc.points(notes))] if notes else []),
             _suspects(found),
@@ -373,7 +374,7 @@ def following(found: Diagnosis) -> str:
     return " ".join(remainder(found))
 
 
-def _motion(found: Diagnosis) -> doc.Section:
+def _motion(found: Diagnosis, graphs: Sequence[doc.TimeGraph]) -> doc.Section:
     """Speed and torque over time for each recording, and the gaps after each addition."""
     names = [series.name for series in found.time_series]
     both = (effort_word(found.torque.unit), found.torque), ("speed", found.velocity)
@@ -384,7 +385,6 @@ def _motion(found: Diagnosis) -> doc.Section:
     ]
     rows.append(("noise floor", *(number(gap.noise_floor, digits=3) for _, gap in both for _ in names)))
     steps = doc.table("RMS gaps before and after each addition", ("model", *headings), rows)
-    graphs = (_over_time(found, series) for series in found.time_series)
     loop = "The models run in MuJoCo on the recorded torque, weakly coupled to the recorded motion at "
     held = doc.Paragraph(text=f"{loop}{number(found.velocity.bandwidth, 'rad/s', 3)}.")
     return doc.section("motion", "Measured and simulated", steps, *rms_gaps(found), *graphs, held)
@@ -412,14 +412,14 @@ def _over_time(found: Diagnosis, series: TimeSeries) -> doc.TimeGraph:
     return time_graph(title, alternative, series.time, signals, [labels[k] for k in shown], part)
 
 
-def _where(found: Diagnosis) -> doc.Section:
+def _where(found: Diagnosis, over: doc.TimeGraph) -> doc.Section:
     rows = []
     for one in found.where:
         between = " and ".join(map(number, one.region))
         rows.append((coordinate_word(one.coordinate, one.unit), share(one.share), between, unit_text(one.unit)))
     headings = ("coordinate", "share of the gap>", "most of it between>", "unit")
     shares = doc.table("Share of the gap's variance that each coordinate accounts for", headings, rows)
-    blocks = (gap_chart(found, DRAWN), shares)
+    blocks = (gap_chart(found, DRAWN, over), shares)
     return doc.section("where", "Where the gap is", *blocks, detail=True)
 
 

@@ -168,6 +168,8 @@ class Panel(Part):
         note: in its corner.
         y_label: of the vertical axis with its unit, where it is no other panel's.
         log: whether both axes are logarithmic.
+        bins: which point of the first series with dots each interval of the page's first graph over time belongs to,
+            -1 of none, as 16-bit numbers in base 64; None of points that are no bins of a recording.
     """
 
     x_label: str
@@ -176,6 +178,7 @@ class Panel(Part):
     series: tuple[Series, ...]
     y_label: str = ""
     log: bool = False
+    bins: str | None = None
 
 
 class Drawing(Part):

@@ -19,6 +19,7 @@ from bench.diagnosis.where import Where
 from bench.names import words
 from bench.report import document as doc
 from bench.report.numbers import coordinate_word, effort_word, listed, number, sentence, share, unit_text
+from bench.report.over_time import numbers_over
 from bench.report.parts import noise_band, one_panel
 from bench.report.verdict import reason
 
@@ -106,8 +107,11 @@ def unknown_effect(found: Diagnosis) -> str:
     return "" if one is None else f"unknown effect, tabulated over {listed(one.over)}"
 
 
-def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
-    """The gap in bins of these coordinates, the part that the effects explain, the residual, and the noise of a row."""
+def gap_chart(found: Diagnosis, coordinates: Sequence[str], over: doc.TimeGraph | None = None) -> doc.Chart:
+    """The gap in bins of these coordinates, the part that the effects explain, the residual, and the noise of a row.
+
+    `over`: graph of the recording over time, in which the page shows when it was in a bin.
+    """
     profiles = {one.coordinate: one for one in found.where if one.after}
     most = next(iter(profiles.values()))
     explained = listed(dict.fromkeys(words(effect.name) for effect in found.effects))
@@ -126,6 +130,7 @@ def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
                 x_unit=unit_text(profile.unit),
                 note=f"{share(profile.share)} of the gap",
                 series=tuple(drawn),
+                bins=None if over is None or profile.bins is None else _bins_over(over, found, profile.bins, order),
             )
         )
     return doc.Chart(
@@ -137,6 +142,12 @@ def gap_chart(found: Diagnosis, coordinates: Sequence[str]) -> doc.Chart:
         y_unit=unit_text(found.torque.unit),
         panels=tuple(panels),
     )
+
+
+def _bins_over(graph: doc.TimeGraph, found: Diagnosis, bins: NDArray[np.integer], order: NDArray[np.integer]) -> str:
+    """Which of the bins, in this order of them (b,), contains each interval of a graph of the recording."""
+    series, place = found.time_series[0], np.append(np.argsort(order), -1)  # the last one of rows in none
+    return numbers_over(graph, series.time[series.rows], place[bins])
 
 
 def where_picture(found: Diagnosis, title: str) -> doc.Picture:

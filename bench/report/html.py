@@ -68,6 +68,7 @@ def _environment() -> Environment:
         trim_blocks=True, lstrip_blocks=True, finalize=_shown,
     )  # fmt: skip
     found.filters.update(drawn=drawn, sketched=sketched, laid=laid, rail=rail)
+    found.filters["deflated"] = _deflated
     found.filters["data"] = lambda graph: _json(_compressed(graph.model_dump()))
     found.filters["link"] = lambda file: f"data:{file.media};base64,{base64.b64encode(file.content.encode()).decode()}"
     return found
@@ -79,18 +80,23 @@ def _shown(value: Any) -> Any:  # noqa: ANN401 - whatever a template prints
 
 
 def _compressed(graph: dict[str, Any]) -> dict[str, Any]:
-    """The data of a graph over time with its curves in a third to two thirds of their bytes; of another one, the same.
-
-    Differences from number to number, their signs in the lowest bit, upper bytes before lower ones, deflated.
-    """
+    """The data of a graph over time, its curves in a third to two thirds of their bytes; of another one, the same."""
     for curve in (curve for panel in graph.get("panels", ()) for curve in panel["curves"]):
         for end in ("low", "high"):
             if (text := curve["samples"][end]) is not None:
-                steps = np.diff(np.frombuffer(base64.b64decode(text), "<i2"), prepend=np.int16(0))  # modulo 2**16
-                folded = ((steps << 1) ^ (steps >> 15)).view(np.uint16)
-                halves = np.concatenate([folded >> 8, folded & 0xFF]).astype(np.uint8)
-                curve["samples"][end] = base64.b64encode(zlib.compress(halves.tobytes(), 9)).decode("ascii")
+                curve["samples"][end] = _deflated(text)
     return graph
+
+
+def _deflated(text: str) -> str:
+    """16-bit numbers, both in base 64, in less room.
+
+    Differences from number to number, their signs in the lowest bit, upper bytes before lower ones, deflated.
+    """
+    steps = np.diff(np.frombuffer(base64.b64decode(text), "<i2"), prepend=np.int16(0))  # modulo 2**16
+    folded = ((steps << 1) ^ (steps >> 15)).view(np.uint16)
+    halves = np.concatenate([folded >> 8, folded & 0xFF]).astype(np.uint8)
+    return base64.b64encode(zlib.compress(halves.tobytes(), 9)).decode("ascii")
 
 
 def _json(content: Mapping[str, Any]) -> Markup:
@@ -182,10 +188,13 @@ class Drawn:
 
 @dataclass(frozen=True)
 class PlacedPanel:
-    """A panel in the drawing: ticks of its axes, the place of zero where its scale contains it, and what is drawn."""
+    """A panel in the drawing: values at the ends of its x axis, ticks of both axes, the place of zero where its scale
+    contains it, and what is drawn.
+    """
 
     panel: Panel
     width: float
+    ends: tuple[float, float]
     x: Sequence[tuple[float, str]]
     y: Sequence[tuple[float, str]]
     zero: float | None
@@ -206,7 +215,8 @@ def drawn(chart: Chart, small: bool = False) -> list[PlacedPanel]:
             along = (value for one in panel.series for value in one.x)
             across = Ruler.around(along, LEFT, width - RIGHT, panel.log)
             marks = [_drawn(one, across, down) for one in panel.series]
-            placed.append(PlacedPanel(panel, width, across.ticks(), down.ticks(), zero, marks))
+            ends = across.low, across.high
+            placed.append(PlacedPanel(panel, width, ends, across.ticks(), down.ticks(), zero, marks))
     return placed
 
 
@@ -224,7 +234,7 @@ def _drawn(series: Series, across: Ruler, down: Ruler) -> Drawn:
     return Drawn(
         series,
         marks,
-        "".join(f"M{a:g},{b:g}h0" for a, b in marks),
+        _path(marks, "m", "h0"),
         line(around),
         "".join(f"M{at:g},{bottom:g}V{top:g}" for at, bottom, top in bars if math.isfinite(at + bottom + top)),
     )
@@ -232,9 +242,16 @@ def _drawn(series: Series, across: Ruler, down: Ruler) -> Drawn:
 
 def line(points: Sequence[tuple[float, float]]) -> str:
     """A path through points in tenths, in steps, which take half of what places take."""
+    return _path(points, "l") if len(points) > 1 else ""
+
+
+def _path(points: Sequence[tuple[float, float]], step: str, after: str = "") -> str:
+    """A path from point to point in steps of this kind, with the same after each point."""
     tenths = [(round(10.0 * x), round(10.0 * y)) for x, y in points]
-    steps = " ".join(f"{_tenth(c - a)},{_tenth(d - b)}" for (a, b), (c, d) in pairwise(tenths))
-    return f"M{points[0][0]:g},{points[0][1]:g}l{steps}" if steps else ""
+    steps = (f"{_tenth(c - a)},{_tenth(d - b)}" for (a, b), (c, d) in pairwise(tenths))
+    between = f"{after}{step if after else ' '}"
+    start = "".join(f"M{x:g},{y:g}{after}" for x, y in points[:1])
+    return f"{start}{step}{between.join(steps)}{after}" if len(points) > 1 else start
 
 
 def _tenth(number: int) -> str:

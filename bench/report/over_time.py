@@ -145,3 +145,12 @@ def time_graph(
             panels.append(TimePanel(label=label, unit=unit, curves=tuple(left), first=True))
     found = {"start": grid.start, "step": grid.step, "count": grid.count}
     return TimeGraph(title=title, alternative=alternative, choices=tuple(choices), panels=tuple(panels), **found)
+
+
+def numbers_over(graph: TimeGraph, time: Array, values: NDArray[np.integer]) -> str:
+    """Numbers (m,) at ascending times - s - (m,) on the grid of a graph, in 16 bits; -1 where no time is near."""
+    at = graph.start + graph.step * np.arange(graph.count)
+    after = np.clip(np.searchsorted(time, at), 1, time.size - 1)
+    nearest = after - (at - time[after - 1] < time[after] - at)
+    reach = max(graph.step, float(np.median(np.diff(time))))
+    return packed(np.where(np.abs(time[nearest] - at) < reach, values[nearest], -1), "<i2")

@@ -116,6 +116,62 @@ def test_the_mouse_zooms_moves_and_tells(opened, found):
     assert range_of(page) == (0.0, pytest.approx(3.999))
 
 
+def test_bins_that_are_dragged_over_or_reached_by_keys_shade_their_time_ranges(opened, found):
+    """Of the time itself: bins of its panel are the time range."""
+    page = opened(found / "report.html")
+    panel, output = page.locator("svg[data-of=time]"), page.locator("form.bins output")
+    assert output.inner_text() == ""
+    share = """() => { // of the first graph's width that is shaded, at its top
+        const canvas = document.querySelector(".graph canvas"), at = canvas.getBoundingClientRect();
+        const over = document.querySelector(".u-over").getBoundingClientRect();
+        const row = [over.left - at.left, over.top - at.top + 3, over.width, 1].map(Math.round);
+        const pixels = canvas.getContext("2d").getImageData(...row).data;
+        return pixels.filter((value, k) => k % 4 === 0 && value < 240 && pixels[k + 3] > 0).length / row[2];
+    }"""
+    panel.scroll_into_view_if_needed()
+    place = panel.bounding_box()
+    scale = place["width"] / 380.0
+    ends = float(panel.get_attribute("data-low")), float(panel.get_attribute("data-high"))
+    at = [place["x"] + scale * (58.0 + 310.0 * (t - ends[0]) / (ends[1] - ends[0])) for t in (1.0, 2.0)]
+    page.mouse.move(at[0], place["y"] + 100.0)
+    page.mouse.down()
+    page.mouse.move(at[1], place["y"] + 100.0, steps=4)
+    page.mouse.up()
+    settled(page)
+    text = re.fullmatch(r"time ([\d.]+) to ([\d.]+) s: ([\d.]+) s in \d+ time ranges?", output.inner_text())
+    low, high, total = map(float, text.groups())
+    assert (low, high) == pytest.approx((1.0, 2.0), abs=0.05)
+    assert total == pytest.approx(1.0, abs=0.15)  # less the rows about standstill
+    assert page.evaluate(share) == pytest.approx(total / 4.0, abs=0.07)
+    panel.press("Enter")
+    settled(page)
+    first, last = range_of(page)
+    assert low - 0.5 < first < last < high + 0.5
+    assert page.evaluate("document.activeElement.className") == "graph"
+    panel.press("Escape")
+    settled(page)
+    assert output.inner_text() == ""
+    panel.press("End")
+    assert panel.get_attribute("aria-valuetext") == output.inner_text() != ""
+    assert panel.get_attribute("aria-valuenow") == panel.get_attribute("aria-valuemax")
+
+
+def test_a_time_range_marks_its_bins(opened, found):
+    page = opened(found / "report.html")
+    marked = "() => [...document.querySelectorAll('svg[data-of=time] .shown')].map(one => one.getAttribute('d'))[0]"
+    assert page.evaluate(marked) == ""
+    page.locator(".graph").first.press("+")
+    settled(page)
+    panel, (first, last) = page.locator("svg[data-of=time]"), range_of(page)
+    low, high = float(panel.get_attribute("data-low")), float(panel.get_attribute("data-high"))
+    times = [low + (float(x) - 58.0) / 310.0 * (high - low) for x in re.findall(r"M([\d.]+),", page.evaluate(marked))]
+    assert len(times) > 10
+    assert (min(times), max(times)) == pytest.approx((first, last), abs=0.1)
+    page.locator(".graph").first.press("0")
+    settled(page)
+    assert page.evaluate(marked) == ""
+
+
 def test_another_model_can_be_chosen(opened, found):
     page = opened(found / "report.html")
     left = page.locator(".readout").nth(1)
@@ -137,6 +193,7 @@ def test_the_model_is_downloaded_as_it_was_written(opened, found):
 def test_every_picture_has_words_and_headings_are_in_order(still):
     page = still
     assert page.get_by_role("application").count() == 2
+    assert page.get_by_role("slider").count() == 4
     for graph in page.get_by_role("application").all():
         assert "RMS" in graph.get_attribute("aria-label")
     for panel in page.locator("section .panels svg").all():

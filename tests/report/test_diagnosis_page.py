@@ -1,5 +1,6 @@
 """The page of a diagnosis says what the diagnosis found, and draws the signals whose gaps it states."""
 
+import base64
 import json
 from dataclasses import replace
 
@@ -73,6 +74,20 @@ def test_the_found_effect_is_drawn_into_the_gap(page):
     wave = 0.12 * np.sin(np.array(line.x))
     assert np.corrcoef(wave, np.array(line.y))[0, 1] > 0.95
     assert np.max(np.abs(series["remaining residual"].y)) < floor.high[0] < np.max(np.abs(line.y))
+
+
+def test_each_instant_has_the_bins_that_it_was_in(page):
+    (chart,), graph = blocks(page, Chart), blocks(page, TimeGraph)[0]
+    time, trace = graph.start + graph.step * np.arange(graph.count), with_unbalance(run_of(duration=4.0))
+    true = {"position": np.mod(trace["position"], 2.0 * np.pi), "velocity": trace["velocity"], "time": trace.time}
+    for panel in chart.panels:
+        bins = np.frombuffer(base64.b64decode(panel.bins), "<i2")
+        places = np.array(next(one for one in panel.series if one.name == "gap").x)
+        assert bins.size == graph.count
+        assert set(bins[bins >= 0]) == set(range(places.size))
+        if panel.x_label in true:
+            values = np.interp(time, trace.time, true[panel.x_label])[bins >= 0]
+            np.testing.assert_allclose(places[bins[bins >= 0]], values, atol=np.diff(places).max())
 
 
 def test_every_effect_is_reported_with_a_reason(diagnosed):

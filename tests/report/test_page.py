@@ -165,7 +165,7 @@ def test_a_damaged_graph_is_no_page(bench, tmp_path):
 def test_a_page_of_an_earlier_version_is_read(bench, tmp_path):
     """What its parts came to have since then has a neutral value."""
     write_document(tmp_path / "out", page_full_of("x"))
-    since = {"y_label": "x", "log": False}
+    since = {"y_label": "x", "log": False, "bins": None}
     content = json.loads((tmp_path / "out" / DATA).read_text(encoding="utf-8"))
     for block in content["sections"][0]["blocks"]:
         for part in (block, *(block.get("panels", ()) if block["kind"] == "chart" else ())):

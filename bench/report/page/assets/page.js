@@ -70,6 +70,7 @@
       this.choice = Math.max(0, this.data.choices.length - 1);
       this.whole = [-0.5, this.data.count - 0.5]; // in intervals of the grid
       this.view = [...this.whole];
+      this.ranges = []; // shaded, in intervals
       this.single = this.data.panels.every((p) => p.curves.every((c) => c.samples.high === null));
       this.listen(figure);
       this.build();
@@ -77,7 +78,8 @@
 
     listen(figure) {
       const acts = { left: () => this.pan(-0.2), right: () => this.pan(0.2), in: () => this.zoom(0.5), out: () => this.zoom(2), all: () => this.show(...this.whole) };
-      const keys = { ArrowLeft: "left", ArrowRight: "right", "+": "in", "=": "in", "-": "out", "0": "all", Home: "all" };
+      acts.next = () => this.next();
+      const keys = { ArrowLeft: "left", ArrowRight: "right", "+": "in", "=": "in", "-": "out", "0": "all", Home: "all", Enter: "next" };
       figure.querySelectorAll("button").forEach((button) => button.addEventListener("click", acts[button.dataset.do]));
       figure.querySelectorAll("input").forEach((input) =>
         input.addEventListener("change", () => { this.choice = Number(input.value); this.build(); }));
@@ -152,13 +154,14 @@
         scales: { x: { time: false } },
         axes: [
           { ...axis, size: last ? 42 : 4, label: last ? "time / s" : undefined, labelSize: 18, labelFont: axis.font, values: last ? labels : (u, splits) => splits.map(() => "") },
-          { ...axis, size: 64, space: 24, values: labels },
+          { ...axis, size: 68, space: 24, values: labels },
         ],
         series: [{}, ...curves.map((c, i) => ({ label: c.name, stroke: colours[i], width: c.role === "measured" ? 3 : 1.3,
           points: { show: false }, spanGaps: false, paths: (u, at, from, to) => ((barred[at] = !this.plain && dense(u, at)) ? null : line(u, at, from, to)) }))],
         cursor: { sync: { key: sync.key, scales: ["x", null] }, drag: { x: true, y: false, setScale: false }, y: false, points: { size: 6 },
           bind: { dblclick: () => () => { this.show(...this.whole); return null; } } },
         hooks: {
+          drawClear: [(u) => this.shade(u)],
           drawSeries: [(u, i) => { if (barred[i]) bars(u, i, colours[i - 1]); }],
           setCursor: [readOut],
           setSelect: [(u) => {
@@ -174,6 +177,33 @@
       Object.assign(plot, { curves, readOut: () => readOut(plot) });
       plot.readOut();
       return plot;
+    }
+
+    shade(u) {
+      const { left, top, width, height } = u.bbox, at = (k) => u.valToPos(this.data.start + this.data.step * k, "x", true);
+      u.ctx.save();
+      u.ctx.beginPath();
+      for (const [from, to] of this.ranges) {
+        const a = Math.max(left, at(from - 0.5)), b = Math.min(left + width, at(to + 0.5));
+        if (b > a) u.ctx.rect(a, top, Math.max(devicePixelRatio, b - a), height);
+      }
+      u.ctx.globalAlpha = 0.22;
+      u.ctx.fillStyle = colour("focus");
+      u.ctx.fill();
+      u.ctx.restore();
+    }
+
+    mark(ranges) {
+      this.ranges = ranges;
+      this.turn = -1;
+      this.show(...this.view);
+    }
+
+    next() { // shaded range, with as much before and after it
+      if (!this.ranges.length) return;
+      const [from, to] = this.ranges[(this.turn = (this.turn + 1) % this.ranges.length)], around = Math.max(LEAST, to - from);
+      this.show(from - around, to + around);
+      this.place.focus();
     }
 
     readOut(u, readout, panel, curves, colours) {
@@ -229,6 +259,7 @@
       const digits = Math.min(9, Math.max(0, Math.ceil(-Math.log10(step))));
       const [first, last] = [Math.max(a, 0), Math.min(b, this.data.count - 1)].map((k) => Number((start + step * k).toFixed(digits)));
       this.range.value = `${first} to ${last} s`;
+      this.bins?.see(b - a < this.whole[1] - this.whole[0] ? [Math.max(0, Math.ceil(a)), Math.min(this.data.count - 1, Math.floor(b))] : null);
     }
 
     values(curve, from, to) {
@@ -260,5 +291,96 @@
     }
   }
 
-  document.querySelectorAll("figure.time").forEach(TimeGraph.of);
+  // A chart whose dots are bins of the recording that a graph over time shows: the graph shades when the recording was in
+  // those that are chosen, and those of the time range in sight there are marked.
+  class Bins {
+    static async of(figure, graph) {
+      const panels = await Promise.all([...figure.querySelectorAll("svg[data-bins]")].map(async (svg) => {
+        let x = 0, y = 0;
+        const steps = svg.querySelector(".spots").getAttribute("d").matchAll(/[Mm](-?[\d.]+),(-?[\d.]+)/g);
+        const dots = [...steps].map((step) => [(x += Number(step[1])), (y += Number(step[2]))]);
+        const [brush, shown] = ["rect", "path"].map((name) => document.createElementNS(svg.namespaceURI, name));
+        brush.setAttribute("class", "brush");
+        shown.setAttribute("class", "spots shown");
+        svg.append(brush, shown);
+        return { svg, dots, brush, shown, along: await numbers(svg.dataset.bins) };
+      }));
+      return new Bins(figure, graph, panels);
+    }
+
+    constructor(figure, graph, panels) {
+      Object.assign(this, { graph, panels, form: figure.querySelector("form.bins") });
+      this.form.hidden = false;
+      const acts = { next: () => graph.next(), none: () => this.choose(null) };
+      this.form.querySelectorAll("button").forEach((button) => button.addEventListener("click", acts[button.dataset.do]));
+      panels.forEach((panel) => this.listen(panel));
+      this.choose(null);
+      graph.bins = this;
+    }
+
+    listen(panel) {
+      const { svg, dots } = panel, last = dots.length - 1;
+      for (const [name, value] of [["role", "slider"], ["tabindex", 0], ["aria-valuemin", 0], ["aria-valuemax", last]]) svg.setAttribute(name, value);
+      const under = (event) => {
+        const { x } = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+        return dots.reduce((best, dot, k) => (Math.abs(dot[0] - x) < Math.abs(dots[best][0] - x) ? k : best), 0);
+      };
+      svg.addEventListener("pointerdown", (event) => {
+        svg.setPointerCapture(event.pointerId);
+        this.choose(panel, under(event));
+      });
+      svg.addEventListener("pointermove", (event) => { if (svg.hasPointerCapture(event.pointerId)) this.choose(panel, this.from, under(event)); });
+      svg.addEventListener("keydown", (event) => {
+        const here = this.panel === panel, step = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, Home: -Infinity, End: Infinity }[event.key];
+        if (event.ctrlKey || event.metaKey || event.altKey || !(step || event.key === "Escape" || event.key === "Enter")) return;
+        event.preventDefault();
+        if (event.key === "Enter") this.graph.next();
+        else if (event.key === "Escape") this.choose(null);
+        else {
+          const to = Math.min(Math.max((here ? this.to : step < 0 ? last + 1 : -1) + step, 0), last);
+          this.choose(panel, here && event.shiftKey ? this.from : to, to);
+        }
+      });
+    }
+
+    choose(panel, from = 0, to = from) {
+      Object.assign(this, { panel, from, to });
+      const [low, high] = [Math.min(from, to), Math.max(from, to)], ranges = [], far = this.graph.data.count / 500; // two pixels
+      let inside = 0;
+      panel?.along.forEach((bin, k) => {
+        if (bin < low || bin > high) return;
+        inside++;
+        const before = ranges.at(-1);
+        if (before && k - before[1] <= Math.max(1, far)) before[1] = k;
+        else ranges.push([k, k]);
+      });
+      for (const one of this.panels) {
+        const chosen = one === panel, edge = (k, other) => (one.dots[Math.min(Math.max(k, 0), one.dots.length - 1)][0] + one.dots[other][0]) / 2;
+        const at = chosen ? edge(low - 1, low) : 0, wide = chosen ? edge(high + 1, high) - at : 0;
+        for (const [name, value] of [["x", at], ["y", 24], ["height", 164], ["width", wide && Math.max(2, wide)]]) one.brush.setAttribute(name, value);
+        one.svg.setAttribute("aria-valuenow", chosen ? to : 0);
+        one.svg.setAttribute("aria-valuetext", chosen ? this.text(one, low, high, ranges.length, inside) : "no bin");
+      }
+      this.form.querySelector("output").value = panel ? this.text(panel, low, high, ranges.length, inside) : "";
+      this.graph.mark(ranges);
+    }
+
+    text({ svg, dots }, low, high, ranges, inside) {
+      const from = Number(svg.dataset.low), wide = svg.viewBox.baseVal.width - 70; // between the margins
+      const value = (k, unit) => shown(from + ((dots[k][0] - 58) / wide) * (svg.dataset.high - from), unit);
+      return `${svg.dataset.of} ${low < high ? value(low, "") + " to " : ""}${value(high, svg.dataset.unit)}: ${shown(inside * this.graph.data.step, "s")} in ${ranges} time range${ranges === 1 ? "" : "s"}`;
+    }
+
+    see(range) {
+      for (const { dots, along, shown } of this.panels) {
+        const bins = new Set(range ? along.subarray(range[0], range[1] + 1) : []);
+        shown.setAttribute("d", dots.map(([x, y], k) => (bins.has(k) ? `M${x.toFixed(1)},${y.toFixed(1)}h0` : "")).join(""));
+      }
+    }
+  }
+
+  document.querySelectorAll("figure.time").forEach(async (figure, k) => {
+    const graph = await TimeGraph.of(figure);
+    if (k === 0) document.querySelectorAll("figure:has(svg[data-bins])").forEach((chart) => Bins.of(chart, graph));
+  });
 })();
