@@ -96,6 +96,7 @@ class _Written(BaseModel):
     spread: Annotated[Measured | None, PlainValidator(lambda one: None if str(one).endswith(FEW) else _read(one))] = (
         None
     )
+    each: tuple[Plain, ...] = ()
 
 
 def _measured(table: object) -> Measured:
@@ -103,7 +104,7 @@ def _measured(table: object) -> Measured:
     error, spread = (found and found.value for found in (one.std_error, one.spread))
     if not (one.degrees > 0.0 and one.recordings > 0 and (error or 0.0) >= 0.0 and (spread or 0.0) >= 0.0):
         raise refused("found an error or a count below zero", _ALLOWED)
-    return Measured(one.value.value, one.value.unit, error or 0.0, one.degrees, one.recordings, spread)
+    return Measured(one.value.value, one.value.unit, error or 0.0, one.degrees, one.recordings, spread, one.each)
 
 
 def _table(found: Measured) -> dict[str, Any]:
@@ -113,7 +114,8 @@ def _table(found: Measured) -> dict[str, Any]:
     degrees = {"degrees": round(found.degrees, 1)} if math.isfinite(found.degrees) else {}
     spread = NO_SPREAD if found.spread is None else _text(found.spread, found.unit)
     error = _text(found.std_error, found.unit)
-    return {**table, "std_error": error, **degrees, "recordings": found.recordings, "spread": spread}
+    each = {"each": [float(f"{value:.9g}") for value in found.each]} if found.each else {}
+    return {**table, "std_error": error, **degrees, "recordings": found.recordings, "spread": spread, **each}
 
 
 Quantity = Annotated[Measured, PlainValidator(_measured), PlainSerializer(_table)]

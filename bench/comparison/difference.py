@@ -51,6 +51,7 @@ class Measured:
         degrees: of freedom of this error; inf if it is known.
         recordings: number of recordings that determine the quantity alone.
         spread: standard deviation of their estimates, own errors included; None for fewer than two - unit.
+        each: these estimates, in the order of the recordings; () for fewer than two - unit.
     """
 
     value: float
@@ -59,6 +60,7 @@ class Measured:
     degrees: float = math.inf
     recordings: int = 1
     spread: float | None = None
+    each: tuple[float, ...] = ()
 
     @classmethod
     def of(cls, found: Parameter, alone: Sequence[Parameter] = ()) -> Measured:
@@ -70,8 +72,9 @@ class Measured:
         if len(known) < 2:
             return cls(found.value, found.unit, found.std_error, found.degrees)
         error = float(np.sqrt(np.mean([one.std_error**2 for one in known])))
-        spread = float(np.std([one.value for one in known], ddof=1))
-        return cls(found.value, found.unit, error, min(one.degrees for one in known), len(known), spread)
+        each = tuple(one.value for one in known)
+        spread = float(np.std(each, ddof=1))
+        return cls(found.value, found.unit, error, min(one.degrees for one in known), len(known), spread, each)
 
 
 @dataclass(frozen=True)

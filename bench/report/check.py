@@ -9,6 +9,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from bench.baseline.check import Checked
 from bench.baseline.model import RESPONSE_TORQUE
 from bench.baseline.state import GAPS, AxisEffect, RemainingGap
@@ -170,6 +172,7 @@ def check_document(checked: Checked, title: str) -> doc.Document:
         answers=_answers(checked),
         sections=doc.sections(
             doc.section("comparisons", "What was compared", *_compared(checked)),
+            doc.section("runs", "Over the runs", *_runs_chart(checked)),
             doc.section("conditions", "Like with like", _unlike(checked), detail=alike),
             doc.section("gaps", "Residuals of the models", *gaps, detail=True),
         ),
@@ -222,6 +225,48 @@ def _compared(checked: Checked) -> Iterator[doc.AnyPart]:
     rows = ((*_cells(one), *([one.reason] if because else [])) for one in checked.comparisons)
     marked = (k for k, one in enumerate(checked.comparisons) if one.result == CHANGED)
     yield doc.table("Worst first", (*headings, *(["because~"] if because else [])), rows, marked)
+
+
+def over_runs(checked: Checked) -> dict[str, doc.Panel]:
+    """Each quantity over the runs, worst first: its baseline and margin, and the value now with its interval."""
+    if checked.baseline.source == "model":
+        return {}
+    return {one.name: _run_panel(checked, one) for one in checked.comparisons if one.differences and one.margin > 0.0}
+
+
+def _run_panel(checked: Checked, one: Comparison) -> doc.Panel:
+    """Runs of the baseline, then those that are judged; the interval is that of the difference, from the baseline."""
+    unit, factor = DISPLAYED.get(one.unit, (one.unit, 1.0))
+    states = [state.quantities.get(one.name) for state in (checked.baseline, checked.now)]
+    counts = [1 if state is None else state.recordings for state in states]
+    before, after = (() if state is None else tuple(factor * value for value in state.each) for state in states)
+    runs, edges, colour = np.arange(1.0, sum(counts) + 1.0), np.array([0.5, sum(counts) + 0.5]), COLOURS[one.result]
+    level, band = np.full(2, factor * (one.baseline or 0.0)), factor * one.margin
+    drawn = [
+        doc.series("baseline ± margin", "band", "floor", edges, bounds=(level - band, level + band)),
+        doc.series("baseline", "dashes", "ink", edges, level),
+    ]
+    if len(before) == counts[0]:
+        drawn.append(doc.series("its runs", "dots", "ink", runs[: counts[0]], np.array(before)))
+    if len(after) == counts[1] > 1:
+        drawn.append(doc.series("runs now", "rings", colour, runs[counts[0] :], np.array(after)))
+    judged, low, high = ([factor * value] for value in (one.now or 0.0, *(one.difference95 or (0.0, 0.0))))
+    bounds = level[:1] + low, level[:1] + high
+    at = runs[counts[0] :].mean(keepdims=True)
+    drawn.append(doc.series("judged, with its interval", "large dots", colour, at, np.array(judged), bounds))
+    label = f"{_label(one)} / {unit_text(unit)}" if unit != "dimensionless" else _label(one)
+    return doc.Panel(x_label="run", counted=True, note=one.result, y_label=label, series=tuple(drawn))
+
+
+def _runs_chart(checked: Checked) -> Iterator[doc.Chart]:
+    panels = tuple(over_runs(checked).values())
+    if panels:
+        yield doc.Chart(
+            title="Each quantity over the runs, worst first.",
+            alternative="A quantity has changed where the interval of 95 % is clearly outside the band.",
+            narrow=True,
+            panels=panels,
+        )
 
 
 def _label(one: Comparison) -> str:

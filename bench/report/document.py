@@ -168,6 +168,7 @@ class Panel(Part):
         note: in its corner.
         y_label: of the vertical axis with its unit, where it is no other panel's.
         log: whether both axes are logarithmic.
+        counted: whether x is a number of a count, so that its axis has whole ones.
         bins: which point of the first series with dots each interval of the page's first graph over time belongs to,
             -1 of none, as 16-bit numbers in base 64; None of points that are no bins of a recording.
     """
@@ -178,6 +179,7 @@ class Panel(Part):
     series: tuple[Series, ...]
     y_label: str = ""
     log: bool = False
+    counted: bool = False
     bins: str | None = None
 
 
@@ -192,10 +194,11 @@ class Chart(Drawing):
     """Panels of points and lines over anything; drawn without a script.
 
     Panels are next to each other and share one y scale; those that have y labels stand one above the other, with
-    a scale each.
+    a scale each, and on a page next to each other where they are `narrow`.
     """
 
     kind: Literal["chart"] = "chart"
+    narrow: bool = False
     y_label: str = ""
     y_unit: str = ""
     panels: tuple[Panel, ...] = Field(min_length=1)

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
 from bench.arrays import Array
 from bench.errors import InputError
@@ -214,6 +214,8 @@ def _panel(axes: Axes, panel: doc.Panel) -> None:
         axes.plot(one.x, one.y, color=colour, label=label, **style)
     if panel.log:
         axes.set(xscale="log", yscale="log")
+    if panel.counted:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_title(plain(panel.note), loc="right", parse_math=False)
     axes.set_xlabel(plain(_labelled(panel.x_label, panel.x_unit)), parse_math=False)
 

@@ -157,8 +157,8 @@ class Ruler:
         margin = MARGIN * (high - low) or 0.5 * abs(high) or 0.5
         return cls(low - margin, high + margin, start, stop)
 
-    def ticks(self, most: int = TICKS) -> list[tuple[float, str]]:
-        """Places of round values with their labels."""
+    def ticks(self, most: int = TICKS, whole: bool = False) -> list[tuple[float, str]]:
+        """Places of round values, or of whole ones, with their labels."""
         if self.log:
             powers = range(math.ceil(math.log10(self.low)), math.floor(math.log10(self.high)) + 1)
             digits = (1.0,) if len(powers) > 1 else (1.0, 2.0, 5.0)
@@ -166,7 +166,7 @@ class Ruler:
             every = [value for value in every if self.low <= value <= self.high]
             found = [(value, f"{value:g}") for value in every[:: 1 + len(every) // (most + 1)]]
         else:
-            found = ticks(self.low, self.high, most)
+            found = ticks(self.low, self.high, most, whole)
         return [(self(value), label) for value, label in found]
 
 
@@ -216,7 +216,7 @@ def drawn(chart: Chart, small: bool = False) -> list[PlacedPanel]:
             across = Ruler.around(along, LEFT, width - RIGHT, panel.log)
             marks = [_drawn(one, across, down) for one in panel.series]
             ends = across.low, across.high
-            placed.append(PlacedPanel(panel, width, ends, across.ticks(), down.ticks(), zero, marks))
+            placed.append(PlacedPanel(panel, width, ends, across.ticks(whole=panel.counted), down.ticks(), zero, marks))
     return placed
 
 
@@ -268,11 +268,12 @@ def sketched(parts: Sequence[Series]) -> list[Drawn]:
     return [_drawn(one, across, down) for one in parts]
 
 
-def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    """Round values within bounds, with labels of as many digits as distinguish them."""
+def ticks(low: float, high: float, most: int, whole: bool = False) -> list[tuple[float, str]]:
+    """Round values within bounds, or whole ones, with labels of as many digits as distinguish them."""
     from matplotlib.ticker import MaxNLocator  # 0.1 s, which only a chart on a page has to pay
 
-    places = [float(value) for value in MaxNLocator(most).tick_values(low, high) if low <= value <= high]
+    every = MaxNLocator(most, integer=whole, min_n_ticks=1 if whole else 2).tick_values(low, high)
+    places = [float(value) for value in every if low <= value <= high]
     step = min(np.diff(places), default=1.0)
     size = max(map(abs, places), default=1.0)
     if size >= 1e5 or size < 1e-3:

@@ -26,7 +26,7 @@ from bench.joints.robot import IdentifiedRobot
 from bench.names import nearest, words
 from bench.plant.simulate import Simulated
 from bench.presented import Size
-from bench.report.check import check_document, check_json
+from bench.report.check import check_document, check_json, over_runs
 from bench.report.diagnosis import diagnosis_json, verdict_sentence, write_diagnosis
 from bench.report.document import Chart, Colour, Intervals, Panel, Paragraph, Picture, Style, Table, series
 from bench.report.gap import at_a_glance, gap_chart
@@ -45,6 +45,10 @@ if TYPE_CHECKING:
 
 #: Columns and lines of a text.
 WIDTH, LINES = 100, 25
+
+
+#: What names all parts of a result but the first, which alone is drawn by default.
+REST: dict[type, str] = {Diagnosis: "where", Checked: "runs"}
 
 
 class Overview(NamedTuple):
@@ -125,11 +129,12 @@ def _html(table: Table) -> str:
 def plot(result: object, names: Sequence[str] = (), ax: Axes | None = None, figsize: Size | None = None) -> Any:  # noqa: ANN401 - axes, or an array of them
     """The parts of a result with these names, each in axes of its own; into given ones the first of them.
 
-    Of a diagnosis `where` names the gap over all coordinates.
+    Of a diagnosis `where` names the gap over all coordinates, of a check `runs` all quantities over the runs.
     """
     parts = parts_of(result)
-    if isinstance(result, Diagnosis):
-        names = [each for name in names or ("gap",) for each in ([*parts][1:] if name == "where" else [name])]
+    if (rest := REST.get(type(result))) is not None:
+        first, *others = parts
+        names = [each for name in names or (first,) for each in (others if name == rest else [name])]
     for name in names:
         if name not in parts:
             found = f"found {name!r}{nearest(name, [*parts]) if isinstance(name, str) else ''}"
@@ -180,7 +185,7 @@ def parts_of(result: object) -> dict[str, Panel | Intervals]:
             blocks = [part for section in check_document(result, "").sections for part in section.blocks]
             spans = [part for part in blocks if isinstance(part, Intervals)]
             if spans:
-                return {"differences": spans[0]}
+                return {"differences": spans[0], **over_runs(result)}
     raise InputError("plot()", f"found {type(result).__name__}", "allowed: what has signals or quantities to draw")
 
 

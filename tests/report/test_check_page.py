@@ -5,9 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from matplotlib import pyplot
 
+from bench.errors import InputError
 from bench.report.check import check_document
-from bench.report.document import Intervals, Paragraph, Points, Table
+from bench.report.document import Chart, Intervals, Paragraph, Points, Table
 from bench.report.html import html
 from bench.trace.write import write
 from tests.baseline.states import named, state
@@ -52,6 +54,45 @@ def test_comparisons_stand_worst_first_and_the_chart_counts_in_margins():
     assert first.name == "moment of inertia"
     assert first.value == pytest.approx(-0.02 / 0.005)  # 2 % less, and half a per cent does not matter
     assert first.low < first.value < first.high < -1.0
+
+
+def with_runs(of, name, values):
+    """A state whose quantity is of several recordings."""
+    each = tuple(values)
+    known = replace(of.quantities[name], value=sum(each) / len(each), recordings=len(each), spread=1e-4, each=each)
+    return replace(of, quantities={**of.quantities, name: known})
+
+
+def test_each_quantity_is_drawn_over_the_runs_against_the_bounds_of_the_baseline():
+    name, before, after = "coulomb_friction_torque", (0.0601, 0.0599, 0.06, 0.0602, 0.0598), (0.07, 0.072)
+    found = checked(with_runs(state(), name, before), with_runs(state(), name, after))
+    page = check_document(found, "x")
+    (chart,) = blocks(page, Chart)
+    assert len(chart.panels) == len([one for one in found.comparisons if one.margin > 0.0])
+    first = chart.panels[0]
+    assert (first.y_label, first.note, first.counted) == ("Coulomb friction torque / N·m", "changed", True)
+    drawn = {one.name: one for one in first.series}
+    band, judged = drawn["baseline ± margin"], drawn["judged, with its interval"]
+    assert (band.low[0], band.high[0]) == pytest.approx((0.06 * 0.97, 0.06 * 1.03))
+    assert (drawn["its runs"].x, drawn["its runs"].y) == ((1.0, 2.0, 3.0, 4.0, 5.0), before)
+    assert (drawn["runs now"].x, drawn["runs now"].y) == ((6.0, 7.0), after)
+    (worst,) = (one for one in found.comparisons if one.name == name)
+    assert (judged.x, judged.y) == ((6.5,), pytest.approx((0.071,)))
+    assert (judged.low[0], judged.high[0]) == pytest.approx([0.06 + end for end in worst.difference95])
+    assert judged.low[0] > band.high[0]  # which is why it is called changed
+    single = {one.name for one in chart.panels[1].series}
+    assert "its runs" not in single and "judged, with its interval" in single
+
+
+def test_a_check_is_plotted_by_quantity():
+    found, axes = checked(state(), state({"moment_of_inertia": 0.98})), pyplot.figure().subplots()
+    assert found.plot("moment_of_inertia", ax=axes) is axes
+    assert axes.get_ylabel() == "moment of inertia / kg·m²"
+    assert len(found.plot("runs")) == len(found.plot("differences", "runs")) - 1
+    assert found.plot().get_xlabel() == "difference over margin"
+    with pytest.raises(InputError, match="allowed: differences, moment_of_inertia, "):
+        found.plot("inertia", ax=axes)
+    pyplot.close("all")
 
 
 def test_what_lies_far_beyond_its_margin_does_not_hide_the_rest():
