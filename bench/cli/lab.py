@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, cast, get_args
+from typing import TYPE_CHECKING, Annotated, cast, get_args
 
 from typer import BadParameter, Exit, Option
 
 from bench.cli.common import list_files, printed, say, warn
+
+if TYPE_CHECKING:
+    from bench.course.report import CourseReport
 
 
 def lab(
@@ -49,8 +52,8 @@ def lab(
         list_files(write_notebooks(notebooks))
     elif students is not None or truth is not None:
         raise BadParameter("--students goes with --record, --truth with --grade")
-    else:
-        _report(data, out)
+    elif not reported(data, out).usable:
+        raise Exit(1)
 
 
 def _grade(submissions: Path, truth: Path | None, key: Path | None, out: Path, acceleration: str) -> None:
@@ -83,7 +86,8 @@ def _ask(folder: Path, out: Path) -> None:
         raise Exit(1)
 
 
-def _report(data: Path | None, out: Path) -> None:
+def reported(data: Path | None, out: Path) -> CourseReport:
+    """Do the course, write its report and print its first numbers."""
     from bench.course.pdf import no_typst
     from bench.course.report import first_numbers, report_course
     from bench.report.terminal import progress
@@ -93,5 +97,4 @@ def _report(data: Path | None, out: Path) -> None:
     printed(first_numbers(report.results))
     list_files(report.files)
     warn([missing] if (missing := no_typst()) else [])
-    if not report.usable:
-        raise Exit(1)
+    return report

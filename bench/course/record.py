@@ -107,14 +107,17 @@ def _write(path: Path, time: Array, velocity: Array, current: Array) -> None:
         temporary.write_bytes(machine_expert_trace(table))
 
 
-def record_class(folder: Path, students: int, seed: int, progress: Progress = lambda share: None) -> list[Path]:
+def record_class(
+    folder: Path, students: int, seed: int, progress: Progress = lambda share: None, salt: int | None = None
+) -> list[Path]:
     """Simulate every student's axis and write folders `student-01`, ..., and the truth next to the folder of them all.
 
     Args:
         folder: of the class, new or empty; InputError where it is not.
         students: how many; InputError below one.
-        seed: of everything drawn, with a random salt that only the truth contains: the seed alone draws other axes.
+        seed: of everything drawn, with a salt that only the truth contains: the seed alone draws other axes.
         progress: called with the share done.
+        salt: random without; a given one draws the same class again.
 
     Returns:
         The students' folders, and the files of the key and of the truth that it seals, readable by their owner alone.
@@ -123,7 +126,7 @@ def record_class(folder: Path, students: int, seed: int, progress: Progress = la
         raise InputError("--students", f"found {students}", "allowed: 1 or more")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(folder, "is there and not empty", "name a new folder for the class")
-    folders, known, salt = [], {}, secrets.randbits(128)
+    folders, known, salt = [], {}, secrets.randbits(128) if salt is None else salt
     for number in range(1, students + 1):
         name = f"{number:02}"
         folders.append(folder / f"student-{name}")

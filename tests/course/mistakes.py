@@ -5,9 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bench.course.course import TASKS, course
 from bench.course.flights import find_flights, read_flights
+from bench.course.recordings import LabRecordings
+from bench.course.report import lab_json
 from bench.trace.read import read
-from tests.command import bench
 
 BARE, FRICTION, FASTEST = NAMES = ("JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc")
 SI = "time [s];velocity [rad/s];current [A]"
@@ -232,11 +234,20 @@ def recorded_in(folder):
     return tables, read_flights(find_flights(folder)).points
 
 
-def done_by_the_command(folder, out):
+#: Tasks of which nothing depends on the folder but time.
+SIMULATED = {"11", "tracking"}
+
+
+def results_of(folder, without=SIMULATED):
+    """The recordings of a folder, and what comes of the tasks."""
+    recordings = LabRecordings.in_folder(folder)
+    return recordings, course(recordings, keys={task.key for task in TASKS} - without)
+
+
+def tasks_of(folder):
     """Tasks as the report of a folder has them."""
-    ended = bench("lab", "--data", folder, "--out", out)
-    assert "Traceback" not in ended.out + ended.err
-    return json.loads((out / "lab.json").read_text(encoding="utf-8"))["tasks"]
+    recordings, results = results_of(folder)
+    return json.loads(lab_json(results, recordings.rig.name))["tasks"]
 
 
 def wrong_numbers(tasks, truth):

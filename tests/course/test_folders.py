@@ -1,4 +1,4 @@
-"""A student's folder in the states that it comes in, end to end by the command."""
+"""A student's folder in the states that it comes in: which tasks are done, and why others are not."""
 
 import json
 import shutil
@@ -11,10 +11,13 @@ from bench.assets import asset
 from bench.course.axis import Sources, lab_rig
 from bench.course.flights import read_flights
 from bench.course.recordings import LabRecordings
+from bench.course.report import CourseReport, first_numbers, lab_json
 from bench.errors import InputError
+from bench.report.terminal import rendered
 from bench.trace.read import read
 from tests.command import bench
-from tests.course.conftest import SLOW, as_a_student_has_them
+from tests.course.conftest import as_a_student_has_them
+from tests.course.mistakes import SIMULATED, results_of
 
 TRACES = asset("data", "traces")
 SI = "time [s];velocity [rad/s];current [A]"
@@ -220,20 +223,18 @@ STATES = [
 
 
 @pytest.mark.parametrize(("state", "missing", "words"), STATES, ids=lambda value: getattr(value, "__name__", ""))
-def test_a_students_folder(state, missing, words, tmp_path, request, done):
-    request.getfixturevalue("quick" if missing else "numbers_alone")  # sources leave out what is missing
-    folder = as_a_student_has_them(tmp_path / "data")
+def test_a_students_folder(state, missing, words, tmp_path, done):
+    folder = as_a_student_has_them(tmp_path)
     state(folder)
-    printed = bench("lab", "--data", folder, "--out", tmp_path / "out")
-    assert printed.status == (1 if missing >= RECORDED else 0), printed.err
-    assert "Traceback" not in printed.out + printed.err
-    content = json.loads((tmp_path / "out" / "lab.json").read_text(encoding="utf-8"))
-    tasks = {task["key"]: task for task in content["tasks"]}
+    recordings, results = results_of(folder, SIMULATED - missing)
+    assert CourseReport(results, []).usable == (not missing >= RECORDED)
+    tasks = {task["key"]: task for task in json.loads(lab_json(results, recordings.rig.name))["tasks"]}
     reasons = {key: task["reason"] for key, task in tasks.items() if task["status"] == "not_done"}
-    assert set(reasons) == missing - SLOW, reasons
+    assert set(reasons) == missing, reasons
+    shown = "".join(rendered(first_numbers(results), 80).plain.split())
     for word in words:
         assert any(word in reason for reason in reasons.values()), (word, reasons)
-        assert "".join(word.split()) in "".join(printed.out.split()), word
+        assert "".join(word.split()) in shown, word
     for key in {"1", "6", "9", "10"} - missing:
         _is_as_without(tasks[key], done[key], same=state is not a_rig_of_another_motor)
 
@@ -245,6 +246,18 @@ def _is_as_without(task, reference, same):
         assert number["source"]
         if same and number["name"] in ("a", "b", "c", "J", "K_fric_w", "K_fric_0", "measured corner"):
             assert number["value"] == pytest.approx(reference[number["name"]].value, rel=2e-3), number["name"]
+
+
+@pytest.mark.parametrize(("state", "status"), [(two_samples, 0), (empty, 1)])
+def test_the_command_reports_a_folder_with_tasks_missing(state, status, tmp_path):
+    """Page and sources leave out what is missing; without any recording the status says so."""
+    state(as_a_student_has_them(tmp_path / "data"))
+    done = bench("lab", "--data", tmp_path / "data", "--out", tmp_path / "out")
+    assert (done.status, "Traceback" in done.out + done.err) == (status, False), done.err
+    assert "Not done: " in (tmp_path / "out" / "lab.html").read_text(encoding="utf-8")
+    scripts = {path.name for path in (tmp_path / "out" / "sources").glob("task*.py")}
+    assert "task03.py" in scripts and "task10.py" not in scripts
+    assert ("task09.py" in scripts) == (state is two_samples)
 
 
 def test_flights_of_several_kinds_are_one_and_the_same(tmp_path):

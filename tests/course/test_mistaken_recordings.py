@@ -1,4 +1,4 @@
-"""Recordings with a student's mistake, end to end by the command: no wrong number is said to be done, and why is shown.
+"""Recordings with a student's mistake, through every task: no wrong number is said to be done, and why is shown.
 
 Mistakes and their strengths are drawn at random; the truth is that of the simulated axis, which the folder lacks.
 """
@@ -17,8 +17,8 @@ from tests.course.mistakes import (
     FASTEST,
     MISTAKES,
     Folder,
-    done_by_the_command,
     recorded_in,
+    tasks_of,
     wrong_numbers,
 )
 
@@ -52,11 +52,11 @@ def truth():
 
 
 @pytest.mark.parametrize(("mistake", "seed"), CASES, ids=lambda value: getattr(value, "__name__", str(value)))
-def test_no_wrong_number_is_done(mistake, seed, recorded, truth, numbers_alone, tmp_path):
+def test_no_wrong_number_is_done(mistake, seed, recorded, truth, tmp_path):
     of = Folder(dict(recorded[0]), list(recorded[1]))
     mistake(of, np.random.default_rng(seed))
     of.write(tmp_path / "data")
-    tasks = done_by_the_command(tmp_path / "data", tmp_path / "out")
+    tasks = tasks_of(tmp_path / "data")
     assert wrong_numbers(tasks, truth) == {}
     reasons = [task["reason"] for task in tasks if task["status"] == "not_done"]
     assert reasons
@@ -76,19 +76,19 @@ def test_no_wrong_number_is_done(mistake, seed, recorded, truth, numbers_alone, 
     ],
     ids=lambda value: " and ".join(one.__name__ for one in value) if isinstance(value, tuple) else "",
 )
-def test_two_mistakes_are_both_named(pair, seed, recorded, truth, numbers_alone, tmp_path):
+def test_two_mistakes_are_both_named(pair, seed, recorded, truth, tmp_path):
     """One in what the other hides: a file that stands twice, a hole, exchanged columns, exchanged files."""
     of, random = Folder(dict(recorded[0]), list(recorded[1])), np.random.default_rng(seed)
     for mistake in pair:
         mistake(of, random)
     of.write(tmp_path / "data")
-    tasks = done_by_the_command(tmp_path / "data", tmp_path / "out")
+    tasks = tasks_of(tmp_path / "data")
     assert wrong_numbers(tasks, truth) == {}
     reasons = " ".join(task["reason"] for task in tasks if task["status"] == "not_done")
     assert [mistake.__name__ for mistake in pair if MISTAKES[mistake] not in reasons] == [], reasons
 
 
-def test_what_is_right_is_done_in_the_courses_words(recorded, truth, numbers_alone, tmp_path):
+def test_what_is_right_is_done_in_the_courses_words(recorded, truth, tmp_path):
     """Speeds of a resolution of 0.02 rad/s, and a current of 10 mA, as drives have them, are fine enough."""
     of = Folder(dict(recorded[0]), list(recorded[1]))
     of.tables = {name: np.round(rows / [1e-3, 0.02, 0.01]) * [1e-3, 0.02, 0.01] for name, rows in of.tables.items()}
@@ -96,7 +96,7 @@ def test_what_is_right_is_done_in_the_courses_words(recorded, truth, numbers_alo
     of.heads |= {BARE: "t / s;n / (1/min);Iq / A", FASTEST: "Zeit in s;Drehzahl in U/min;Strom in A"}
     of.write(tmp_path / "data")
     shutil.copy(tmp_path / "data" / "MaxAcc.csv", tmp_path / "data" / "MaxAcc_2.csv")
-    tasks = done_by_the_command(tmp_path / "data", tmp_path / "out")
+    tasks = tasks_of(tmp_path / "data")
     assert [task["reason"] for task in tasks if task["status"] == "not_done"] == []
     assert wrong_numbers(tasks, truth) == {}
     (run_up,) = [task for task in tasks if task["key"] == "10"]

@@ -1,4 +1,4 @@
-"""Recordings with mistakes drawn at random, of random strengths, on random axes, end to end by `bench lab --data`.
+"""Recordings with mistakes drawn at random, of random strengths, on random axes, through every task of the course.
 
     python -m tests.studies.mistaken --count 300 --seed 25 --out docs/mistaken.md
     python -m tests.studies.mistaken --count 20 --seed 3 --pairs 20
@@ -14,19 +14,13 @@ import argparse
 import json
 import tempfile
 from collections import defaultdict
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-from bench.course import course as course_module
-from bench.course import record
-from bench.course import report as course_report
 from bench.course.catapult import fly
-from tests.command import bench
-from tests.course.conftest import SLOW
-from tests.course.mistakes import MISTAKES, Folder, done_by_the_command, recorded_in, wrong_numbers
+from bench.course.record import record_class
+from tests.course.mistakes import MISTAKES, Folder, recorded_in, tasks_of, wrong_numbers
 from tests.studies.frame import table
 
 #: Axes that mistakes are spread over.
@@ -35,7 +29,7 @@ AXES = 10
 
 def axes(folder, seed):
     """Folders of a class' students with the truth of each, by task and name in the report's units."""
-    bench("lab", "--record", folder / "class", "--students", AXES, "--seed", seed)
+    record_class(folder / "class", AXES, seed, salt=seed)
     known = json.loads((folder / "class.truth.json").read_text(encoding="utf-8"))["students"]
     throw = dict(zip("abc", fly().coefficients.tolist(), strict=True))
     found = []
@@ -50,7 +44,7 @@ def axes(folder, seed):
     return found
 
 
-def tasks_of(folder, mistakes, random, place):
+def with_mistakes(folder, mistakes, random, place):
     """Tasks of the report on a student's recordings with mistakes in them."""
     tables, flights = recorded_in(folder)
     of = Folder(dict(tables), list(flights))
@@ -58,20 +52,16 @@ def tasks_of(folder, mistakes, random, place):
         mistake(of, random)
     of.write(place / "data")
     (place / "data" / "rig.toml").write_bytes((folder / "rig.toml").read_bytes())
-    return done_by_the_command(place / "data", place / "out")
+    return tasks_of(place / "data")
 
 
 def measured(count, pairs, seed, say=print):
     """Rows of the study: names of the mistakes, wrong numbers, and whether each cause is named."""
     rows = []
-    whole = course_report.task_section
-    with tempfile.TemporaryDirectory() as place, pytest.MonkeyPatch.context() as patch:
-        patch.setattr(record.secrets, "randbits", lambda bits: seed)
+    with tempfile.TemporaryDirectory() as place:
         students = axes(Path(place), seed)
-        patch.setattr(course_module, "TASKS", [task for task in course_module.TASKS if task.key not in SLOW])
-        patch.setattr(course_report, "task_section", lambda result: whole(replace(result, charts=())))
         sound = [
-            set(wrong_numbers(tasks_of(one, (), None, Path(place) / f"sound {k}"), true))
+            set(wrong_numbers(with_mistakes(one, (), None, Path(place) / f"sound {k}"), true))
             for k, (one, true) in enumerate(students)
         ]
         outside, numbers = sum(map(len, sound)), sum(len(true) for _, true in students)
@@ -80,7 +70,7 @@ def measured(count, pairs, seed, say=print):
             random = np.random.default_rng([seed, number])
             mistakes = random.choice([*MISTAKES], 1 if number < count else 2, replace=False)
             which = int(random.integers(len(students)))
-            tasks = tasks_of(students[which][0], mistakes, random, Path(place) / str(number))
+            tasks = with_mistakes(students[which][0], mistakes, random, Path(place) / str(number))
             wrong = set(wrong_numbers(tasks, students[which][1])) - sound[which]
             reasons = " ".join(task["reason"] for task in tasks if task["status"] == "not_done")
             named = [MISTAKES[mistake] in reasons for mistake in mistakes]
