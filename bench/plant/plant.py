@@ -29,6 +29,8 @@ from bench.rig.rig import Rig
 PlannedInputs: TypeAlias = Callable[[int, int], Array]
 #: Effects with which a drive cannot make the friction.
 OF_MECHANICS = (Friction, Bristles, Coupling)
+#: Bytes of inputs and states that a simulation keeps at once, however long it is.
+BLOCK_BYTES = 8 * 2**20
 DIVERGED = "the simulation diverged: lower the drive's gains or its control period"
 
 
@@ -46,6 +48,7 @@ class ClosedLoop:
         every: ticks from one that is recorded to the next.
         since: first tick from the start of the recording, in which the time of effects counts - s.
         began: start of that recording from that of the first, of several that are joined - s.
+        block_bytes: of inputs and states that are kept at once.
     """
 
     axis: AxisModel
@@ -58,6 +61,7 @@ class ClosedLoop:
     every: int = 1
     since: float = 0.0
     began: float = 0.0
+    block_bytes: int = BLOCK_BYTES
 
     @property
     def ticks(self) -> int:

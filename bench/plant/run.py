@@ -23,8 +23,6 @@ from bench.plant.stepped_effects import SteppedEffects
 
 Progress = Callable[[float], None]
 
-#: Bytes of inputs and states that a simulation keeps at once, however long it is.
-BLOCK_BYTES = 8 * 2**20
 #: Loops that take no more time side by side than one after the other.
 MANY = 3
 #: Ticks between two reports of progress.
@@ -95,7 +93,7 @@ def run_native(loop: ClosedLoop) -> States:
     qpos, qvel, torque = 1 + joint.qposadr[0], 1 + model.nq + joint.dofadr[0], model.sensor(TORQUE).adr[0]
     time = loop.time[::every]
     found = np.full((3, time.size), np.nan)
-    for start, stop in _blocks(loop.ticks, 8 * (model.nu + state.size + model.nsensordata)):
+    for start, stop in _blocks(loop, 8 * (model.nu + state.size + model.nsensordata)):
         *held, effort, known = loop.controller(start, stop).T
         planned, inputs = np.column_stack([*held, effort - known]), np.zeros((1, stop - start, model.nu))
         inputs[0, :, first : first + planned.shape[1]] = planned
@@ -145,7 +143,7 @@ def run_side_by_side(loops: Sequence[ClosedLoop]) -> list[States]:
     effects = SteppedEffects([loop.axis for loop in loops], model.opt.timestep, bristles >= 0)
     memory, found = effects.start(velocity.copy()), np.empty((4, -(-first.ticks // every), len(loops)))
     controllers = [loop.controller for loop in loops if not isinstance(loop.controller, FollowReferences)]
-    for k, planned in enumerate(_planned(controllers, first.ticks)):
+    for k, planned in enumerate(_planned(controllers, first)):
         here, speed, motor = position.copy(), velocity.copy(), planned[:, -2]
         acts = effects.act(memory, since + first.time[k], here, speed, motor, began)
         flows, acting, applied[:], friction, inertia, memory = acts
@@ -196,7 +194,7 @@ class _TickedAxis:
         if isinstance(loop.controller, FollowReferences):
             self._drive, self._planned = CascadeDrive(loop.controller, loop.axis), iter(())
         else:
-            self._drive, self._planned = None, _planned_of(loop.controller, loop.ticks)
+            self._drive, self._planned = None, _planned_of(loop.controller, loop)
         self._since, self._began = loop.since, loop.began
         self._effects = None if loop.axis.all_native else SteppedEffects([loop.axis], self._step, bristles >= 0)
         self._memory = self._effects and self._effects.start(loop.velocity)
@@ -238,19 +236,19 @@ class _TickedAxis:
         return flows, acting
 
 
-def _planned_of(controller: PlannedInputs, ticks: int) -> Iterator[list[float]]:
+def _planned_of(controller: PlannedInputs, loop: ClosedLoop) -> Iterator[list[float]]:
     """Those of a lone loop, in numbers."""
-    for start, stop in _blocks(ticks, 256):
+    for start, stop in _blocks(loop, 256):
         yield from controller(start, stop).tolist()
 
 
-def _planned(controllers: Sequence[PlannedInputs], ticks: int) -> Iterator[Array]:
+def _planned(controllers: Sequence[PlannedInputs], loop: ClosedLoop) -> Iterator[Array]:
     """Planned set-points, effort and known torque of loops (loops, inputs) at each tick."""
-    for start, stop in _blocks(ticks, 64 * len(controllers)):
+    for start, stop in _blocks(loop, 64 * len(controllers)):
         yield from np.stack([planned(start, stop) for planned in controllers], axis=1)
 
 
-def _blocks(ticks: int, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
+def _blocks(loop: ClosedLoop, bytes_per_tick: int) -> Iterator[tuple[int, int]]:
     """First tick of each block and the one after its last."""
-    size = max(1, BLOCK_BYTES // bytes_per_tick)
-    return ((start, min(start + size, ticks)) for start in range(0, ticks, size))
+    size = max(1, loop.block_bytes // bytes_per_tick)
+    return ((start, min(start + size, loop.ticks)) for start in range(0, loop.ticks, size))

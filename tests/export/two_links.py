@@ -16,7 +16,7 @@ from tests.docs.pages import run_commands
 GRAVITY = 9.81
 #: Upper arm: mass, length, centre, inertia about it; forearm: the same without length.
 M1, L1, C1, I1 = 1.3, 0.35, 0.16, 0.014
-M2, C2, I2 = 0.8, 0.15, 0.006
+M2, C2, I2 = FOREARM = 0.8, 0.15, 0.006
 
 
 @dataclass(frozen=True)
@@ -58,21 +58,23 @@ def waves(time, amplitudes, frequencies, phases):
     )
 
 
-def shoulder_torque(q1, w1, a1, q2, w2, a2):
+def shoulder_torque(q1, w1, a1, q2, w2, a2, forearm=FOREARM):
     """What the shoulder has to make for a motion - N*m - (n,)."""
-    coupled = M2 * L1 * C2
-    m12 = I2 + M2 * C2**2 + coupled * np.cos(q2)
-    m11 = I1 + M1 * C1**2 + M2 * L1**2 + coupled * np.cos(q2) + m12
-    falls = (M1 * C1 + M2 * L1) * GRAVITY * np.sin(q1) + M2 * C2 * GRAVITY * np.sin(q1 + q2)
+    mass, centre, inertia = forearm
+    coupled = mass * L1 * centre
+    m12 = inertia + mass * centre**2 + coupled * np.cos(q2)
+    m11 = I1 + M1 * C1**2 + mass * L1**2 + coupled * np.cos(q2) + m12
+    falls = (M1 * C1 + mass * L1) * GRAVITY * np.sin(q1) + mass * centre * GRAVITY * np.sin(q1 + q2)
     return m11 * a1 + m12 * a2 - coupled * np.sin(q2) * (2.0 * w1 * w2 + w2**2) + falls
 
 
-def elbow_torque(q1, w1, a1, q2, w2, a2):
+def elbow_torque(q1, w1, a1, q2, w2, a2, forearm=FOREARM):
     """What the links ask of the elbow - N*m - (n,)."""
-    coupled = M2 * L1 * C2
-    m12 = I2 + M2 * C2**2 + coupled * np.cos(q2)
-    falls = M2 * C2 * GRAVITY * np.sin(q1 + q2)
-    return m12 * a1 + (I2 + M2 * C2**2) * a2 + coupled * np.sin(q2) * w1**2 + falls
+    mass, centre, inertia = forearm
+    coupled = mass * L1 * centre
+    m12 = inertia + mass * centre**2 + coupled * np.cos(q2)
+    falls = mass * centre * GRAVITY * np.sin(q1 + q2)
+    return m12 * a1 + (inertia + mass * centre**2) * a2 + coupled * np.sin(q2) * w1**2 + falls
 
 
 def motion(duration=12.0, period=1e-3, phase=0.0):

@@ -42,19 +42,12 @@ def test_more_inertia_of_a_link_is_that_about_its_joint(tmp_path):
 
 def carried(columns):
     """The same log with a point of mass at the lower end of the forearm, by the links' equations of a heavier one."""
-    import tests.export.two_links as arm
-
     _, shoulder, elbow = motion()
     whole, first = M2 + MASS, M2 * C2 + MASS * DOWN
-    heavier = {"M2": whole, "C2": first / whole}
-    heavier["I2"] = I2 + M2 * C2**2 + MASS * DOWN**2 - first**2 / whole
-    before = shoulder_torque(*shoulder, *elbow), elbow_torque(*shoulder, *elbow)
-    with pytest.MonkeyPatch.context() as patch:
-        for name, value in heavier.items():
-            patch.setattr(arm, name, value)
-        after = arm.shoulder_torque(*shoulder, *elbow), arm.elbow_torque(*shoulder, *elbow)
-    for joint, old, new in zip(("shoulder", "elbow"), before, after, strict=True):
-        columns[f"{joint}.torque [N*m]"] = columns[f"{joint}.torque [N*m]"] + new - old
+    heavier = whole, first / whole, I2 + M2 * C2**2 + MASS * DOWN**2 - first**2 / whole
+    for joint, torque in (("shoulder", shoulder_torque), ("elbow", elbow_torque)):
+        more = torque(*shoulder, *elbow, forearm=heavier) - torque(*shoulder, *elbow)
+        columns[f"{joint}.torque [N*m]"] = columns[f"{joint}.torque [N*m]"] + more
     return columns
 
 

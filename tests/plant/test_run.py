@@ -12,12 +12,13 @@ from bench.plant.plant import Plant
 from bench.plant.run import MANY, run, run_loops, run_native, run_ticked
 from tests.plant.test_drive import reversals
 
+STRIBECK = Present.of("stribeck_friction", {"static_friction": 0.2, "stribeck_velocity": 1.0})
+
 
 def test_native_and_ticked_loops_run_in_one_call(plant):
     references = reversals(duration=0.2)
     planned = plant.native_loop(references)
-    effect = Present.of("stribeck_friction", {"static_friction": 0.2, "stribeck_velocity": 1.0})
-    rising = dataclasses.replace(plant, axis=plant.axis.with_effects([effect])).native_loop(references)
+    rising = dataclasses.replace(plant, axis=plant.axis.with_effects([STRIBECK])).native_loop(references)
     assert (planned.native, rising.native) == (True, False)
     expected = run_native(planned), run_ticked(rising), run_native(planned)
     for states, alone in zip(run_loops([planned, rising, planned]), expected, strict=True):
@@ -42,11 +43,21 @@ def test_loops_side_by_side_move_as_each_alone_to_the_last_bit(plant):
     assert len({states.velocity[-1] for states in run_loops(loops)}) == MANY
 
 
+@pytest.mark.parametrize(("effects", "count"), [((), 1), ((STRIBECK,), 1), ((STRIBECK,), MANY)])
+def test_blocks_move_as_the_whole(plant, effects, count):
+    """Blocks end between samples of three ticks, and friction has the solver start from where it was."""
+    loop = dataclasses.replace(plant, axis=plant.axis.with_effects([*effects])).native_loop(reversals(duration=0.2))
+    whole = dataclasses.replace(loop, every=3)
+    (expected, *_), (found, *_) = (
+        run_loops([dataclasses.replace(whole, block_bytes=size)] * count) for size in (whole.block_bytes, 777)
+    )
+    np.testing.assert_array_equal(np.stack(found.signals), np.stack(expected.signals))
+
+
 def test_one_that_diverges_leaves_those_beside_it(plant):
     references, loops = reversals(duration=0.2), []
     for pull in (0.1, 1e12, 0.2):
-        stribeck = Present.of("stribeck_friction", {"static_friction": 0.2, "stribeck_velocity": 1.0})
-        effects = [stribeck, Present.of("unbalance", {"amplitude": pull, "phase": 0.0})]
+        effects = [STRIBECK, Present.of("unbalance", {"amplitude": pull, "phase": 0.0})]
         loops.append(dataclasses.replace(plant, axis=plant.axis.with_effects(effects)).native_loop(references))
     assert [one.diverged for one in run_loops(loops)] == [False, True, False]
 

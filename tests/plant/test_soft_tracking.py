@@ -111,17 +111,6 @@ def test_a_motion_that_needs_no_torque_is_kept_to_the_last_digit():
 RIPPLE = ("torque_ripple", {"relative_amplitude": 0.3, "harmonic": 3.0})
 
 
-@pytest.mark.parametrize("effects", [(), (RIPPLE,)], ids=["native", "ticked"])
-def test_blocks_move_as_the_whole(effects, monkeypatch):
-    """Blocks end between samples, friction has the solver start from where it was."""
-    time = 1.5 * TIME  # three steps a sample
-    signals = {"position": 0.3 * np.sin(20.0 * time), "velocity": 6.0 * np.cos(20.0 * time)}
-    swinging = Trace(time, signals, {"position": "rad", "velocity": "rad/s"}, "")
-    whole = moving(swinging, *effects, friction=0.02)
-    monkeypatch.setattr("bench.plant.run.BLOCK_BYTES", 777)
-    np.testing.assert_array_equal(moving(swinging, *effects, friction=0.02), whole)
-
-
 def test_models_side_by_side_move_as_each_alone():
     """Two of them as long as the others or shorter, on one batch; native ones beside them."""
     long, short = at_rest(), at_rest().between(0.0, 1.7)
