@@ -47,7 +47,7 @@ class Motion:
 Torque = Callable[[Motion], np.ndarray]
 
 
-def moved(duration: float = 5.0, sines=SINES, drift: float = 0.0, period: float = 1e-3) -> Motion:
+def moved(duration: float = 4.0, sines=SINES, drift: float = 0.0, period: float = 1e-3) -> Motion:
     """A sum of sines and a constant speed `drift` - rad/s."""
     time = np.arange(round(duration / period)) * period
     position, velocity, acceleration = drift * time, np.full_like(time, drift), np.zeros_like(time)

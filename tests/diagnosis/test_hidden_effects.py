@@ -22,7 +22,7 @@ HIDDEN = ((), *((name,) for name in NAMED), ("vibration",))
 @pytest.fixture(scope="module")
 def recordings():
     """Two recordings by what was hidden."""
-    rng, seconds, both = np.random.default_rng(3), 6.0, {}
+    rng, seconds, both = np.random.default_rng(3), 4.0, {}
     motions = [random_motion(PLAIN.axis, np.random.default_rng(k), seconds) for k in range(2)]
     for names in HIDDEN:
         effects = tuple((KINDS | OUTSIDE)[name].draw(PLAIN.axis, 0.6, rng, seconds) for name in names)

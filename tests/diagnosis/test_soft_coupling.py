@@ -26,7 +26,7 @@ SEED, RIGID = 5, "rigid"
 def recorded():
     """A recording by the name of the effect in it: of a rigid axis, too."""
     effects = {COUPLING.name: (COUPLING,), BRISTLES.name: (BRISTLES,), RIGID: ()}
-    motion = random_motion(QUIET.axis, np.random.default_rng(SEED), 6.0)
+    motion = random_motion(QUIET.axis, np.random.default_rng(SEED), 4.0)
     return QUIET.record(effects, motion, SEED, dict.fromkeys(effects, 0))
 
 

@@ -106,7 +106,7 @@ def test_tables_are_ranked_by_blocks_that_they_were_not_fitted_to():
 
 def synthetic():
     """The axis with the bump, twice, and its rig."""
-    one, other = (recorded(lambda _, position, __: bump(position), 8.0, seed) for seed in range(2))
+    one, other = (recorded(lambda _, position, __: bump(position), 5.0, seed) for seed in range(2))
     return one, RIG, other
 
 

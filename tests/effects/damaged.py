@@ -30,7 +30,8 @@ RIG = Rig.of(
         },
     }
 )
-SECONDS = 6.0
+#: A recursive filter of one sample is found in twice as many.
+SECONDS = 3.0
 SINGLES = {
     "quadratic_drag": (2.5e-5,),
     "cogging_torque": (0.06, 6.0, 0.4),
@@ -47,10 +48,10 @@ DIGIT = 0.02
 
 
 @cache
-def recordings() -> dict[str, Trace]:
+def recordings(seconds: float = SECONDS) -> dict[str, Trace]:
     """One without an effect, under the name `null`, and one of each single."""
     cases = {"null": (), **{name: (KINDS[name](*values),) for name, values in SINGLES.items()}}
-    return PLAIN.record(cases, random_motion(AXIS, np.random.default_rng(11), SECONDS), 11)
+    return PLAIN.record(cases, random_motion(AXIS, np.random.default_rng(11), seconds), 11)
 
 
 def filtered(current: np.ndarray, time: np.ndarray, lag: float = 1e-3) -> np.ndarray:
@@ -91,9 +92,9 @@ def drifting(current: np.ndarray, time: np.ndarray, drift: float = 0.02) -> np.n
 
 
 @cache
-def diagnosed(name, damage=None):
+def diagnosed(name, damage=None, seconds=SECONDS):
     """Diagnosis of a recording, damaged."""
-    trace = recordings()[name]
+    trace = recordings(seconds)[name]
     if damage is not None:
         trace = trace.with_signals({"current": damage(trace["current"], trace.time)}, {})
     return diagnose(trace, RIG)

@@ -7,7 +7,7 @@ from bench.effects.current_filter_lag import EFFECT
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from tests.effects.axes import PERIOD, VALUES, Reversals, model, plant
-from tests.effects.damaged import AXIS, SINGLES, diagnosed, filtered, inertia_holds, late, names
+from tests.effects.damaged import AXIS, SECONDS, SINGLES, diagnosed, filtered, inertia_holds, late, names
 
 NAME = "current_filter_lag"
 #: Of a recursive filter of one sample's time constant: the mean of its impulse response, 1/(e - 1) samples - s.
@@ -33,7 +33,7 @@ def test_the_axis_does_not_feel_it():
 @pytest.mark.slow  # the lag by itself is among `test_diagnosed.py`
 @pytest.mark.parametrize("single", [None, *SINGLES])
 def test_a_filter_of_a_millisecond_keeps_the_names_of_singles(single):
-    found = diagnosed(single or "null", filtered)
+    found = diagnosed(single or "null", filtered, 2.0 * SECONDS)
     assert names(found) == {NAME, single} - {None}
     (lag,) = [effect.parameters["time_constant"] for effect in found.effects if effect.name == NAME]
     assert lag.value == pytest.approx(DELAY, abs=AXIS.control_period)

@@ -12,7 +12,7 @@ RECORDINGS = 120
 
 def test_correlations_are_those_of_repeated_recordings():
     rng = np.random.default_rng(4)
-    plain = recording(np.random.default_rng(3), torque_noise=0.0, velocity_noise=0.0, bias=15.0, duration=3.0)
+    plain = recording(np.random.default_rng(3), torque_noise=0.0, velocity_noise=0.0, bias=15.0, duration=2.0)
     found = []
     for _ in range(RECORDINGS):
         noisy = {

@@ -22,7 +22,7 @@ def coverage(count, seed, **what):
 
 @pytest.mark.parametrize("correlation", [0.0, 0.95])
 def test_intervals_cover(correlation):
-    share = coverage(60, 20, duration=4.0, correlation=correlation)
+    share = coverage(60, 20, duration=2.0, correlation=correlation)
     print(f"\ncoverage of nominal 95 % at correlation {correlation}: {share} (J, viscous, Coulomb)")
     assert (share > 0.95 - 3.0 * np.sqrt(0.95 * 0.05 / 60)).all()
 

@@ -45,7 +45,7 @@ def test_inertia_stays_unbiased_where_speed_noise_rivals_the_acceleration():
     truth, ratio, plain = Truth(), [], []
     rng = np.random.default_rng(3)
     for _ in range(40):
-        trace = recording(rng, truth, speed=0.05, velocity_noise=0.1, torque_noise=1e-4, duration=8.0)
+        trace = recording(rng, truth, speed=0.05, velocity_noise=0.1, torque_noise=1e-4, duration=4.0)
         found = identify(trace, RIG, cutoff=60.0)
         ratio.append(found["moment_of_inertia"].value / truth.inertia)
         plain.append(identify_as_plain(trace) / truth.inertia)

@@ -13,7 +13,7 @@ from bench.fit.rows import Rows
 from tests.diagnosis.constructed import COULOMB, RIG, moved, recorded
 
 RISE, SPEED, AMPLITUDE = 0.06, 6.0, 1.5
-MOTION = moved(6.0)
+MOTION = moved(4.0)
 
 
 def frictions(duration, motion):

@@ -81,7 +81,7 @@ AXES = (
 def test_traces_of_the_independent_integrator_give_their_truth(tmp_path):
     noise = {"velocity": Noise(white=0.03), "current": Noise(white=8e-3)}
     sensors = Sensors(**noise, encoder_resolution=2e-5, sample_period=1e-3)
-    motions = [random_motion(axis, np.random.default_rng(k), 7.0) for k, axis in enumerate(AXES)]
+    motions = [random_motion(axis, np.random.default_rng(k), 4.0) for k, axis in enumerate(AXES)]
     recorded = integrate(AXES, motions, [()] * len(AXES), [sensors] * len(AXES), seed=2, longest_step=STEP)
     inside = []
     for axis, run in zip(AXES, recorded, strict=True):

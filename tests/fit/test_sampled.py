@@ -1,5 +1,7 @@
 """Motors whose voltage is held for a good part of their time constant, stepped by the midpoint rule in fine steps."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -23,6 +25,7 @@ class Steps:
         return self.levels[int(time / 0.35)]
 
 
+@cache
 def run(constant, voltage, late=0):
     """A motor of a time constant - s -, by its inertia; `late`: samples by which its voltage is recorded too early."""
     motor = {**MOTOR, "inertia": constant * 0.05**2 / 1.2}
@@ -117,7 +120,7 @@ def test_a_motor_with_many_samples_is_diagnosed():
 def test_a_drive_that_controls_its_current_is_as_ever(held):
     """Its voltage rises while a current is held: nothing between the samples is unknown."""
     inertia, rng, fine, every = 5.4e-5, np.random.default_rng(1), 1e-4, 100
-    time = fine * np.arange(200_000)
+    time = fine * np.arange(100_000)
     waves = ((60.0, 0.5, 0.0), (30.0, 1.3, 1.0), (10.0, 3.1, 2.0))
     asked = sum(size * np.sin(2.0 * np.pi * hertz * time + phase) for size, hertz, phase in waves)
     wanted, kept = np.gradient(asked, fine), np.empty((2, time.size))

@@ -37,7 +37,7 @@ def inside(parameter, value):
 def one_way(axis, rng, side):
     """Speeds of one direction in random order, 0.3 s each."""
     points, acceleration = [(0.0, 0.0)], 0.4 * axis.peak_torque / axis.inertia
-    for speed in (*rng.permutation(np.linspace(0.1, 0.9, 9)), 0.0):
+    for speed in (*rng.permutation(np.linspace(0.1, 0.9, 5)), 0.0):
         start = points[-1][0] + abs(side * axis.top_speed * speed - points[-1][1]) / acceleration
         points += [(start + each, side * axis.top_speed * speed) for each in (0.0, 0.3)]
     return Motion((Ramps(points, 0.02),))
@@ -175,7 +175,7 @@ def drawn(rng):
 def test_the_next_recording_lies_where_it_was_expected_and_the_axis_in_the_joint_interval(count, draws):
     rng, next_one, mean, narrow = np.random.default_rng(9), [], [], []
     for _ in range(draws):
-        *runs, following = (recording(rng, drawn(rng), duration=3.0) for _ in range(count + 1))
+        *runs, following = (recording(rng, drawn(rng), duration=1.5) for _ in range(count + 1))
         found, after = identify(runs, RIG, CUTOFF), identify(following, RIG, CUTOFF)
         ranges = [found.between[name].predictive95 for name in NAMES]
         next_one.append([low <= after[n].value <= high for n, (low, high) in zip(NAMES, ranges, strict=True)])
@@ -195,7 +195,7 @@ def test_the_next_recording_lies_where_it_was_expected_and_the_axis_in_the_joint
 def test_recordings_that_are_alike_leave_the_joint_interval_as_narrow_as_their_noise(draws):
     rng, held, width, warned = np.random.default_rng(10), [], [], 0
     for _ in range(draws):
-        runs = [recording(rng, duration=3.0) for _ in range(3)]
+        runs = [recording(rng, duration=1.5) for _ in range(3)]
         found = identify(runs, RIG, CUTOFF)
         held.append([inside(found[n], value) for n, value in zip(NAMES, Truth().values, strict=True)])
         width.append([found[n].std_error / found.recordings[0].parameters[n].std_error for n in NAMES])
