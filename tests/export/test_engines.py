@@ -5,7 +5,6 @@ tests/export/test_engines.py` (minutes for the first time, as kernels are compil
 """
 
 from dataclasses import replace
-from time import perf_counter
 
 import array_api_strict
 import mujoco
@@ -202,19 +201,13 @@ def test_worlds_of_mujoco_warp_move_as_on_the_cpu(worlds):
     model, state = mjw.put_model(simulation), mjw.put_data(simulation, data, nworld=worlds)
     simulations = bench.Effects(ARM).on_warp(simulation, model, state)
     group = np.arange(worlds) % SIZES.size
-    off, taken = 0.0, []
+    off = 0.0
     for k in range(STEPS):
         state.ctrl.assign(controls(simulation, k, simulation.opt.timestep)[group].astype(np.float32))
-        before = perf_counter()
         simulations.step()
-        taken.append(perf_counter() - before)
         off = max(off, float(np.abs(state.qvel.numpy() - expected[k][group]).max()))
     relative = off / np.abs(expected).max()
-    start = perf_counter()
-    for _ in range(50):
-        mjw.step(model, state)
-    bare = (perf_counter() - start) / 50
-    print(f"\n{worlds} worlds: {relative:.1e} of the CPU's; a step {np.median(taken) / bare:.2f} bare ones")
+    print(f"\n{worlds} worlds: {relative:.1e} of the CPU's")
     assert relative < 1e-3
 
 
