@@ -31,7 +31,8 @@ OTHER_WORDS = {
     "dt": "sample_period", "t": "time", "to_pandas": "to_frame", "to_dataframe": "to_frame", "to_csv": "save",
     "read_csv": "read", "load": "read", "version": "__version__", "report": "summary", "to_dict": "model_dump",
     "residuals": "torque_residuals", "rsquared": "explained", "score": "explained", "fittedvalues": "fitted_values",
-    "cov": "covariance", "corr": "correlation",
+    "cov": "covariance", "corr": "correlation", "coef_": "parameters", "resid": "residuals",
+    "from_dataframe": "from_arrays", "from_pandas": "from_arrays", "from_dict": "from_arrays", "from_arrays": "of",
 }  # fmt: skip
 #: Methods of a data frame that a result has through its own.
 OF_FRAMES = frozenset(("describe", "head", "sample", "tail"))
@@ -39,15 +40,26 @@ OF_FRAMES = frozenset(("describe", "head", "sample", "tail"))
 INSTEAD = {
     "before": ".torque and .velocity, each with .identify (before, after) and .holdout",
     "compare": "bench.check(recording, rig, baseline)",
+    "conf_int": ".to_frame() has low and high, and .ci95 of each parameter",
+    "effects": "bench.list_effects() of the catalogue, bench.diagnose(recording, rig).effects of an axis",
     "error": ".velocity_residuals and .torque_residuals",
+    "from_csv": "bench.read(path)",
+    "iloc": "[first:last], or .to_frame().iloc",
+    "load": "bench.read(path) of a recording, bench.load_rig(path) of a rig",
+    "loc": ".between(start, stop), or .to_frame().loc",
     "plot": ".plot() of a trace or a result",
+    "plot_forest": "bench.check(recording, rig, baseline).plot()",
     "predict": "bench.replay(found, recording, rig)",
     "replay": "bench.replay(found, recording, rig)",
     "simulate": "bench.replay(found, recording, rig)",
+    "color=": "the axes that plot() returns: axes.lines[0].set_color(...)",
+    "to_toml": ".to_dict(), whose tables bench.Rig(**tables) takes",
     "kt=": 'rig={"motor": {"torque_constant": kt}}',
     "time=": 'all signals in one, {"time": ..., "velocity": ...}',
     "torque_constant=": 'rig={"motor": {"torque_constant": ...}}',
     "verbose=": "print(result), .checks, .warnings",
+    "x=": 'plot("velocity"): all signals are over time',
+    "y=": 'plot("velocity")',
 }
 _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 
@@ -130,7 +142,7 @@ def nearest(name: str, names: list[str]) -> str:
 
 def with_known_arguments(function: Callable[P, T]) -> Callable[P, T]:
     """The function, whose TypeError for an argument that it does not have is one line with those that it has."""
-    known = [*inspect.signature(function).parameters]
+    known = [name for name in inspect.signature(function).parameters if name != "self"]
 
     @wraps(function)
     def called(*args: P.args, **given: P.kwargs) -> T:

@@ -5,13 +5,14 @@ The public package `bench` provides the renderer, as it is above both results an
 
 from __future__ import annotations
 
+from abc import ABCMeta
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeAlias
 
 from bench.errors import InputError
 from bench.files import write_text
-from bench.names import OF_FRAMES, instead, same_as
+from bench.names import OF_FRAMES, instead, same_as, with_known_arguments
 
 if TYPE_CHECKING:
     import numpy as np
@@ -63,7 +64,23 @@ class Renderer(Protocol):
         ...
 
 
-class ByName:
+class Named(ABCMeta):
+    """Of classes whose constructors are found under names that other libraries have for them."""
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(cls, name: str) -> object:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            kinds = [kind for kind in cls.__mro__ if not kind.__module__.startswith("pydantic")]
+            own = [each for kind in kinds for each, of in vars(kind).items() if isinstance(of, classmethod)]
+            known = [each for each in own if not each.startswith("_")]
+            if (same := same_as(name, known)) is not None:
+                return getattr(cls, same)
+            raise AttributeError(f"{cls.__name__} has no '{name}'{instead(name, known)}")
+
+
+class ByName(metaclass=Named):
     """What `[name]` gives is an attribute, too, as is what other libraries call its attributes."""
 
     if not TYPE_CHECKING:  # a checker of types shall find attributes that are mistyped
@@ -93,6 +110,7 @@ class Shown(ByName):
 
     renderer: ClassVar[staticmethod[[], Renderer]]
 
+    @with_known_arguments
     def plot(self, *names: str, ax: Axes | None = None, figsize: Size | None = None) -> Any:  # noqa: ANN401
         """Draw it, and return the axes of matplotlib: one, or an array of several.
 
@@ -142,9 +160,12 @@ class Presented(Shown):
             write_text(path, page)
         return page
 
-    def to_json(self) -> str:
-        """All of it as JSON, as `--json` writes it."""
-        return self.renderer().json(self)
+    def to_json(self, path: str | Path | None = None) -> str:
+        """All of it as JSON, as `--json` writes it, written into a file if one is given."""
+        text = self.renderer().json(self)
+        if path is not None:
+            write_text(path, text + "\n")
+        return text
 
     def to_dict(self) -> dict[str, Any]:
         """The same as numbers and texts."""

@@ -210,6 +210,10 @@ bench.Rig(**rig.to_dict()).motor == rig.motor and bench.Rig(motor={"force_consta
 "cogging_torque" in bench.list_effects() and len(bench.load("bare.csv")) == len(df)
 bench.diagnose(cogged, tables, effects=["quadratic_drag"]).names == []
 bench.simulate("lab.toml", "fast_reversals", duration=2.0).trace.duration == 2.0
+bench.Trace.from_dataframe(df)["velocity"].max() == bench.Trace.from_dict(si)["velocity"].max() == df.velocity.max()
+bench.Rig.from_dict({"name": "x", "kind": "rotary", **tables}).motor == rig.motor
+est.coef_ == est.parameters and np.array_equal(est.resid, est.residuals)
+json.loads(Path("e.json").read_text()) == est.to_dict() if est.to_json("e.json") else False
 "lambda" not in help_of(bench.diagnose) and "chance=" not in help_of(bench.diagnose)
 """.strip().splitlines()
 
@@ -251,6 +255,18 @@ ABSENT = {
     "bench.simulate('lab.toml', duration=1e9)": r"duration: found 1e\+09 s; allowed: 0\.00025 s to ",
     "trace.resample(0)": r"resample\(rate\): found 0 Hz; allowed: above 0 Hz",
     "bench.Estimate.load('estimated').covariance": r"correlation: found an estimate from a file; allowed",
+    "bench.Rig.load('rig.toml')": r"^Rig has no 'load'; instead: .*bench\.load_rig\(path\) of a rig; allowed: of$",
+    "bench.Trace.from_csv('bare.csv')": r"^Trace has no 'from_csv'; instead: bench\.read\(path\); allowed: from_arrays",
+    "bench.Estimate.from_file('estimated')": r"^Estimate has no 'from_file'; allowed: load",
+    "bench.effects()": r"bench\.effects is a package; instead: bench\.list_effects\(\)",
+    "est.effects": r"instead: bench\.list_effects\(\) of the catalogue, bench\.diagnose",
+    "est.conf_int()": r"Estimate has no 'conf_int'; instead: \.to_frame\(\) has low and high",
+    "est.plot(ax=ax, color='red')": r"plot\(\) has no argument 'color'; instead: the axes.*; allowed: names, ax",
+    "trace.plot(x='time', y='velocity')": r"plot\(\) has no argument 'x'; instead: plot\(\"velocity\"\)",
+    "trace.loc[0.5:1.0]": r"Trace has no 'loc'; instead: \.between\(start, stop\)",
+    "trace.iloc[:100]": r"Trace has no 'iloc'; instead: \[first:last\]",
+    "rig.to_toml('r.toml')": r"Rig has no 'to_toml'; instead: \.to_dict\(\)",
+    "bench.plot_forest([est, est])": r"instead: bench\.check\(recording, rig, baseline\)\.plot\(\)",
     "bench.load('rig.toml')": r"rig\.toml: found a TOML file; allowed: a recording; .* bench\.load_rig take a rig",
 }
 
