@@ -64,7 +64,7 @@ class Renderer(Protocol):
         ...
 
 
-class Named(ABCMeta):
+class Constructed(ABCMeta):
     """Of classes whose constructors are found under names that other libraries have for them."""
 
     if not TYPE_CHECKING:
@@ -80,7 +80,7 @@ class Named(ABCMeta):
             raise AttributeError(f"{cls.__name__} has no '{name}'{instead(name, known)}")
 
 
-class ByName(metaclass=Named):
+class ByName(metaclass=Constructed):
     """What `[name]` gives is an attribute, too, as is what other libraries call its attributes."""
 
     if not TYPE_CHECKING:  # a checker of types shall find attributes that are mistyped

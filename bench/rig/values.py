@@ -20,16 +20,16 @@ from pydantic_core import PydanticCustomError
 from bench.axis_kind import ROTARY
 from bench.errors import InputError
 from bench.names import meant
-from bench.presented import ByName, Named
+from bench.presented import ByName, Constructed
 from bench.units import parse_with_tolerance
 from bench.validated import refused
 
 
-class NamedTable(Named, type(BaseModel)):
+class ConstructedTable(Constructed, type(BaseModel)):
     """The kind of a table of a rig, which is both."""
 
 
-class RigTable(ByName, BaseModel, metaclass=NamedTable):
+class RigTable(ByName, BaseModel, metaclass=ConstructedTable):
     """A table of a rig file: frozen, and an unknown key in it is an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
