@@ -5,14 +5,16 @@ name of the catalogue does, since what is made of torque is made of the modelled
 """
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 from bench.baseline.observe import observe
-from bench.diagnosis import add as adding
-from bench.diagnosis.diagnosis import diagnose
+from bench.diagnosis.add import add
+from bench.diagnosis.diagnosis import decided, diagnose, show
+from bench.diagnosis.policy import POLICY
+from bench.diagnosis.recordings import Recordings
 from bench.effects.catalogue import catalogue
 from bench.errors import UndeterminedError
 from bench.plant.model_file import load_model
@@ -33,6 +35,25 @@ STIFFNESS = 0.02
 EXCLUDED = frozenset(catalogue()) - {"torsion_spring"}
 
 
+@dataclass(frozen=True)
+class Lacking(Recordings):
+    """Recordings in which the interval of the inertia contains zero with any effect, or without one, too."""
+
+    without_effects: bool = False
+
+    def base(self, numbers):
+        found = super().base(numbers)
+        inertia = found["moment_of_inertia"]
+        lacks = self.without_effects or numbers.fitted.terms
+        return found | {"moment_of_inertia": inertia.widened(2.0 * inertia.value)} if lacks else found
+
+
+def diagnosed(recordings, excluded=EXCLUDED, policy=POLICY):
+    """As `diagnose` does it with recordings."""
+    recordings, bare, suspects = decided(recordings, excluded, policy)
+    return show(bare, add(recordings, suspects))
+
+
 @pytest.fixture(scope="module")
 def recorded():
     """Rig, and the axis on a spring."""
@@ -45,9 +66,7 @@ def recorded():
 def lacking(recorded):
     """Diagnosed where no fit with a name determines the inertia."""
     rig, trace = recorded
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        refuse(monkeypatch, lambda fitted: bool(fitted.terms))
-        return diagnose(trace, rig, excluded=EXCLUDED)
+    return diagnosed(Lacking.of(trace, rig, None))
 
 
 def test_names_that_take_the_inertia_are_a_remainder_and_leave_the_other_parameters(lacking):
@@ -88,41 +107,31 @@ def test_physics_of_the_catalogue_names_the_spring(recorded):
     assert found.parameters["moment_of_inertia"].value == pytest.approx(RUBBING.axis.inertia, rel=0.01)
 
 
-def test_where_what_is_missing_takes_the_inertia_of_the_bare_axis_there_is_no_model(recorded, monkeypatch):
-    """No step determines J: a remainder without a MuJoCo model. A baseline of it holds the other numbers."""
+def test_where_what_is_missing_takes_the_inertia_of_the_bare_axis_there_is_no_model(recorded):
+    """No step determines J: a remainder without a MuJoCo model."""
     rig, trace = recorded
-    refuse(monkeypatch, lambda fitted: True)
-    found = diagnose(trace, rig, excluded=frozenset(catalogue()))
+    found = diagnosed(replace(Lacking.of(trace, rig, None), without_effects=True), frozenset(catalogue()))
     assert (found.verdict, found.effects, found.model) == ("unexplained_remainder", [], None)
     assert found.velocity.identify is None
     assert json.loads(diagnosis_json(found))["model"]["mjcf"] is None
     assert diagnosis(found, "axis").answers["Does it move like the axis now?"].startswith("Not known")
-    state = observe(trace, rig).state
-    assert "moment_of_inertia" not in state.quantities and "coulomb_friction_torque" in state.quantities
 
 
 def test_an_inertia_below_the_rotors_is_refused_with_the_load(recorded):
-    """A rig with the rotor of another motor, and a spring that is not to be tried."""
+    """A rig with the rotor of another motor, and a spring that is not to be tried; a baseline has the other numbers."""
     rig, trace = recorded
     other = rig.model_copy(update={"motor": rig.motor.model_copy(update={"rotor_inertia": 3.0 * RUBBING.axis.inertia})})
     found = diagnose(trace, other, excluded=frozenset(catalogue()))
     assert set(found.refused) == {"moment_of_inertia", "load_moment_of_inertia"}
     assert not set(found.refused) & set(found.parameters)
     assert found.verdict == "unexplained_remainder" and found.model is None
+    state = observe(trace, other).state
+    assert "moment_of_inertia" not in state.quantities and "coulomb_friction_torque" in state.quantities
 
 
-def test_where_nothing_is_missing_the_recording_is_refused(recorded, monkeypatch):
-    """As before: its J is not determined, and no name is the reason."""
+def test_where_nothing_is_missing_the_recording_is_refused(recorded):
+    """Its J is not determined, and no name is the reason."""
     rig, trace = recorded
-    refuse(monkeypatch, lambda fitted: True)
+    lacking = replace(Lacking.of(trace, rig, None), without_effects=True)
     with pytest.raises(UndeterminedError, match="moment of inertia cannot be determined: its interval"):
-        diagnose(trace, rig, excluded=EXCLUDED, policy=without("remains"))
-
-
-def refuse(monkeypatch, lacks):
-    """No fit of a kind determines the inertia, nor the load's."""
-    refusals = {
-        name: UndeterminedError(name.replace("_", " "), "its interval contains zero", "a motion that accelerates")
-        for name in ("moment_of_inertia", "load_moment_of_inertia")
-    }
-    monkeypatch.setattr(adding, "refusals", lambda recordings, fitted: refusals if lacks(fitted) else {})
+        diagnosed(lacking, policy=without("remains"))
