@@ -84,7 +84,7 @@ def test_a_pair_of_which_neither_explains_much_alone_is_found():
 
 
 def test_decoys_are_visited_and_never_the_result():
-    trace = recorded(moved(), lambda motion: 0.05 * np.sin(2.0 * np.pi * 3.3 * motion.time))
+    trace = recorded(moved(2.0), lambda motion: 0.05 * np.sin(2.0 * np.pi * 3.3 * motion.time))
     searched = search(bare(trace), [*catalogue().values()], Policy())
     decoys = [fitted for fitted in searched.visited if any(term.effect.decoy for term in fitted.terms)]
     assert any(fitted.chi < 1.1 for fitted in decoys)
