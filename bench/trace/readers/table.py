@@ -342,8 +342,9 @@ def _is_below(cells: Sequence[str], kinds: Sequence[str]) -> bool:
 
 def _filled_rows(table: pa.Table) -> np.ndarray:
     """Which rows hold anything (n,)."""
-    pc = compute()
-    filled = np.zeros(table.num_rows, dtype=bool)
+    if any(not column.null_count and not pa.types.is_string(column.type) for column in table.columns):
+        return np.ones(table.num_rows, dtype=bool)
+    pc, filled = compute(), np.zeros(table.num_rows, dtype=bool)
     for column in table.columns:
         text = pa.types.is_string(column.type)
         known = pc.not_equal(pc.utf8_trim_whitespace(column), "") if text else column.is_valid()
