@@ -9,14 +9,16 @@ counts correlated residuals. Most of such an error looks like inertia: 11 % more
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
+from bench.axis_kind import OFFSET
 from bench.fit.hypothesis import Layout, Name
 from bench.fit.rows import Rows
-from bench.fit.solution import equations_of, estimated
+from bench.fit.solution import NormalEquations, block_edges, equations, estimated
 
 #: Half widths of 95 % that a strength has to exceed: of three columns on 200 recordings of axes that lack nothing the
 #: largest was 1.4 of them.
@@ -59,11 +61,13 @@ def dependence(rows: Rows, laid: Layout, theta: Array, offset: bool = False) -> 
     of_torque = laid.noise @ theta[:size]
     shared = np.outer(slopes.mean(axis=1), of_torque)
     own = slopes @ slopes.T / speed.size * float(theta[:size] @ of_torque)
-    columns = np.column_stack([laid.columns, *(column for _, column, _ in tested.values())])
-    owners = np.array([*laid.owners, *tested], dtype=object)
-    noise = np.block([[laid.noise, shared.T], [shared, own]])
-    laid = replace(laid, columns=columns, owners=owners, noise=noise)
-    every = equations_of(rows, laid, np.array([0, rows.time.size]))
+    table = np.vstack([laid.columns.T, *(column for _, column, _ in tested.values()), np.ones(speed.size), laid.effort])
+    noise = np.pad(np.block([[laid.noise, shared.T], [shared, own]]), (0, 1))
+
+    def between(edges: NDArray[np.int64]) -> NormalEquations:
+        return equations((*laid.owners, *tested, OFFSET), table, noise, edges, laid.known)
+
+    every = between(np.array([0, speed.size]))
     base = [name for name in every.names if name not in tested and (offset or name in laid.owners)]
     least = rows.conditioning.effort_noise**2 / rows.conditioning.filter.stride
     without = every.only(lambda each: each in base)
@@ -76,7 +80,8 @@ def dependence(rows: Rows, laid: Layout, theta: Array, offset: bool = False) -> 
         saved = (without.residual_power(plain) - having.residual_power(fitted)) / having.count
         if saved <= (LEAST * rms(laid.effort)) ** 2:
             continue
-        scores = equations_of(rows, laid).only(lambda each, kept=kept: each in kept).scores(fitted)
+        blocks = between(block_edges(rows.time, rows.conditioning.filter.width))
+        scores = blocks.only(lambda each, kept=kept: each in kept).scores(fitted)
         covariance, reach = estimated(scores, inverse, least)
         at = having.names.index(name)
         size = abs(float(fitted[at])) / max(reach * float(np.sqrt(covariance[at, at])), 1e-300)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
-from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -257,12 +256,11 @@ class Fit:
     def worth(self, effects: Sequence[Columns]) -> list[float]:
         """Squares that effects without shapes would each take - (N*m)**2 (N**2)."""
         made = [self.next_rows.columns_of(effect, [()]) for effect in effects]
-        widths = [len(columns) for columns in made]
-        table = self.seen([list(chain.from_iterable(made))], False)
-        owner, found = np.repeat(np.arange(len(effects)), widths), np.zeros(len(effects))
-        for width in set(widths):
-            alike = np.equal(widths, width)
-            found[alike] = self.gains(table[:, alike[owner]], width)
+        widths, found = np.array([len(columns) for columns in made]), np.zeros(len(effects))
+        for width in set(widths.tolist()):
+            alike = np.flatnonzero(widths == width)
+            columns = [column for index in alike.tolist() for column in made[index]]
+            found[alike] = self.gains(self.seen([columns], False), width)
         return found.tolist()
 
     def tried(self, effect: Effect, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:

@@ -278,7 +278,9 @@ class Rows:
 
     def values(self, pick: Callable[[Signals], Array]) -> Array:
         """Raw values at the used rows (m,)."""
-        return np.concatenate([self._picked(part, pick(part.signals))[part.used] for part in self.stretches])
+        smooth = self.conditioning.filter
+        found = [pick(part.signals)[smooth.margin + smooth.stride * part.places] for part in self.stretches]
+        return found[0] if len(found) == 1 else np.concatenate(found)
 
     def _picked(self, part: Stretch, values: Array) -> Array:
         smooth = self.conditioning.filter

@@ -523,8 +523,8 @@ def long_run_covariance(scores: Array) -> tuple[Array, float]:
     bandwidth = _bandwidth(scores)
     one_sided = _quadratic_spectral(np.arange(count) / bandwidth)
     weights = np.concatenate([one_sided, [0.0], one_sided[:0:-1]])
-    smoothed = np.fft.irfft(np.fft.rfft(scores, 2 * count, axis=0) * np.fft.rfft(weights)[:, None], 2 * count, axis=0)
-    covariance = scores.T @ smoothed[:count]
+    smoothed = np.fft.irfft(np.fft.rfft(scores.T, 2 * count) * np.fft.rfft(weights), 2 * count)
+    covariance = smoothed[:, :count] @ scores
     return 0.5 * (covariance + covariance.T), bandwidth
 
 

@@ -87,9 +87,9 @@ class Sums:
         period = trace.sample_period
         position = trace["position"][part] if "position" in trace else integrated(speed, period)
         known = (speed, np.sign(speed), position - position.mean(), np.sin(position), np.cos(position), effort[part])
-        signals = np.stack(known)
-        sums = np.zeros_like(signals)
-        np.cumsum((signals[:, 1:] + signals[:, :-1]) / 2.0, axis=1, out=sums[:, 1:])
+        sums = np.zeros((len(known), speed.size))
+        for total, values in zip(sums, known, strict=True):
+            np.cumsum(0.5 * (values[1:] + values[:-1]), out=total[1:])
         return cls(part.start, period, speed, effort[part], np.concatenate([[0.0], np.cumsum(speed)]), sums)
 
     def places(self, length: int) -> range:
@@ -99,7 +99,7 @@ class Sums:
         return range(reach, max(last, reach), max(length // 2, 1))
 
     def windows(self, length: int) -> Array:
-        """Seven columns over each window, and its mean effort (windows, 8)."""
+        """Seven columns over each window, and its mean effort (8, windows)."""
         at, reach = self.places(length), length // 4
 
         def smooth(ahead: int) -> Array:
@@ -107,10 +107,11 @@ class Sums:
             first, last = (slice(at.start + ahead + to, at.stop + ahead + to, at.step) for to in (-reach, reach + 1))
             return (self.gone[last] - self.gone[first]) / (2 * reach + 1)
 
-        change = (smooth(length) - smooth(0)) / (length * self.period)
         first, last = (slice(at.start + to, at.stop + to, at.step) for to in (0, length))
-        speed, sign, place, sine, cosine, effort = (self.sums[:, last] - self.sums[:, first]) / length
-        return np.column_stack([change, speed, sign, np.ones(len(at)), place, sine, cosine, effort])
+        table = np.empty((len(self.sums) + 2, len(at)))
+        table[0], table[3] = (smooth(length) - smooth(0)) / (length * self.period), 1.0
+        table[1:3], table[4:] = np.split((self.sums[:, last] - self.sums[:, first]) / length, [2])
+        return table
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +124,6 @@ class Balanced:
         by_motion, by_position: share of the effort's variance that motion explains, and motion with position.
         inertia, coulomb: J - kg*m**2 (kg), or in the effort's unit - and K_0 of the motion with position.
         columns, effort: (windows, 7) and means over each window (windows,).
-        starts: first sample of each window (windows,).
     """
 
     sums: Sequence[Sums]
@@ -134,7 +134,12 @@ class Balanced:
     coulomb: float
     columns: Array
     effort: Array
-    starts: NDArray[np.intp]
+
+    @cached_property
+    def starts(self) -> NDArray[np.intp]:
+        """First sample of each window (windows,)."""
+        places = ((part.start, part.places(self.length)) for part in self.sums)
+        return np.concatenate([start + np.arange(at.start, at.stop, at.step) for start, at in places])
 
     @cached_property
     def effort_over_noise(self) -> float:
@@ -156,21 +161,21 @@ def balanced(sums: Sequence[Sums], length: int) -> Balanced | None:
     """The balance over windows of one length - samples; None if the recording is too short."""
     if not sums:
         return None
-    table = np.concatenate([part.windows(length) for part in sums])
-    columns, effort = table[:, :-1], table[:, -1]
+    table = np.concatenate([part.windows(length) for part in sums], axis=1)
+    columns, effort = table[:-1].T, table[-1]
     if effort.size < LEAST or not np.ptp(effort):
         return None
     changes = effort - effort.mean()  # a constant is among the columns
-    scale = scales(columns)
-    scaled = columns / scale
-    gram, moment = scaled.T @ scaled, scaled.T @ changes
+    gram = table[:-1] @ columns
+    scale = np.sqrt(np.diag(gram))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    gram, moment = gram / np.outer(scale, scale), table[:-1] @ changes / scale
     shares, theta = list[float](), np.zeros(MOTION)
     for count in (MOTION, columns.shape[1]):
         theta = symmetric_inverse(gram[:count, :count], DEPENDENT) @ moment[:count]
         shares.append(float(theta @ moment[:count]) / float(changes @ changes))
     inertia, _, coulomb = (theta[:3] / scale[:3]).tolist()
-    starts = np.concatenate([np.array(part.places(length), dtype=np.intp) + part.start for part in sums])
-    return Balanced(sums, length, shares[0], shares[1], inertia, coulomb, columns, effort, starts)
+    return Balanced(sums, length, shares[0], shares[1], inertia, coulomb, columns, effort)
 
 
 def scales(columns: Array) -> Array:

@@ -9,6 +9,7 @@ effort shifted.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
 
 import numpy as np
@@ -107,13 +108,13 @@ def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, s
     shifts = np.arange(-most, most + 1, each)
     columns, efforts = [], []
     for part in fitted.sums:
-        inside = [at - most for at in part.places(length) if most <= at < part.effort.size - length - most]
-        if inside:
+        places = part.places(length)
+        first, last = (bisect_left(places, end) for end in (most, part.effort.size - length - most))
+        if first < last:
             means = (part.sums[-1, length:] - part.sums[-1, :-length]) / length
             around = np.lib.stride_tricks.sliding_window_view(means, 2 * most + 1)
-            efforts.append(around[slice(inside[0], inside[-1] + 1, part.places(length).step), ::each])
-            at = part.places(length).index(inside[0] + most)
-            columns.append(part.windows(length)[at : at + len(inside), :-1])
+            efforts.append(around[places[first] - most : places[last - 1] - most + 1 : places.step, ::each])
+            columns.append(part.windows(length)[:-1, first:last].T)
     if sum(map(len, columns)) < BLOCKS * WINDOWS // 3:
         return
     basis, effort = basis_of(np.concatenate(columns)), np.concatenate(efforts)

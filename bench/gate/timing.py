@@ -112,12 +112,12 @@ def followed(signals: list[Array]) -> tuple[float, float]:
     """RMS change from sample to sample over the spread, and the best correlation of successive changes."""
     spread = float(np.std(np.concatenate(signals)))
     changes = rms(np.concatenate([np.diff(values) for values in signals]))
-    alike, size = -1.0, 1
-    while (long := [values for values in signals if values.size >= 8 * size]) and size <= LEAST:
-        means = [values[: values.size // size * size].reshape(-1, size).mean(axis=1) for values in long]
+    alike, size, means = -1.0, 1, signals
+    while (means := [mean for mean in means if mean.size >= 8]) and size <= LEAST:
         steps = [np.diff(mean) for mean in means]
         power = sum(float(step @ step) for step in steps)
         alike = max(alike, sum(float(step[1:] @ step[:-1]) for step in steps) / power) if power > 0.0 else alike
+        means = [0.5 * (mean[:-1:2] + mean[1::2]) for mean in means]  # over twice as many samples
         size *= 2
     return (changes / spread if spread > 0.0 else 0.0), alike
 

@@ -52,7 +52,7 @@ def given(
 
 def _trace_in(given: Given | Iterator[Trace]) -> Given | Iterator[Trace]:
     """The trace of a simulation; else what is given."""
-    held = getattr(given, "trace", None)
+    held = None if isinstance(given, Trace) else getattr(given, "trace", None)
     return held if isinstance(held, Trace) else given
 
 
