@@ -13,7 +13,7 @@ from tests.sources import PAGE_MAKERS, ROOT, SOURCES, module_of, nodes
 LAYERS = (
     {"errors", "names", "bounds", "files", "structured", "assets", "allocation", "presented", "offered", "validated"},
     {"jobs"},
-    {"units", "axis_kind", "arrays", "distributions", "parameter"},
+    {"units", "axis_kind", "arrays", "parameter"},
     {"comparison"},
     {"trace"},
     {"rig"},

@@ -24,9 +24,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 
 from bench.arrays import Array
-from bench.distributions import student_above, student_quantile
 from bench.parameter import Parameter
 
 #: Number of recordings in a baseline from which on the spread is theirs alone, by Student's t. With fewer it is the
@@ -127,7 +127,7 @@ class Difference:
 
     def interval(self, level: float) -> tuple[float, float]:
         """Interval that contains the true difference with probability `level` - unit."""
-        reach = student_quantile(self.degrees, 0.5 * (1.0 + level)) * self.std_error
+        reach = float(scipy.special.stdtrit(self.degrees, 0.5 * (1.0 + level))) * self.std_error
         return self.value - reach, self.value + reach
 
     def within(self, margin: float) -> bool:
@@ -145,7 +145,7 @@ class Difference:
         if self.std_error == 0.0:
             return float(abs(self.value) <= margin)
         sides = ((abs(self.value) + side * margin) / self.std_error for side in (-1.0, 1.0))
-        return min(1.0, sum(student_above(self.degrees, side) for side in sides))
+        return min(1.0, sum(float(scipy.special.stdtr(self.degrees, -side)) for side in sides))
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 
 from bench.arrays import NORMAL95
-from bench.distributions import chi_square_above, student_quantile
 from bench.parameter import Parameter
 
 #: Probability of a false warning that recordings differ, over all quantities together.
@@ -37,7 +37,7 @@ class Excess:
     @property
     def reach(self) -> float:
         """Half width of an interval of 95 % in standard deviations, by Student's t; 0 without a degree of freedom."""
-        return student_quantile(self.degrees, 0.975) if self.degrees else 0.0
+        return float(scipy.special.stdtrit(self.degrees, 0.975)) if self.degrees else 0.0
 
     def of_joint(self, own: Sequence[Parameter]) -> float:
         """Standard error that the spread adds to a joint value, after averaging - the quantity's unit.
@@ -72,7 +72,7 @@ def excess(groups: Sequence[Sequence[Parameter]]) -> Excess:
         degrees += values.size - 1
     if not degrees:
         return Excess(0.0, 0, 1.0)
-    return Excess(max(0.0, (apart - degrees) / expected), degrees, chi_square_above(degrees, apart))
+    return Excess(max(0.0, (apart - degrees) / expected), degrees, float(scipy.special.chdtrc(degrees, apart)))
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def between(found: Sequence[Parameter]) -> Between:
     values = np.array([each.value for each in found])
     spread, mean = float(np.std(values, ddof=1)), float(np.mean(values))
     own = float(np.sqrt(np.mean([each.half_width**2 for each in found])))
-    reach = max(student_quantile(values.size - 1, 0.975) * spread, own)
+    reach = max(float(scipy.special.stdtrit(values.size - 1, 0.975)) * spread, own)
     return Between(spread, next_interval(mean, reach, values.size))
 
 

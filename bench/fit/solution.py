@@ -30,11 +30,11 @@ from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
-from bench.distributions import student_quantile
 from bench.effects.effect import Columns, Coupling
 from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, frequencies, lay_out
 from bench.fit.rows import ONE_WAY, Rows
@@ -441,7 +441,7 @@ def estimated(scores: Array, inverse: Array, least: float) -> tuple[Array, float
     widened = np.ones_like(variance)
     np.divide(np.maximum(variance, floor), np.maximum(variance, 1e-300), out=widened, where=variance > 0.0)
     widened = np.sqrt(widened)
-    return covariance * np.outer(widened, widened), student_quantile(degrees, 0.975)
+    return covariance * np.outer(widened, widened), float(scipy.special.stdtrit(degrees, 0.975))
 
 
 def misfit(columns: Array, residual: Array, floor: float) -> Array:
@@ -501,7 +501,7 @@ def _without_each(table: Array, edges: NDArray[np.intp]) -> Array:
         free[short, least[short]] = False
     others = (whole - grams) * (free[:, :, None] & free[:, None, :])
     moved = np.einsum("gij,gj->gi", symmetric_inverse(others + np.eye(free.shape[1]) * ~free[:, None], 1e-10), scores)
-    return student_quantile(count - 1, 0.975) * np.sqrt((count - 1) / count * ((free * moved) ** 2).sum(axis=0))
+    return scipy.special.stdtrit(count - 1, 0.975) * np.sqrt((count - 1) / count * ((free * moved) ** 2).sum(axis=0))
 
 
 def _shown(grams: Array, free: NDArray[np.bool_]) -> Array:

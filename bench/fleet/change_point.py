@@ -18,10 +18,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 
 from bench.arrays import Array
 from bench.comparison.spread import next_interval
-from bench.distributions import student_above, student_quantile
 
 #: Recordings below which nothing can be concluded: two means, and one number for the scatter about them.
 FEWEST = 3
@@ -67,9 +67,9 @@ def change_point(values: Array, errors: Array) -> ChangePoint | None:
         place=best + 1,
         before=float(centre + means[0, best]),
         after=float(centre + means[1, best]),
-        reach=student_quantile(n - 2, 0.975) * float(error[best]),
+        reach=float(scipy.special.stdtrit(n - 2, 0.975) * error[best]),
         size=float(sizes[best]),
-        chance=min(1.0, (n - 1) * 2.0 * student_above(n - 2, float(sizes[best]))),
+        chance=min(1.0, (n - 1) * 2.0 * float(scipy.special.stdtr(n - 2, -sizes[best]))),
     )
 
 
@@ -81,7 +81,7 @@ def expected(values: Array, errors: Array, *steps: int) -> list[tuple[float, flo
     sides = np.split(values, steps)
     degrees = values.size - len(sides)
     pooled = sum(float(((side - side.mean()) ** 2).sum()) for side in sides) / degrees
-    student = student_quantile(degrees, 0.975)
+    student = float(scipy.special.stdtrit(degrees, 0.975))
 
     def interval(side: Array, own: Array) -> tuple[float, float]:
         reach = student * max(pooled, float(np.mean(own**2))) ** 0.5

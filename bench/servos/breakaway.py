@@ -16,10 +16,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import COULOMB, INERTIA, VISCOUS
-from bench.distributions import student_quantile
 from bench.errors import UndeterminedError
 from bench.parameter import Parameter
 from bench.servos.commanded import TERMS, Coefficients, JointBalance
@@ -120,7 +120,7 @@ def _level(one: JointBalance) -> Parameter:
     count = len(misfits)
     spread = (count - 1) / count * float(np.sum((others - others.mean()) ** 2))
     certain = 1.0 / max(0.5 * float(_bend(whole, int(np.argmin(whole)), spacing)), 1e-9)
-    reach = student_quantile(count - 1, 0.975)
+    reach = float(scipy.special.stdtrit(count - 1, 0.975))
     inside = levels[whole - whole.min() <= max(spread / certain, 1.0) * reach**2]
     low, high = min(float(inside[0]), best), max(float(inside[-1]), best)
     return Parameter(best, one.found.kind.effort_unit, 0.5 * (high - low) / reach, (low, high))

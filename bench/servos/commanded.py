@@ -27,11 +27,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 from numpy.typing import NDArray
 
 from bench.arrays import NORMAL95, Array
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
-from bench.distributions import student_quantile
 from bench.effects.signals import Signals
 from bench.errors import InputError, UndeterminedError
 from bench.fit.hypothesis import Hypothesis, lay_out
@@ -457,7 +457,7 @@ def _level(one: JointBalance, level: float) -> Parameter | None:
         return None
     variance = float(np.square(sums).sum()) / count**2 * len(sums) / (len(sums) - 1)
     variance += float(slope @ one.found.covariance[:3, :3] @ slope)
-    error, reach = math.sqrt(variance), student_quantile(len(sums) - 1, 0.975)
+    error, reach = math.sqrt(variance), float(scipy.special.stdtrit(len(sums) - 1, 0.975))
     return Parameter(value, one.found.kind.effort_unit, error, (value - reach * error, value + reach * error))
 
 
@@ -477,5 +477,5 @@ def shared(found: Sequence[Delay]) -> Delay | None:
         scale = max(1.0, float(weights @ (delays - value) ** 2) / (len(found) - 1))
     if scale > NOT_ONE**2:
         return None
-    student = student_quantile(len(found) - 1, 0.975) / NORMAL95 if scale > 1.0 else 1.0
+    student = float(scipy.special.stdtrit(len(found) - 1, 0.975)) / NORMAL95 if scale > 1.0 else 1.0
     return Delay(value, scale * student**2 / float(weights.sum()))

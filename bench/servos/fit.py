@@ -14,10 +14,10 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
-from bench.distributions import student_quantile
 from bench.errors import UndeterminedError
 from bench.parameter import Parameter
 from bench.servos.model import NULL, STEP, Stretches, simulated
@@ -159,7 +159,7 @@ class ServoFit:
         count = others.size
         error = float(np.sqrt((count - 1) / count * np.sum((others - others.mean()) ** 2)))
         error *= WIDER
-        reach = student_quantile(count - 1, 0.975) * error
+        reach = float(scipy.special.stdtrit(count - 1, 0.975)) * error
         return Parameter(float(value), unit, error, (float(value) - reach, float(value) + reach))
 
 

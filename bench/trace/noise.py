@@ -16,9 +16,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy  # its special functions load when first used: 0.2 s
 
 from bench.arrays import Array
-from bench.distributions import gamma_median
 from bench.trace.filter import GaussianFilter
 
 #: Samples a window: short enough that most windows of a servo's motion hold no jerk; shorter ones where stretches are.
@@ -72,7 +72,7 @@ def white_noise(*stretches: Array) -> float:
     shape = (2.0 * np.sin(frequency[top] / 2.0)) ** 4 * np.sum(taper**2)
     power = np.abs(np.fft.rfft(differences * taper, axis=1)[:, top]) ** 2
     degrees = shape.size / CORRELATION
-    median = gamma_median(degrees) / degrees
+    median = scipy.special.gammaincinv(degrees, 0.5) / degrees
     return float(np.sqrt(np.median(power @ (1.0 / shape)) / shape.size / median))
 
 
