@@ -16,6 +16,9 @@ from bench.units import Quantity
 
 #: Share of the dry amplitude that viscous friction has where none is given.
 ALL = 1.0
+#: Dry friction that the cold axis has more, over that of the warm one, at most: far above what lubricants do. A jolt at
+#: the start of a recording decays, too, by thousands of times.
+COLDEST = 10.0
 
 
 class FrictionWarmup(Friction):
@@ -44,7 +47,7 @@ class FrictionWarmup(Friction):
 
     def physical(self, strengths: Sequence[float], shape: Sequence[float], base: Axis) -> bool:
         """Dry friction decays; how viscous friction does matters little where that is small."""
-        return base.coulomb > 0.0 and strengths[0] > 0.0
+        return 0.0 < strengths[0] < COLDEST * base.coulomb
 
 
 def _cold(values: Values, at: AxisState) -> Number:

@@ -86,6 +86,13 @@ def coupled(share, antiresonance, damping):
     return torque
 
 
+def test_a_jolt_at_the_start_is_no_warmup():
+    """It decays as the friction of a cold axis does, by far more than all friction of the axis."""
+    trace = recorded(MOTION, lambda motion: 3.0 * np.exp(-motion.time / 0.05) * np.sign(motion.velocity))
+    assert names(POLICY, trace, ["friction_warmup"]) == ()
+    assert sought(without("physical"), trace, ["friction_warmup"]) == ("friction_warmup",)
+
+
 def test_a_coupling_beside_something_else_is_no_gap():
     """Where the coupling leaves a remainder a dead zone is tried in its place; its gap is less than contacts yield."""
     trace, effects = recorded(MOTION, coupled(0.6, 100.0, 0.1), vibration(0.02, 11.0)), ["elastic_coupling", "backlash"]
