@@ -1,10 +1,11 @@
 """A load behind a dead zone, driven along a recorded motion: its position, and the columns that come of it.
 
-    q_l'' = w_c**2*e + 2*D*w_c*e' - c*q_l,  e = p - clip(p, -g/2, g/2),  p = q_m - q_l
+    q_l'' = w_c**2*e + 2*D*w_c*e' - c*q_l - M_l/J_l,  e = p - clip(p, -g/2, g/2),  p = q_m - q_l
 
 q_m, q_l - angle of motor and load - rad (m); e - penetration of the contact, 0 within the gap g - rad (m); w_c -
 frequency of the contact - rad/s -, D its damping ratio, both per unit of load inertia; c - rate of a spring on the
-load's side - 1/s**2. The contact's damping is an impulse 2*D*w_c*de, so it also acts while the contact opens.
+load's side - 1/s**2; M_l/J_l - known torque of the other links, if the load is a link of a robot, over inertia. The
+contact's damping is an impulse 2*D*w_c*de, so it also acts while the contact opens.
 """
 
 from collections.abc import Sequence
@@ -26,7 +27,13 @@ WINDOWS, SHORTEST = 128, 60
 CLOSED = 1e-5
 
 
-def load_positions(angles: Sequence[Array], sample_period: float, shapes: Array) -> list[Array]:
+def load_positions(
+    angles: Sequence[Array],
+    sample_period: float,
+    shapes: Array,
+    pulls: Sequence[tuple[Array, Array] | None] = (),
+    heavier: Sequence[float] = (),
+) -> list[Array]:
     """Positions of the load behind several dead zones in stretches of a recording - rad (m) - (n, k) each.
 
     The motor moves along a cubic spline through its samples. A stretch is cut into windows that are integrated side by
@@ -38,22 +45,37 @@ def load_positions(angles: Sequence[Array], sample_period: float, shapes: Array)
         angles: of the motor - rad (m) - (n,) each.
         sample_period: s.
         shapes: (k, 4): gap, contact's frequency and damping, spring's rate.
+        pulls: of the load by what else acts on it, as `Signals.pull`; () of none.
+        heavier: loads over that of the shapes; () where all are of it.
     """
+    inertias = np.array(heavier or [1.0] * len(angles))
     lengths = np.array([max(SHORTEST, -(-(angle.size - 1) // WINDOWS)) for angle in angles])
     found: dict[int, Array] = {}
     for length in np.unique(lengths).tolist():
         alike = np.flatnonzero(lengths == length).tolist()
-        twists = _twists([angles[k] for k in alike], length, sample_period, shapes)
+        pulled = [pulls[k] if pulls else None for k in alike]
+        twists = _twists([angles[k] for k in alike], pulled, inertias[alike], length, sample_period, shapes)
         found |= {k: angles[k][:, None] - twist for k, twist in zip(alike, twists, strict=True)}
     return [found[k] for k in range(len(angles))]
 
 
-def _twists(angles: Sequence[Array], length: int, sample_period: float, shapes: Array) -> list[Array]:
+def _twists(
+    angles: Sequence[Array],
+    pulls: Sequence[tuple[Array, Array] | None],
+    heavier: Array,
+    length: int,
+    sample_period: float,
+    shapes: Array,
+) -> list[Array]:
     """Angles of the motor (n,) less the load's (n, k) in windows of so many samples; see `load_positions`."""
     substeps = max(2, int(np.ceil(sample_period * shapes[:, 1].max() * STEPS_PER_RADIAN)))
     cut = [_windows(angle, length, substeps) for angle in angles]
     windows = np.concatenate([between for between, _ in cut], axis=1)
-    ends, size = np.cumsum([starts.size for _, starts in cut]), len(shapes)
+    slowed = [_slowed(pull, length, substeps, sample_period) for pull in pulls if pull is not None]
+    pulling = np.concatenate(slowed, axis=2) if slowed else None
+    sizes, size = [starts.size for _, starts in cut], len(shapes)
+    ends, inertia = np.cumsum(sizes), np.repeat(heavier, sizes)
+    slower = np.stack([np.ones_like(inertia), inertia**-0.5, inertia**-0.5, 1.0 / inertia], axis=1)
     goes_on = ~np.isin(np.arange(ends[-1]), ends - 1)
     twist = np.zeros((ends[-1], size))
     travel = np.repeat(np.concatenate([starts for _, starts in cut])[:, None], size, axis=1)
@@ -61,7 +83,8 @@ def _twists(angles: Sequence[Array], length: int, sample_period: float, shapes: 
     window, shape = (pairs.ravel() for pairs in np.indices(twist.shape))
     while window.size:
         start = twist[window, shape], travel[window, shape]
-        twists, last, way = _run(windows, window, shapes[shape], start, sample_period / substeps, substeps)
+        own = shapes[shape] * slower[window]
+        twists, last, way = _run(windows, pulling, window, own, start, sample_period / substeps, substeps)
         found[:, window, shape] = twists
         inside = goes_on[window]
         window, shape, last, way = window[inside] + 1, shape[inside], last[inside], way[inside]
@@ -84,8 +107,22 @@ def _windows(angle: Array, length: int, substeps: int) -> tuple[Array, Array]:
     return fine[np.arange(step + 1)[:, None] + starts], slopes[starts] / substeps
 
 
+def _slowed(pull: tuple[Array, Array], length: int, substeps: int, sample_period: float) -> Array:
+    """Half of the way that a load loses in each step, and by how much more as it is ahead, by window (2, steps, w)."""
+    count, step = -(-(pull[0].size - 1) // length), length * substeps
+    middles = (np.arange(count * step) + 0.5) / substeps
+    ways = [np.interp(middles, np.arange(each.size), each) for each in pull]
+    return 0.5 * (sample_period / substeps) ** 2 * np.reshape(ways, (2, count, step)).transpose(0, 2, 1)
+
+
 def _run(
-    angles: Array, window: NDArray[np.intp], shapes: Array, start: tuple[Array, Array], step: float, every: int
+    angles: Array,
+    pulling: Array | None,
+    window: NDArray[np.intp],
+    shapes: Array,
+    start: tuple[Array, Array],
+    step: float,
+    every: int,
 ) -> tuple[Array, Array, Array]:
     """Twists p after every so many steps (steps/every, k) of windows with shapes (k, 4), and the last with the travel.
 
@@ -106,6 +143,12 @@ def _run(
         rise.take(window, out=ahead, mode="clip")
         ahead += twist
         ahead -= travel
+        if pulling is not None:
+            lost, more = pulling[:, k - 1, window]
+            lost -= more * twist
+            ahead += lost
+            travel -= lost
+            travel -= lost
         _beyond(ahead, below, above, after)
         np.equal(after, 0.0, out=free)
         np.multiply(explicit, before, out=held)
@@ -144,6 +187,12 @@ def dead_zone_columns(stretches: Sequence[Signals], shapes: Shapes) -> list[list
         for s in stretches
     ]
     table = np.asarray(shapes)
-    positions = load_positions(angles, stretches[0].sample_period, table)
+    pulls = [s.pull for s in stretches] if stretches[0].pull is not None else ()
+    heavier = [s.heavier for s in stretches]
+    positions = load_positions(angles, stretches[0].sample_period, table, pulls, heavier)
     twists = [(position - angle[:, None]).T for position, angle in zip(positions, angles, strict=True)]
-    return [[[(load, 2), (rate * load, 0)] for load, rate in zip(twist, table[:, 3], strict=True)] for twist in twists]
+    slopes = [0.0 if s.pull is None else s.heavier * s.pull[1] for s in stretches]
+    return [
+        [[(more * load, 2), ((rate + slope) * load, 0)] for load, rate in zip(twist, table[:, 3], strict=True)]
+        for twist, more, slope in zip(twists, heavier, slopes, strict=True)
+    ]

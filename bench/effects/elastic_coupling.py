@@ -7,11 +7,12 @@ side - kg*m**2 (kg). Sensor and friction sit at the motor. Resonance at sqrt(k*(
 motor at w_a = sqrt(k/J_l). In the balance the load's acceleration less the motor's is a column of strength J_l. The
 load is driven along the recorded motion,
 
-    p'' + 2*D*w_a*p' + w_a**2*p = -alpha_m - sum(c_k*D_k(q_l, omega_l, t)),  p = q_l - q_m
+    p'' + 2*D*w_a*p' + w_a**2*p = -alpha_m - M_l/J_l - sum(c_k*D_k(q_l, omega_l, t)),  p = q_l - q_m
 
-D - damping ratio; D_k - torque of what acts on the load (drag, a spring, an unbalance) per unit of its strength -, c_k
-its strength over load inertia. It starts with the motor, at rest against it. In time, not in frequency: there the
-ringing that a recording ends with returns at its start.
+D - damping ratio; M_l - known torque of the other links, if the load is a link of a robot -; D_k - torque of what acts
+on the load (drag, a spring, an unbalance) per unit of its strength -, c_k its strength over load inertia. It starts
+with the motor, at rest against it; a link of a robot bent as by the torque of its first oscillation, without ringing.
+In time, not in frequency: there the ringing that a recording ends with returns at its start.
 Source: D. Schröder, Elektrische Antriebe - Regelung von Antriebssystemen (two-mass system).
 """
 
@@ -35,9 +36,10 @@ DAMPINGS = (0.01, 0.04, 0.12)
 #: Damping ratio from which a coupling no longer rings, so that nothing distinguishes it from a lag, and the one from
 #: which its quality 1/(2*D) is below one, which a search may pass but not end with.
 OVERDAMPED, DULL = 1.0, 0.5
-#: Turns in which the load's motion and what acts on it are brought in line, the change that ends them and the one that
+#: Turns in which known torque, whose slope is small against the coupling's, follows the load. Turns in which the load's
+#: motion and what else acts on it are brought in line, the change that ends them and the one that
 #: no load beyond belief would make - shares of the twist under the load's own inertia.
-TURNS, SETTLED, ASTRAY = 40, 1e-6, 10.0
+BENDS, TURNS, SETTLED, ASTRAY = 3, 40, 1e-6, 10.0
 
 
 class ElasticCoupling(Coupling):
@@ -100,22 +102,36 @@ def _column(signals: Signals, antiresonance: float, damping: float, loads: Seque
     """Terms of one coupling.
 
     What acts on the load is brought in line with its motion turn by turn. Half of its steepest damping is counted to
-    the coupling's, so that a turn reduces the error.
+    the coupling's, so that a turn reduces the error. Links that are heavier than `link_inertia` swing slower.
     """
+    heavier = signals.heavier
+    antiresonance, damping = antiresonance / heavier**0.5, damping / heavier**0.5
     loss, spring, step = 2.0 * damping * antiresonance, antiresonance**2, signals.sample_period
-    damped = 0.5 * _steepest(signals, loads) if loads else 0.0
+    damped = 0.5 * _steepest(signals, loads) / heavier if loads else 0.0
     state = np.array([[0.0, 1.0], [-spring, -loss - damped]])
     began = signals.course[0, 0]
     course = np.vstack([signals.course[0] - began, signals.course[1:]])
     driven, denominator = _driven(state, np.array([-1.0, loss]), step, course)
     twist = free = recursive_filter([1.0], denominator, driven[0])
+    grown: list[tuple[Array, int]] = []
+    drift = 0.0
+    if signals.pull is not None:
+        (pull, slope), (level, rate) = signals.pull, _first_pull(signals, antiresonance)
+        line, drift = level + rate * step * np.arange(free.size), -rate / spring
+        bent, twist = drift * loss / -spring - line / spring, np.zeros_like(free)
+        forced = np.zeros_like(driven)
+        for _ in range(BENDS):
+            pulling = pull + slope * twist - line
+            forced, _ = _driven(state, np.array([0.0, -1.0]), step, np.stack([pulling[:-1], np.diff(pulling)]))
+            twist = recursive_filter([1.0], denominator, driven[0] + forced[0]) + bent
+        driven, free, grown = driven + forced, twist, [(heavier * slope * twist, 0)]
     if not loads:
-        return [(free, 2)]
-    load_speed = free_speed = recursive_filter([1.0], denominator, driven[1])
+        return [(heavier * free, 2), *grown]
+    load_speed = free_speed = recursive_filter([1.0], denominator, driven[1]) + drift
     torque = np.zeros_like(free)
     for _ in range(TURNS):
         torque = _torque(replace(signals, position=signals.position + twist, velocity=load_speed + began), loads)
-        pulling = torque - damped * load_speed
+        pulling = torque / heavier - damped * load_speed
         forcing, _ = _driven(state, np.array([0.0, -1.0]), step, np.stack([pulling[:-1], np.diff(pulling)]))
         forced = [recursive_filter([1.0], denominator, row) for row in forcing]
         before, twist, load_speed = twist, free + forced[0], free_speed + forced[1]
@@ -123,8 +139,20 @@ def _column(signals: Signals, antiresonance: float, damping: float, loads: Seque
         if change < SETTLED * np.abs(free).max():
             break
         if change > ASTRAY * np.abs(free).max():
-            return [(free, 2)]
-    return [(twist, 2), (torque - _torque(signals, loads), 0)]
+            return [(heavier * free, 2), *grown]
+    return [(heavier * twist, 2), (torque - _torque(signals, loads), 0), *grown]
+
+
+def _first_pull(signals: Signals, antiresonance: float) -> tuple[float, float]:
+    """Deceleration of links at the start by inertia and known torque - rad/s**2 (m/s**2) -, and its rate.
+
+    By parabola and line through the speed and the known torque of the first oscillation.
+    """
+    count = max(4, min(round(2.0 * np.pi / (antiresonance * signals.sample_period)), signals.time.size - 1))
+    time = signals.sample_period * np.arange(count)
+    curvature, rise, _ = np.polyfit(time, signals.course[0, :count], 2)
+    slope, level = np.polyfit(time, signals.pull[0][:count], 1) if signals.pull is not None else (0.0, 0.0)
+    return float(level + rise), float(slope + 2.0 * curvature)
 
 
 def _steepest(signals: Signals, loads: Sequence[Load]) -> float:

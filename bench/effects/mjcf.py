@@ -10,6 +10,8 @@ if TYPE_CHECKING:  # 0.2 s, needed only to simulate
 #: The model that effects are added to, as MuJoCo lets it be edited.
 Spec: TypeAlias = "mujoco.MjSpec"
 AXIS, MOTOR, LOAD, DRIVE, LOAD_TORQUE = "axis", "motor", "load", "drive", "load torque"
+#: The actuator between motor and load by which known torque acts on the load, in addition to what the drive takes less.
+LINKS = "links"
 #: The actuator whose bristles are the axis' friction, where it has some.
 BRISTLES = "bristles"
 #: Places of the two friction levels among that actuator's bias parameters.
@@ -48,6 +50,14 @@ def passive_motor(
         lugre=list(lugre),
         ctrlspec=int(mujoco.mjtCtrlInput.mjINPUT_NONE),
     )
+
+
+def pull_load(spec: Spec) -> None:
+    """Have known torque act on the load behind a coupling: what the motor has less of, the coupling has, too."""
+    import mujoco
+
+    coupling = spec.body(LOAD).joints[0]
+    spec.add_actuator(name=LINKS, target=coupling.name, trntype=mujoco.mjtTrn.mjTRN_JOINT, gear=[-1, 0, 0, 0, 0, 0])
 
 
 def add_coupling_joint(spec: Spec, name: str) -> mujoco.MjsJoint:

@@ -21,6 +21,8 @@ from bench.trace.filter import Column
 Number = Any
 #: Values of an effect's quantities by their names - SI.
 Values = Mapping[str, Number]
+#: Least inertia of links along a recording over that in the configuration of the MJCF.
+LEAST_LINK = 0.1
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,8 @@ class Signals:
         began: the recording, since the start of the first of several that are joined - s.
         known: other known torque - N*m (N) -, as a column; () where none is.
         known_inertia: by which the momentum in that has the noise of the speed - kg*m**2 (kg) - (n,).
+        known_slope: by which it differs where the load is not where the motor is - N*m/rad (N/m) - (n,).
+        link_inertia: of the links on which it acts, as the motor has it - kg*m**2 (kg); 0 where it acts on none.
         of_motion: what the motion takes from the effort before it is `effort` - N*m (N) -: induced voltage, a known
             weight. A shift of the effort's signal against the motion does not move it.
     """
@@ -61,6 +65,8 @@ class Signals:
     began: float = 0.0
     known: Column = ()
     known_inertia: Array | float = 0.0
+    known_slope: Array | float = 0.0
+    link_inertia: float = 0.0
     of_motion: Array | float = 0.0
 
     @property
@@ -75,6 +81,31 @@ class Signals:
     def unit(self) -> Axis:
         """The axis of J = K_w = K_0 = 1, for which a strength is the quantity itself."""
         return Axis(1.0, 1.0, 1.0, peak_effort=self.peak_effort)
+
+    @cached_property
+    def carried(self) -> Array:
+        """Known torque - N*m (N) - (n,)."""
+        parts = [np.gradient(values, self.sample_period) if order else values for values, order in self.known]
+        return np.sum(parts, axis=0) if parts else np.zeros_like(self.time)
+
+    @cached_property
+    def heavier(self) -> float:
+        """Inertia of the links on average, as a payload and where they are make it, over `link_inertia`; 1 without."""
+        if not self.known or not self.link_inertia > 0.0:
+            return 1.0
+        return max(1.0 + float(np.mean(self.known_inertia)) / self.link_inertia, LEAST_LINK)
+
+    @cached_property
+    def pull(self) -> tuple[Array, Array] | None:
+        """Deceleration of links by known torque on them - rad/s**2 (m/s**2) -, and its slope - 1/s**2 -; None of none.
+
+        That of links where the motor is, and by how much it grows as they are ahead: (n,) each.
+        """
+        if not self.known or not self.link_inertia > 0.0:
+            return None
+        own = (self.heavier - 1.0) * self.link_inertia * np.gradient(self.velocity, self.sample_period)
+        slope, inertia = np.broadcast_to(self.known_slope, self.time.shape), self.heavier * self.link_inertia
+        return (self.carried - own) / inertia, slope / inertia
 
     @cached_property
     def course(self) -> Array:

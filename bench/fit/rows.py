@@ -25,11 +25,12 @@ from bench.trace.motion import (
     Conditioning,
     condition,
     integrated,
+    known_along,
     known_column,
-    known_inertia,
     known_sign,
     raw_speed,
 )
+from bench.trace.signals import KNOWN_INERTIA, KNOWN_SLOPE
 from bench.trace.trace import Trace
 
 #: Widest filter - s: shapes of friction live in the milliseconds around a reversal.
@@ -175,7 +176,7 @@ class Rows:
         peak_effort = float(constant.torque(np.asarray(peak))) if constant and peak else peak_effort or largest
         begins = float(trace.time[0]) if begins is None else begins
         parts = [
-            (_signals(trace, effort, driven, part, conditioning, peak_effort, begins), part.start)
+            (_signals(trace, rig, effort, driven, part, conditioning, peak_effort, begins), part.start)
             for part in trace.segments
             if part.stop - part.start > 4 * conditioning.filter.margin
         ]
@@ -406,6 +407,7 @@ def known_of(signals: Signals) -> list[Column]:
 
 def _signals(
     trace: Trace,
+    rig: Rig,
     effort: Array,
     driven: Array,
     part: slice,
@@ -418,6 +420,7 @@ def _signals(
     speed = raw_speed(source, conditioning.source, period)
     velocity = speed if conditioning.source == "position" or "velocity" not in trace else trace["velocity"][part]
     sign = known_sign(speed, conditioning.sign_threshold)
+    load = rig.load
     return Signals(
         time=trace.time[part] - (trace.start_of(part) if trace.joined else begins),
         began=trace.start_of(part) - begins if trace.joined else 0.0,
@@ -431,7 +434,9 @@ def _signals(
         sample_period=period,
         source=conditioning.source,
         known=known_column(trace, part),
-        known_inertia=known_inertia(trace, part),
+        known_inertia=known_along(trace, part, KNOWN_INERTIA),
+        known_slope=known_along(trace, part, KNOWN_SLOPE),
+        link_inertia=(load.link_inertia or 0.0) / load.gear_ratio**2 if load is not None else 0.0,
         of_motion=(driven - effort)[part],
     )
 

@@ -45,6 +45,8 @@ BLOCK_WIDTHS = 8.0
 BLOCKS = 512
 #: Power of a combination of scaled columns below which it is none but rounding.
 ROUNDING = 1e-13
+#: Norm of a column, in its unit, below which its squares underflow.
+VANISHED = 1e-140
 #: Steps of a bounded least squares for each bound, far above the two or three that it takes.
 MOST_TURNS = 20
 #: Share of the largest eigenvalue below which columns that are held against another one count as dependent.
@@ -242,7 +244,7 @@ def solved(gram: Array, moment: Array, noise: Array) -> tuple[Array, Array]:
     Automatica 43(6), 2007, eq. 40).
     """
     scale = np.sqrt(np.diag(gram))
-    scale = np.where(scale > 0.0, scale, 1.0)
+    scale = np.where(scale > VANISHED, scale, 1.0)
     scales = np.outer(scale, scale)
     inverse = symmetric_inverse((gram - noise) / scales, ROUNDING) / scales
     return inverse @ moment, inverse
@@ -622,10 +624,11 @@ class Floor:
         """Power of noise of effort and speed in the torque balance before the filter - (N*m)**2 (N**2) - (..., k).
 
         s_M**2*|(1 + tau*s)*(1 + T*s)|**2 + s_w**2*|((J + J_p)*s + K_w)*(1 + lag*s) + ...|**2
-        + s_p**2*|s*(1 + lag*s)|**2
+        + s_p**2*|s*(1 + lag*s)*(1 + J_l/J_k*G)|**2
 
         J_p - inertia by which the known momentum has the speed's noise: of a joint where the arm is, less that in the
-        configuration of the MJCF; s_p - what else of noise it has.
+        configuration of the MJCF; s_p - what else of noise it has; G - of a coupling through which known torque passes,
+        as it acts on links of inertia J_k behind it: load's acceleration over the motor's, less one.
 
         Args:
             omega: angular frequencies - rad/s (k,).
@@ -635,16 +638,18 @@ class Floor:
         moving, _ = delays(self.rows, self.hypothesis)
         s = np.asarray(1j * omega, dtype=np.complex128)
         kinetic = (theta[BASE.index(INERTIA)] + self.layout.known) * s + theta[BASE.index(VISCOUS)]
+        links, behind = np.ones_like(s), self.rows.stretches[0].signals.link_inertia
         for index, term in enumerate(self.hypothesis.terms):
             if isinstance(term.effect, Coupling):
                 transfer = term.effect.noise_of_motion(term.shape, omega)
                 kinetic = kinetic + theta[owners == index][0] * s * transfer
+                links = links + theta[owners == index][0] / behind * transfer if behind > 0.0 else links
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
         late = (1.0 + (self.hypothesis.shift + theta[BASE.index(MISALIGNMENT)]) * s) * (
             1.0 + effort_lag(self.hypothesis) * s
         )
         effort = conditioning.effort_noise**2 * _square(late)
-        known = conditioning.known_noise**2 * _square((1.0 + moving * s) * s)
+        known = conditioning.known_noise**2 * _square((1.0 + moving * s) * s * links)
         return effort + (known + source * _square(kinetic)) / self._acting**2
 
     def _colour(self) -> tuple[float, float]:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import TypeVar
+
+import numpy as np
 
 from bench.arrays import rms
 from bench.axis_kind import ARMATURE, COULOMB, INERTIA, VISCOUS, AxisKind
@@ -14,6 +17,7 @@ from bench.effects.catalogue import catalogue
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.fit.determined import refused_masses
 from bench.fit.estimate import Estimate, RefusedEstimateError
+from bench.fit.hypothesis import seen_by
 from bench.fit.identify import identify
 from bench.fit.rows import Rows
 from bench.gate.check import Check
@@ -26,7 +30,7 @@ from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
-from bench.plant.robot import AddedBody, Poses, Robot, joint_rig, read_along
+from bench.plant.robot import AddedBody, Poses, Robot, Twist, joint_rig, read_along
 from bench.rig.rig import Rig
 from bench.servos.breakaway import StaticFriction
 from bench.servos.commanded import Coefficients, Gains
@@ -62,6 +66,7 @@ class JointLogs:
         stand: whether a floating base is fixed.
         goals: whether the logs hold goals of position controllers instead of efforts.
         gains: of the joint's controller, where they are known.
+        twists: of links behind soft or loose gears in each log, where they are known.
     """
 
     joint: str
@@ -77,6 +82,7 @@ class JointLogs:
     goals: bool = False
     gains: Gains | None = None
     compare: bool = False
+    twists: Mapping[Path, Mapping[str, Twist]] = field(default_factory=dict)
 
     def robot(self) -> Robot:
         """The robot around the joint; InputError as `Robot.of`."""
@@ -85,9 +91,9 @@ class JointLogs:
     def robot_of(self, log: Path) -> Robot:
         """The robot as it was in a log, its load in addition to the same inertia in all; InputError as `Robot.of`."""
         first = self.robot()
-        if log not in self.mjcfs:
-            return first
-        return replace(Robot.of(self.mjcfs[log], self.joint, self.added, self.stand), datum=first.inertia)
+        if log in self.mjcfs:
+            first = replace(Robot.of(self.mjcfs[log], self.joint, self.added, self.stand), datum=first.inertia)
+        return replace(first, twists=self.twists.get(log, {}))
 
 
 @dataclass(frozen=True)
@@ -128,6 +134,7 @@ class IdentifiedJoint:
         constant: torque (force) constant by the weight of the links, of logs that hold a current and no rig that states
             it.
         goals: what they show, where the torque followed from goals.
+        twists: of its links against the motor in each log, where an effect couples them.
     """
 
     name: str
@@ -142,6 +149,7 @@ class IdentifiedJoint:
     payloads: bool = False
     constant: Parameter | None = None
     goals: Goals | None = None
+    twists: Mapping[Path, Twist] = field(default_factory=dict)
     friction_models: tuple[FrictionModel, ...] = ()
 
     @property
@@ -263,7 +271,23 @@ def diagnosed(asked: JointLogs, rig: Rig, logs: Read, holdout: Callable[[], Read
         motion=motion,
         payloads=payloads,
         friction_models=models,
+        twists=_twists(found, {log: trace for log, (trace, _) in (used | unseen).items()}, rig),
     )
+
+
+def _twists(found: Diagnosis, traces: Mapping[Path, Trace], rig: Rig) -> dict[Path, Twist]:
+    """By how much links are ahead of their motor in each log, on the joint's side, if an effect couples them."""
+    hypothesis, twists = found.balance.hypothesis, dict[Path, Twist]()
+    ratio = rig.load.gear_ratio if rig.load is not None else 1.0
+    for (coupling, shape), (log, trace) in product(hypothesis.couplings, traces.items()):
+        angle, rate = np.zeros((2, len(trace)))
+        for part in seen_by(Rows.of(trace, rig), hypothesis).stretches:
+            (column, *_) = coupling.columns(part.signals, shape)
+            samples = slice(part.start, part.start + part.signals.time.size)
+            angle[samples] = next(values for values, order in column if order == 2) / ratio
+            rate[samples] = np.gradient(angle[samples], trace.sample_period)
+        twists[log] = trace.time, angle, rate
+    return twists
 
 
 def of_each(

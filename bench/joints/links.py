@@ -6,7 +6,7 @@ a link about its joint's axis causes is linear in that. Each is a column of ever
 joint's own inertia and friction, and its strength is common to all:
 
     M_j = J_j*alpha_j + K_wj*omega_j + f_j*sgn(omega_j) + sum over k of s_k*C_jk
-    f_j = K_0j + mu_j*|M_j| + sum over l of a_jl*exp(-(omega_j/w_l)**2)
+    f_j = K_0j + mu_j*|M_known,j| + sum over l of a_jl*exp(-(omega_j/w_l)**2)
 
 C_jk - known torque of the robot with the change less that without, per unit of it. Joints weigh by what they leave. The
 covariance is that of scores summed over stretches of time, in which residuals are correlated (K.-Y. Liang, S. L. Zeger,

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from bench.axis_kind import ARMATURE
+from bench.effects.effect import Coupling
 from bench.effects.present import named
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.export.mjcf import Armature, robot_with
@@ -21,6 +23,8 @@ from bench.plant.robot import AddedBody, joint_units
 from bench.presented import Shown
 from bench.rig.given import GivenRig, rig_of
 
+#: Joints at most whose links' motion behind soft or loose gears is taken into account.
+MOST_LOOSE = 3
 #: Share of the progress in which a payload is sought.
 SEEKING = 0.3
 
@@ -150,6 +154,12 @@ def _answered(
     added = sought.added if sought is not None else payload
     work = carrying(work, [added]) if isinstance(added, AddedBody) else work
     found = _identified(work, lambda share: progress(SEEKING + (1.0 - SEEKING) * share))
+    for _ in range(MOST_LOOSE):
+        tried = [_with_links(work, found, name, progress) for name in _loose(found, work)]
+        gains = [_explained(found, after) for _, after in tried]
+        if max(gains, default=0.0) <= 0.0:
+            break
+        work, found = tried[gains.index(max(gains))]
     open_ = [one for one in found.values() if one.diagnosis and one.diagnosis.verdict == "unexplained_remainder"]
     links = doubt_links(work) if open_ else []
     if links:
@@ -157,6 +167,42 @@ def _answered(
         found = _identified(work, progress)
     added = work[0].added if work else ()
     return IdentifiedRobot(of_all.mjcf, found, sought, tuple(links), tuple(warnings), added, of_all.stand)
+
+
+def _loose(found: Mapping[str, IdentifiedJoint], work: Sequence[JointLogs]) -> list[str]:
+    """Joints with a soft or loose gear of a size that is determined, whose links' motion is not taken into account."""
+    known = {name for twists in work[0].twists.values() for name in twists}
+    sizes = {
+        name: next(iter(effect.parameters.values()))
+        for name, joint in found.items()
+        for effect in joint.diagnosis or ()
+        if isinstance(effect.effect, Coupling) and joint.twists and name not in known
+    }
+    return [name for name, size in sizes.items() if size.ci95[0] > 0.0]
+
+
+def _with_links(
+    work: Sequence[JointLogs], found: Mapping[str, IdentifiedJoint], name: str, progress: Callable[[float], None]
+) -> tuple[list[JointLogs], dict[str, IdentifiedJoint]]:
+    """All joints with the motion of one's links, which no encoder measures and all feel."""
+    known = work[0].twists
+    twists = {log: {**known.get(log, {}), name: twist} for log, twist in found[name].twists.items()}
+    more = [replace(asked, twists=twists) for asked in work]
+    return more, _identified(more, progress)
+
+
+def _explained(before: Mapping[str, IdentifiedJoint], after: Mapping[str, IdentifiedJoint]) -> float:
+    """Logarithms of how far residuals of all joints fell, summed: which gear is soft shows where all are explained."""
+    fell = [(_left(one), _left(after[name])) for name, one in before.items()]
+    if any(last is None for first, last in fell if first is not None):
+        return -math.inf
+    return sum(math.log(first / max(last, 1e-300)) for first, last in fell if first is not None and last is not None)
+
+
+def _left(joint: IdentifiedJoint) -> float | None:
+    """RMS residual of a joint with its effects; None of one that has no diagnosis."""
+    gap = None if joint.diagnosis is None else joint.diagnosis.torque.final
+    return None if gap is None else gap[1]
 
 
 def _mjcfs(mjcf: str | Path | Sequence[str | Path], logs: Sequence[Path]) -> tuple[Path, dict[Path, Path]]:

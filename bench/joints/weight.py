@@ -1,7 +1,7 @@
 """What the known weight of the links shows of a joint's effort: its torque constant, and a payload that is another.
 
     I = (J*alpha + K_w*omega + f*sgn(omega))/kT + M_known/kT
-    f = K_0 + mu*|M| + sum over l of a_l*exp(-(omega/w_l)**2)
+    f = K_0 + mu*|M_known| + sum over l of a_l*exp(-(omega/w_l)**2)
 
 I - current - A; M_known - torque of the links by the MJCF - N*m (N). Without a known torque kT cannot be distinguished
 from inertia and friction. Its sign is the joint's: of a log that counts the current the other way it is negative. Where
@@ -47,11 +47,12 @@ def own_columns(rows: Rows) -> Array:
 def _frictions(signals: Signals) -> list[Column]:
     """Friction by transmitted torque, and by speeds that are a share of the usual one.
 
-    No joint has been diagnosed yet: the part of its friction that is not a level would pass for weight.
+    No joint has been diagnosed yet: the part of its friction that is not a level would pass for weight. What is
+    transmitted is what the links ask: where friction takes nearly all, the measured torque would explain itself.
     """
     speed = np.abs(signals.velocity)
     slow = (np.exp(-((speed / (share * rms(speed) + 1e-300)) ** 2)) for share in SLOW)
-    return [[(signals.sign * shape, 0)] for shape in (np.abs(signals.torque), *slow)]
+    return [[(signals.sign * shape, 0)] for shape in (np.abs(signals.carried), *slow)]
 
 
 def needs_constant(rig: Rig, trace: Trace) -> bool:

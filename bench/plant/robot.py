@@ -13,7 +13,7 @@ correctly (R. Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 2).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -40,6 +40,8 @@ from bench.trace.trace import Trace, assemble, with_known
 
 #: Times of a log - s (n,) -, and where a robot's joints were, by name - rad (m) (n,).
 Poses = tuple[Array, dict[str, Array]]
+#: Times of a log - s -, by how much a link is ahead of its motor - rad (m) - and faster - rad/s (m/s) -, (n,) each.
+Twist = tuple[Array, Array, Array]
 #: Poses evaluated at once, which bounds memory.
 TOGETHER = 4096
 #: Time over which the change of the mass matrix along the motion is taken, to both sides - s.
@@ -131,6 +133,7 @@ class Robot:
         notes: what was left out of the model.
         datum: inertia of all that the joint carries to which the load of the links is in addition - kg*m**2 (kg); None
             for that in the configuration of the MJCF.
+        twists: of joints behind a soft or loose gear, by name.
     """
 
     model: mujoco.MjModel
@@ -139,6 +142,7 @@ class Robot:
     joints: tuple[int, ...]
     notes: tuple[str, ...] = ()
     datum: float | None = None
+    twists: Mapping[str, Twist] = field(default_factory=dict)
 
     @classmethod
     def of(cls, path: Path, joint: str | None, added: Sequence[AddedBody] = (), stand: bool = False) -> Robot:
@@ -168,8 +172,8 @@ class Robot:
             found = f"found {reason}, whose torque is in no log"
             raise InputError(f"{path}: joint '{joint}'", found, "allowed: a joint that only its motor moves")
         dof = model.joint(joint).dofadr[0]
-        for field in (model.dof_armature, model.dof_damping, model.dof_dampingpoly, model.dof_frictionloss):
-            field[dof] = 0.0
+        for own in (model.dof_armature, model.dof_damping, model.dof_dampingpoly, model.dof_frictionloss):
+            own[dof] = 0.0
         model.opt.disableflags |= DISABLED
         return cls(model, joint, str(path), joints, notes)
 
@@ -248,6 +252,13 @@ class Robot:
             torque[part] = -np.sum(turning[:, dof] * carried + axes[:, dof] * weight, axis=1) - passive[:, dof]
             momentum[part] = np.sum(axes[:, dof] * carried, axis=1) - self.inertia * w[:, dof]
         return torque, momentum
+
+    def slope(self, position: Array, velocity: Array) -> Array:
+        """How r of `rest` changes with the joint's own position - N*m/rad (N/m) - (n,)."""
+        step = np.zeros_like(position)
+        step[:, self.names.index(self.joint)] = SLOPE_STEP
+        ahead, behind = (self.rest(position + side * step, velocity)[0] for side in (1.0, -1.0))
+        return (ahead - behind) / (2.0 * SLOPE_STEP)
 
     def grown(self, position: Array) -> Array:
         """The joint's own inertia at positions of `joints` (n, joints) less `inertia` - kg*m**2 (kg) - (n,)."""
@@ -442,23 +453,16 @@ def read_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) 
     return _known(moved, rig, robot, ())[0], (trace.time, dict(zip(robot.names, position.T, strict=True)))
 
 
-def read_goals(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], slope: str) -> Trace:
+def read_goals(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Trace:
     """A log of a joint's goal and position with the torque of its links, all on the joint's side; it needs no effort.
 
-    InputError as `read_log`, but for an effort. `slope` is the name of a signal that is added: how that torque changes
-    with the joint's position - N*m/rad (N/m).
+    InputError as `read_log`, but for an effort.
     """
     trace, position, velocity, _ = _moved(path, rig, robot, stated)
     ratio, unit = (rig.of_joint(robot.joint).load or Load()).gear_ratio, UNITS_OF_EFFORT[robot.unit(robot.joint)]
     own = {name: trace[name] / ratio for name in ("position", "velocity", "position_reference") if name in trace}
-    torque, momentum = robot.rest(position, velocity)
-    step = np.zeros_like(position)
-    step[:, robot.names.index(robot.joint)] = SLOPE_STEP
-    ahead, behind = (robot.rest(position + side * step, velocity)[0] for side in (1.0, -1.0))
-    trace = with_known(trace.with_signals(own, {}), torque, momentum, unit)
-    return trace.with_signals(
-        {slope: (ahead - behind) / (2.0 * SLOPE_STEP)}, {slope: f"{unit}/{robot.unit(robot.joint)}"}
-    )
+    known, slope = robot.rest(position, velocity), robot.slope(position, velocity)
+    return with_known(trace.with_signals(own, {}), *known, unit, slope=slope)
 
 
 def read_commanded(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Trace, Poses]:
@@ -510,7 +514,9 @@ def _known(
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
     ratio = (own.load or Load()).gear_ratio
     grown = robot.grown(position) / ratio**2
-    known = [with_known(trace, asked / ratio, moving / ratio, own.effort_unit, grown) for asked, moving in every]
+    # of a twist that is known it is the torque already
+    slope = None if robot.joint in robot.twists else robot.slope(position, velocity) / ratio**2
+    known = [with_known(trace, asked / ratio, moving / ratio, own.effort_unit, grown, slope) for asked, moving in every]
     standing = _standing(position, velocity, torque, robot, stand, ratio)
     return [replace(one, notes=(*robot.notes, *one.notes), metadata={**one.metadata, **standing}) for one in known]
 
@@ -560,6 +566,10 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
             allowed += f'({", ".join(axes_of(recording.channels))}): axis = "..." under [joints.{name}] in a rig'
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
         motion[name] = found
+        if name in robot.twists:
+            time, *twist = robot.twists[name]
+            angle, rate = (np.interp(trace.time, time, more) for more in twist)
+            motion[name] = found[0] + angle, found[1] + rate
         _require_within(found[0], name, robot, path)
     position, velocity = (np.column_stack([motion[name][k] for name in robot.names]) for k in (0, 1))
     return trace, position, velocity, stand

@@ -14,7 +14,7 @@ from mujoco import rollout
 from mujoco.batch import MODEL_FIELDS, Batch
 
 from bench.arrays import Array
-from bench.effects.mjcf import AXIS, BRISTLE_LEVELS, BRISTLES, DRIVE
+from bench.effects.mjcf import AXIS, BRISTLE_LEVELS, BRISTLES, DRIVE, LINKS
 from bench.errors import InputError, SimulationError
 from bench.plant.drive import TORQUE, CascadeDrive, FollowReferences, References
 from bench.plant.plant import DIVERGED, ClosedLoop, PlannedInputs, Plant, States
@@ -90,6 +90,7 @@ def run_native(loop: ClosedLoop) -> States:
     data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]] = loop.position + half * loop.velocity, loop.velocity
     state = np.empty((1, mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)))
     mujoco.mj_getState(model, data, state[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    links = _links(model)
     qpos, qvel, torque = 1 + joint.qposadr[0], 1 + model.nq + joint.dofadr[0], model.sensor(TORQUE).adr[0]
     time = loop.time[::every]
     found = np.full((3, time.size), np.nan)
@@ -97,6 +98,7 @@ def run_native(loop: ClosedLoop) -> States:
         *held, effort, known = loop.controller(start, stop).T
         planned, inputs = np.column_stack([*held, effort - known]), np.zeros((1, stop - start, model.nu))
         inputs[0, :, first : first + planned.shape[1]] = planned
+        inputs[0, :, links] = known[:, None]
         # where the solver starts its search is no part of the state, but of the last bits of the result
         warm = data.qacc_warmstart[None].copy()
         after, sensors = rollout.rollout([model], [data], state, inputs, initial_warmstart=warm)
@@ -133,7 +135,7 @@ def run_side_by_side(loops: Sequence[ClosedLoop]) -> list[States]:
     dof, inputs = int(joint.dofadr[0]), slice(model.actuator_ctrladr[actuator], None)
     position, velocity = batch.bind("qpos")[:, joint.qposadr[0]], batch.bind("qvel")[:, dof]
     applied, setpoints = batch.bind("qfrc_applied")[:, dof], batch.bind("ctrl")[:, inputs]
-    effort = setpoints[:, model.actuator_ctrlnum[actuator] - 1]
+    effort, links = setpoints[:, model.actuator_ctrlnum[actuator] - 1], batch.bind("ctrl")[:, _links(model)]
     bristles = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, BRISTLES)
     level, armature = batch.expand("dof_frictionloss")[:, dof : dof + 1], batch.expand("dof_armature")[:, dof]
     if bristles >= 0:
@@ -152,11 +154,19 @@ def run_side_by_side(loops: Sequence[ClosedLoop]) -> list[States]:
         if inertia is not None:
             armature[:] = bare + inertia
         setpoints[:, : planned.shape[1] - 2], effort[:] = planned[:, :-2], acting - planned[:, -1]
+        links[:] = planned[:, -1:]
         batch.step()
         if k % every == 0:
             found[:, k // every] = here - half * speed, speed, flows, acting
     found[:, :, batch.bind("time") < 2.0 * half * (first.ticks - 0.5)] = np.nan
     return [States(first.time[::every], *signals) for signals in found.transpose(2, 0, 1)]
+
+
+def _links(model: mujoco.MjModel) -> slice:
+    """Where the known torque on a load behind a coupling is among the inputs: one place, or none."""
+    actuator = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, LINKS)
+    at = model.actuator_ctrladr[actuator] if actuator >= 0 else 0
+    return slice(at, at + (actuator >= 0))
 
 
 def _batch_of(loops: Sequence[ClosedLoop]) -> Batch:
@@ -185,6 +195,7 @@ class _TickedAxis:
         dof, bristles = int(joint.dofadr[0]), mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, BRISTLES)
         self._position, self._velocity = data.qpos[joint.qposadr[0] :], data.qvel[dof:]
         self._setpoints, self._effort = data.ctrl[at : at + inputs - 1], data.ctrl[at + inputs - 1 :]
+        self._links = data.ctrl[_links(model)]
         self._applied, self._armature = data.qfrc_applied[dof:], model.dof_armature[dof:]
         self._level = model.dof_frictionloss[dof : dof + 1]
         if bristles >= 0:
@@ -231,7 +242,7 @@ class _TickedAxis:
                 self._level[:] = friction
             if inertia is not None:
                 self._armature[0] = self._bare + inertia
-        self._effort[0] = acting - known
+        self._effort[0], self._links[:] = acting - known, known
         mujoco.mj_step(self._model, self.data)
         return flows, acting
 

@@ -24,6 +24,7 @@ import numpy as np
 
 from bench.arrays import Array
 from bench.effects.effect import Stage
+from bench.effects.mjcf import pull_load
 from bench.effects.signals import AxisState
 from bench.errors import InputError, SimulationError
 from bench.plant.axis_model import AxisModel
@@ -147,6 +148,8 @@ def _loops(
     timestep, velocity = trace.sample_period / substeps, measured_velocity(trace)
     spec, mechanics = model.spec(timestep), model.with_effects(model.at_stage((Stage.COMMUTATION, Stage.MECHANICS)))
     add_pid(spec, holding_cascade(held.inertia or model.parameters.inertia, timestep, bandwidth))
+    if model.coupled and held.known is not None and held.known.any():
+        pull_load(spec)
     try:
         compiled = spec.compile()
     except ValueError as error:

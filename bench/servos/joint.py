@@ -16,9 +16,6 @@ from bench.rig.rig import Rig
 from bench.servos.commanded import Gains
 from bench.trace.trace import Trace
 
-#: Signal of a trace: how the known torque changes with the joint's position - N*m/rad (N/m).
-KNOWN_SLOPE = "known_slope"
-
 
 @dataclass(frozen=True)
 class JointModel:
@@ -70,7 +67,7 @@ class JointModel:
         """A log on the joint's side of the gear, with the torque of the links; InputError as `read_goals`."""
         if isinstance(log, Trace):
             raise InputError("log", "found a trace in memory with an MJCF", "allowed: the file of a log of the robot")
-        return read_goals(Path(log), self.rig, self.robot, self.stated, KNOWN_SLOPE)
+        return read_goals(Path(log), self.rig, self.robot, self.stated)
 
 
 def gains_of(mjcf: Path, stand: bool) -> dict[str, Gains]:

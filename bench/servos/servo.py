@@ -27,12 +27,12 @@ from bench.parameter import Parameter
 from bench.presented import Presented
 from bench.rig.rig import Rig
 from bench.servos.fit import FORGETS, ServoFit, ServoLog, around, fitted, recorded
-from bench.servos.joint import KNOWN_SLOPE, JointModel
+from bench.servos.joint import JointModel
 from bench.servos.model import Stretches, simulated
 from bench.servos.quantities import Quantities, quantities, warnings_of
 from bench.trace.noise import resolution, white_noise
 from bench.trace.read import read
-from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
+from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_SLOPE, KNOWN_TORQUE
 from bench.trace.trace import Trace, join
 
 #: A gain whose interval is wider than this share of it is not determined, nor is an inertia.

@@ -290,9 +290,9 @@ def known_column(trace: Trace, part: slice) -> Column:
     return (trace[KNOWN_TORQUE][part], 0), (trace[KNOWN_MOMENTUM][part], 1)
 
 
-def known_inertia(trace: Trace, part: slice) -> Array | float:
-    """Inertia by which known momentum along a stretch has the speed's noise - kg*m**2 (kg) - (n,); 0 if none is."""
-    return trace[KNOWN_INERTIA][part] if KNOWN_INERTIA in trace else 0.0
+def known_along(trace: Trace, part: slice, signal: str) -> Array | float:
+    """KNOWN_INERTIA or KNOWN_SLOPE along a stretch - SI - (n,); 0 if there is none."""
+    return trace[signal][part] if signal in trace else 0.0
 
 
 def stretches_of(trace: Trace) -> tuple[slice, ...]:

@@ -32,6 +32,7 @@ SI_UNITS: dict[str, tuple[str, str]] = {
 
 #: What is known to act on an axis, which no file contains (`bench.trace.trace.with_known`).
 KNOWN_TORQUE, KNOWN_MOMENTUM, KNOWN_INERTIA = "known_torque", "known_momentum", "known_inertia"
+KNOWN_SLOPE = "known_slope"
 #: Keys of a trace's metadata: where other joints of a robot were stated to stand, in words, and the torque that the
 #: one of them that is felt most would put on the axis where it moves - N*m (N).
 STANDING, STANDING_ASK = "standing", "standing_ask"

@@ -27,7 +27,7 @@ from bench.presented import Shown
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, assumed_note, choose, reading_options
 from bench.trace.in_si import SampledSignal, in_si
-from bench.trace.signals import KNOWN_INERTIA, KNOWN_MOMENTUM, KNOWN_TORQUE
+from bench.trace.signals import KNOWN_INERTIA, KNOWN_MOMENTUM, KNOWN_SLOPE, KNOWN_TORQUE
 from bench.trace.time_base import HOLE, TimeBase, interpolate, regular
 from bench.trace.wraps import Wraps
 
@@ -52,6 +52,7 @@ LARGEST = {
     KNOWN_TORQUE: 1e12,
     KNOWN_MOMENTUM: 1e12,
     KNOWN_INERTIA: 1e12,
+    KNOWN_SLOPE: 1e12,
 }
 #: A signal that never exceeds this has a square that underflows - SI.
 SMALLEST = 1e-30
@@ -308,7 +309,14 @@ def require_plausible(trace: Trace) -> None:
         raise InputError(f"{trace.origin}: time", f"found a sample every {period:g} s", allowed)
 
 
-def with_known(trace: Trace, torque: Array, momentum: Array, unit: str, inertia: Array | None = None) -> Trace:
+def with_known(
+    trace: Trace,
+    torque: Array,
+    momentum: Array,
+    unit: str,
+    inertia: Array | None = None,
+    slope: Array | None = None,
+) -> Trace:
     """A recording with known torque on its axis in addition to its inertia and friction, e.g. of the rest of a robot.
 
         M_known = r + dp/dt
@@ -321,10 +329,15 @@ def with_known(trace: Trace, torque: Array, momentum: Array, unit: str, inertia:
         momentum: p, whose rate is the torque due to acceleration - unit*s - (n,).
         unit: N*m (N).
         inertia: dp/d(omega), by which the noise of the speed is in the momentum - kg*m**2 (kg) - (n,); None for 0.
+        slope: dr/dq, by which the torque differs on a load that is not where the motor is - unit/rad (unit/m) - (n,);
+            None for 0.
     """
-    inertia = np.zeros(len(trace)) if inertia is None else inertia
-    signals = {KNOWN_TORQUE: torque, KNOWN_MOMENTUM: momentum, KNOWN_INERTIA: inertia}
-    units = {KNOWN_TORQUE: unit, KNOWN_MOMENTUM: f"{unit}*s", KNOWN_INERTIA: trace.axis_kind.inertia_unit}
+    kind, nothing = trace.axis_kind, np.zeros(len(trace))
+    signals = {KNOWN_TORQUE: torque, KNOWN_MOMENTUM: momentum}
+    signals[KNOWN_INERTIA] = nothing if inertia is None else inertia
+    signals[KNOWN_SLOPE] = nothing if slope is None else slope
+    units = {KNOWN_TORQUE: unit, KNOWN_MOMENTUM: f"{unit}*s", KNOWN_INERTIA: kind.inertia_unit}
+    units[KNOWN_SLOPE] = f"{unit}/{kind.length_unit}"
     return trace.with_signals(signals, units)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from bench.fit.solution import bounded
+from bench.fit.solution import bounded, solved
 
 
 @pytest.mark.parametrize("correlated", [0.0, 0.9, 0.99])
@@ -30,3 +30,10 @@ def test_least_squares_within_bounds_is_that_of_a_general_solver(correlated):
         assert all(theta[place] in bounds[place] for place in at)
         held += bool(at)
     assert held > 300
+
+
+def test_a_column_whose_squares_underflow_explains_nothing():
+    columns = np.random.default_rng(0).standard_normal((100, 2)) * [1.0, 1e-160]
+    effort = 3.0 * columns[:, 0]
+    theta, _ = solved(columns.T @ columns, columns.T @ effort, np.zeros((2, 2)))
+    assert theta == pytest.approx([3.0, 0.0])

@@ -5,6 +5,11 @@ from dataclasses import replace
 import pytest
 
 import bench
+from bench.effects.elastic_coupling import EFFECT as ELASTIC
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Term, plain
+from bench.fit.rows import Rows
+from bench.fit.solution import Floor
 from bench.plant.robot import Robot, joint_rig, read_log
 from tests.export.two_links import HIDDEN, MJCF, log, write_log
 
@@ -18,3 +23,19 @@ def test_what_is_left_of_a_joint_that_is_explained_wholly_is_the_floor(tmp_path,
     rig = joint_rig(None, robot)
     left = bench.identify(read_log(logged, rig, robot, {}), rig).residual
     assert left.rms / left.noise_floor == pytest.approx(1.0, abs=0.03)
+
+
+def test_noise_of_the_known_torque_stays_on_a_link_that_hangs_loose(tmp_path):
+    """The motor feels none of it where the spring is so soft that the link does not follow."""
+    (tmp_path / "arm.xml").write_text(MJCF)
+    logged = write_log(tmp_path / "log.csv", log(replace(HIDDEN, cogging=0.0)))
+    robot = Robot.of(tmp_path / "arm.xml", "shoulder")
+    rig = joint_rig(None, robot)
+    rows = Rows.of(read_log(logged, rig, robot, {}), rig)
+    found = fit(rows, plain(rows).plus(Term(ELASTIC, (1e-2, 0.1))))
+    theta = found.theta.copy()
+    theta[found.owners == 0] = rows.stretches[0].signals.link_inertia
+    loud = replace(rows, conditioning=replace(rows.conditioning, known_noise=100.0 * rows.conditioning.known_noise))
+    white = [Floor(one, found.hypothesis, found.layout, theta, found.left).white for one in (rows, loud)]
+    assert rows.conditioning.known_noise > 0.0
+    assert white[1] == pytest.approx(white[0], rel=1e-3)

@@ -10,6 +10,7 @@ from bench.joints.identified import JointLogs
 from bench.joints.links import doubt_links, seek_payload
 from bench.plant.robot import AddedBody, Robot
 from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
+from tests.joints import ur5e
 
 #: The forearm's inertia about its centre, and as an MJCF has it that counts the parallel-axis share twice.
 ONCE, TWICE = (f'diaginertia="{own} {own} 1e-3"' for own in (I2, I2 + M2 * C2**2))
@@ -94,3 +95,11 @@ def test_a_body_that_is_not_there_is_named(tmp_path):
         seek_payload(of_arm(tmp_path, log()), "foream", lambda share: None)
     with pytest.raises(InputError, match="found no body 'foream', did you mean 'forearm'"):
         Robot.of(tmp_path / "arm.xml", "elbow", (AddedBody("foream", 1.0),))
+
+
+def test_friction_that_takes_nearly_all_torque_doubts_no_link(tmp_path):
+    """The torque of a joint that always drives is its own magnitude along the motion, as which it explained itself."""
+    (tmp_path / "arm.xml").write_text(ur5e.mjcf())
+    hidden = [*(replace(one, effect="") for one in ur5e.HIDDEN[:5]), ur5e.Hidden(0.05, 0.8, 1.0)]
+    logged = write_log(tmp_path / "log.csv", ur5e.log(hidden, seed=0))
+    assert not doubt_links([JointLogs(joint, tmp_path / "arm.xml", (logged,)) for joint in ur5e.NAMES])
