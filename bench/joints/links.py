@@ -244,6 +244,8 @@ def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
     left = sum(float(np.log(_scores(_only(one, []), np.zeros(0))[1])) for one in products)
     while len(chosen) < MOST:
         tried = {k: shared(products, [*chosen, k]) for k in determined if k not in chosen}
+        # a link whose inertia would be negative explains something else that is missing
+        tried = {k: one for k, one in tried.items() if one.strengths[-1] > -work[k].robot().link_inertia}
         best = min(tried, key=lambda k: tried[k].left, default=None)
         if best is None or left - tried[best].left < TAKES:
             break
