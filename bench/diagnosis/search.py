@@ -97,7 +97,8 @@ class Search:
             elif not self.try_further(best, most):
                 break
             found = self.best()
-            waits = 0 if key_of(found) != key_of(best) else waits + 1
+            # what is a move away from sets that were found far from the most likely one has its turns, too
+            waits = 0 if following is None or key_of(found) != key_of(best) else waits + 1
             best = found
         self.add_decoy_waves(best)
         self.last, self.stopped = best, self.stopped if self.remains(best) else None
