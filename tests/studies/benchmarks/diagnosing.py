@@ -47,8 +47,9 @@ def measured(recordings: Mapping[str, Sequence[Files]] | None = None, rounds: in
     chosen = {**public(), **simulated()} if recordings is None else recordings
     rows = [_row(name, [_seconds(files, rounds) for files in several]) for name, several in chosen.items()]
     says = (
-        "CPU time of `bench.diagnose` in process, all threads together, on one machine that did other work at the same time; "
-        "simulated ones with a holdout, as `../shared/cases` has them. Of several recordings the mean and the longest."
+        "CPU time of `bench.diagnose` in process, all threads together, on one machine that did other work at the same "
+        "time; simulated ones with a holdout, as `../shared/cases` has them. Of several recordings the mean and "
+        "the longest."
     )
     return [Table(says, ("axis", "recordings", "mean", "longest"), tuple(rows))]
 
