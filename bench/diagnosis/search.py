@@ -97,7 +97,7 @@ class Search:
             elif not self.try_further(best, most):
                 break
             found = self.best()
-            # what is a move away from sets that were found far from the most likely one has its turns, too
+            # sets that were found far from the most likely one are expanded, too
             waits = 0 if following is None or key_of(found) != key_of(best) else waits + 1
             best = found
         self.add_decoy_waves(best)
