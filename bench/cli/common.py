@@ -89,6 +89,7 @@ AtOption = Annotated[
     list[str] | None,
     Option("--at", metavar="NAME=ANGLE", help="Of a joint that stands still and is not in the log. Repeatable."),
 ]
+StandOption = Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")]
 RIG_HELP = "Rig file (TOML), or a shipped rig's name: what is known about the axis."
 RigOption = Annotated[Path, Option("--rig", help=RIG_HELP, **_RIG)]
 OptionalRigOption = Annotated[Path | None, Option("--rig", help=RIG_HELP, **_RIG)]

@@ -188,7 +188,7 @@ def robot(
         Option(help="What a body carried: BODY=2.8kg@x,y,z in its frame, in m; BODY to seek it."),
     ] = None,
     without: Annotated[list[str] | None, Option(metavar="EFFECT", help="Effect not to try. Repeatable.")] = None,
-    stand: Annotated[bool, Option("--stand", help="Fix a floating base: the robot was on a stand.")] = False,
+    stand: common.StandOption = False,
     kp: Annotated[list[str] | None, Option(help="Gain of position controllers: 40, or NAME=40. Repeatable.")] = None,
     kd: Annotated[list[str] | None, Option(help="Their damping: 1, or NAME=1. Repeatable.")] = None,
     compare: Annotated[bool, Option("--compare", help="Compare friction models M1 to M6 by held-out torque.")] = False,

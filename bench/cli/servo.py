@@ -19,6 +19,7 @@ def servo(
     mjcf: common.MjcfOption = None,
     joint: common.JointOption = None,
     at: common.AtOption = None,
+    stand: common.StandOption = False,
     holdout: Annotated[Path | None, Option(help="Another log of the servo, not fitted.")] = None,
     out: Annotated[Path | None, Option(help="Folder for actuator, page and JSON.")] = None,
     json: common.JsonOption = None,
@@ -32,8 +33,9 @@ def servo(
 
     if len(joint or []) > 1:
         raise InputError("--joint", f"found {', '.join(joint or [])}", "allowed: one; run the command for each")
-    if mjcf is None and (joint or at):
-        raise InputError("--joint" if joint else "--at", "found without --mjcf", "allowed: with --mjcf")
+    alone = next((name for name, one in (("--joint", joint), ("--at", at), ("--stand", stand)) if one), None)
+    if mjcf is None and alone is not None:
+        raise InputError(alone, "found without --mjcf", "allowed: with --mjcf")
     known = None if rig is None else bench.load_rig(rig).on_axis(axis_name)
     stated: dict[str, float] = {}
     if mjcf is not None and at:
@@ -42,8 +44,8 @@ def servo(
         stated = common.positions(at, joint_units(mjcf))
     names, named = in_a_row(logs), next(iter(joint or []), None)
     with common.refusal_as_json(json, SCHEMA, ("kp", "kv")), progress(f"fitting the servo of {names}") as done:
-        found = bench.servo(logs, known, mjcf, named, holdout, stated, done)
-    options = {"joint": named, "at": at or [], "axis": axis_name}
+        found = bench.servo(logs, known, mjcf, named, holdout, stated, done, stand)
+    options = {"joint": named, "at": at or [], "axis": axis_name, "stand": stand}
     basis = provenance(rig, logs, options, holdout, mjcf)
     title = f"{readable(known.name) if known is not None else found.joint}: {names}"
     common.deliver(document_of(found, title, basis), lambda: servo_json(found, basis), json, out)

@@ -1,4 +1,7 @@
-"""A robot's joints by logs of goals and positions: each with the torque of its controller, then the delay of all."""
+"""A robot's joints by logs of goals and positions: each with the torque of its controller, then the delay of all.
+
+A joint of unknown gains is fitted as a servo, whose gains are among what is found.
+"""
 
 from __future__ import annotations
 
@@ -7,26 +10,29 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from bench.axis_kind import COULOMB, MISALIGNMENT, VISCOUS, AxisKind
+from bench.axis_kind import COULOMB, KINDS, MISALIGNMENT, OFFSET, VISCOUS, AxisKind
 from bench.diagnosis.diagnosis import Diagnosis
 from bench.errors import BenchError, InputError, UndeterminedError
 from bench.export.mjcf import PositionDrive
 from bench.fit.estimate import Estimate
 from bench.joints.identified import EFFECTS, Goals, IdentifiedJoint, JointLogs, diagnosed
+from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.model_file import StoredModel
 from bench.plant.robot import is_commanded, joint_rig, read_commanded
-from bench.rig.rig import Load
+from bench.rig.rig import Load, Rig
 from bench.servos.breakaway import static_friction
 from bench.servos.commanded import Delay, Gains, balance, shared, wrong_scale
-from bench.servos.joint import gains_of
-from bench.servos.servo import require_goal
+from bench.servos.joint import JointModel, gains_of
+from bench.servos.servo import Servo, by_logs, require_goal
 from bench.trace.trace import join
 
 #: Parameters of the command: no effect on the joint changes them, and they may be negative.
 COMMAND = ("dead_time", "joint_bias")
 #: Gains of joints: one for all, or of each by its name.
 GivenGain = float | Mapping[str, float] | None
+#: Parameters of a servo that a position actuator does not have.
+LACKING = ("speed_limit", *(kind.parameter(OFFSET) for kind in KINDS))
 
 
 def with_gains(work: Sequence[JointLogs], kp: GivenGain, kd: GivenGain) -> list[JointLogs]:
@@ -35,7 +41,7 @@ def with_gains(work: Sequence[JointLogs], kp: GivenGain, kd: GivenGain) -> list[
     Gains that are not given are those of the MJCF's position actuators.
 
     Raises:
-        InputError: gains are given and the logs hold efforts; no gain of any joint is known; kd of a joint without kp.
+        InputError: gains are given and the logs hold efforts; kd of a joint without kp.
     """
     first = next((asked for asked in work if _without_effort(asked)), None)
     if first is None:
@@ -44,8 +50,6 @@ def with_gains(work: Sequence[JointLogs], kp: GivenGain, kd: GivenGain) -> list[
             raise InputError("--kp", f"found with {work[0].logs[0].name}, which has efforts, or no goals", allowed)
         return [*work]
     known = _gains(work, kp, kd)
-    if not known:
-        raise InputError(first.logs[0], "contains goals and no efforts, and no gains are known", _remedy(first))
     return [replace(asked, goals=True, gains=known.get(asked.joint)) for asked in work]
 
 
@@ -72,15 +76,6 @@ def _gains(work: Sequence[JointLogs], kp: GivenGain, kd: GivenGain) -> dict[str,
     return found
 
 
-def _remedy(asked: JointLogs) -> str:
-    """Commands for a joint whose gains are not known."""
-    log, joint = asked.logs[0], asked.joint
-    return (
-        f"allowed: --kp {joint}=40 --kd {joint}=1 with yours, or a <position> actuator in the MJCF; "
-        f"`bench servo {log} --mjcf {asked.mjcf} --joint {joint} --out servo` fits them"
-    )
-
-
 def by_goals(asked: JointLogs) -> IdentifiedJoint:
     """The joint by its goals and positions; what is wrong with the logs, or what they do not determine, is in it.
 
@@ -88,13 +83,12 @@ def by_goals(asked: JointLogs) -> IdentifiedJoint:
     """
     try:
         if asked.gains is None:
-            found = "found goals and no efforts, and the gains of its controller are not known"
-            raise InputError(f"{asked.mjcf}: joint '{asked.joint}'", found, _remedy(asked))
+            return _by_servo(asked)
         robot = asked.robot()
         rig = joint_rig(asked.rig, robot)
         logs = [*asked.logs, *([] if asked.holdout is None else [asked.holdout])]
         read = {log: read_commanded(log, rig, asked.robot_of(log), asked.stated) for log in logs}
-        rig = rig.model_copy(update={"load": (rig.load or Load()).model_copy(update={"gear_ratio": 1.0})})
+        rig = _without_gear(rig)
         trace = join([require_goal(read[log][0]) for log in asked.logs])
         found = balance(trace, rig, replace(asked.gains, limit=robot.effort_limit or math.inf))
         driven = {log: (found.with_effort(trace), poses) for log, (trace, poses) in read.items()}
@@ -110,6 +104,31 @@ def by_goals(asked: JointLogs) -> IdentifiedJoint:
     except UndeterminedError as error:
         static, seldom = None, (error.reason, error.record)
     return replace(one, goals=Goals(found.found, robot.inertia, static, seldom, wrong_scale(found)))
+
+
+def _by_servo(asked: JointLogs) -> IdentifiedJoint:
+    """The joint by a fit of its servo; BenchError as `bench.servos.servo.by_logs`."""
+    if asked.mjcfs:
+        found = "found goals and no efforts, several MJCF files, and a controller whose gains are not known"
+        allowed = f"allowed: --kp {asked.joint}=40 --kd {asked.joint}=1 with yours, or one MJCF"
+        raise InputError(f"{asked.mjcf}: joint '{asked.joint}'", found, allowed)
+    model = JointModel.of(asked.mjcf, asked.robot(), asked.rig, asked.stated, asked.stand)
+    found = by_logs(asked.logs, None, model, asked.holdout)
+    together = {name: f"only {name} is determined: {value}" for name, value in found.found.inseparable.items()}
+    return IdentifiedJoint(
+        asked.joint,
+        _without_gear(model.rig),
+        servo=found,
+        refused={
+            **found.found.refused,
+            **{name: why for name, why in together.items() if "kp" not in found.parameters},
+        },
+    )
+
+
+def _without_gear(rig: Rig) -> Rig:
+    """The rig of a joint whose signals are all on the joint's side."""
+    return rig.model_copy(update={"load": (rig.load or Load()).model_copy(update={"gear_ratio": 1.0})})
 
 
 def with_one_delay(joints: Mapping[str, IdentifiedJoint]) -> dict[str, IdentifiedJoint]:
@@ -162,6 +181,8 @@ def _with_values(stored: StoredModel, own: Mapping[str, Parameter], kind: AxisKi
 def drive_of(joint: IdentifiedJoint) -> PositionDrive | None:
     """The position controller of a joint; None where it was not found by goals."""
     goals, known = joint.goals, joint.parameters
+    if joint.servo is not None:
+        return _fitted_drive(joint.servo)
     if goals is None or "dead_time" not in known:
         return None
     static = next((one for name, one in known.items() if name.startswith("static_friction")), None)
@@ -169,3 +190,18 @@ def drive_of(joint: IdentifiedJoint) -> PositionDrive | None:
     lacking += [] if static is None else [f"static friction of {static}"]
     gains = goals.found.gains
     return PositionDrive(gains.kp, gains.kd, max(known["dead_time"].value, 0.0), gains.limit, tuple(lacking))
+
+
+def _fitted_drive(servo: Servo) -> PositionDrive | None:
+    """The position controller that was fitted; None where torques have no scale."""
+    of = servo.found
+    if not of.actuator:
+        return None
+    lacking = [f"{words(name)} of {value}" for name, value in of.parameters.items() if name in LACKING]
+    lacking += [
+        f"{words(name)} with {words(quantity)} {value}"
+        for name, values in of.effects.items()
+        for quantity, value in values.items()
+    ]
+    kp, kv, delay = (of.actuator[name] for name in ("kp", "kv", "delay"))
+    return PositionDrive(kp, kv, delay, of.actuator.get("forcerange", math.inf), tuple(lacking))

@@ -34,6 +34,7 @@ from bench.plant.robot import AddedBody, Poses, Robot, Twist, joint_rig, read_al
 from bench.rig.rig import Rig
 from bench.servos.breakaway import StaticFriction
 from bench.servos.commanded import Coefficients, Gains
+from bench.servos.servo import Servo
 from bench.trace.trace import Trace
 from bench.view.joint_motion import JointMotion, joint_motion
 
@@ -134,6 +135,7 @@ class IdentifiedJoint:
         constant: torque (force) constant by the weight of the links, of logs that hold a current and no rig that states
             it.
         goals: what they show, where the torque followed from goals.
+        servo: fitted to goals and positions, where the gains were not known.
         twists: of its links against the motor in each log, where an effect couples them.
     """
 
@@ -149,13 +151,14 @@ class IdentifiedJoint:
     payloads: bool = False
     constant: Parameter | None = None
     goals: Goals | None = None
+    servo: Servo | None = None
     twists: Mapping[Path, Twist] = field(default_factory=dict)
     friction_models: tuple[FrictionModel, ...] = ()
 
     @property
     def parameters(self) -> dict[str, Parameter]:
         """Those that are determined, by name."""
-        found = self.diagnosis or self.estimate
+        found = self.servo or self.diagnosis or self.estimate
         parameters = {} if found is None else found.parameters
         known = {name: parameter for name, parameter in parameters.items() if name not in self.refused}
         return known if self.constant is None else {**known, CONSTANT: self.constant}
@@ -163,13 +166,19 @@ class IdentifiedJoint:
     @property
     def checks(self) -> tuple[Check, ...]:
         """Of the logs, before anything was fitted."""
-        found = self.diagnosis or self.estimate
+        found = self.servo or self.diagnosis or self.estimate
         return () if found is None else found.checks
+
+    @property
+    def verdict(self) -> str | None:
+        """Whether anything is missing; None where that is not determined."""
+        found = self.servo or self.diagnosis
+        return None if found is None else found.verdict
 
     @property
     def warnings(self) -> list[str]:
         """What a user should know before relying on it."""
-        found = self.diagnosis or self.estimate
+        found = self.servo or self.diagnosis or self.estimate
         warnings = () if found is None else (*found.warnings, *warnings_of(found.checks))
         warnings = (*warnings, *([f"contested armature: {self.contested}"] if self.contested else []))
         return [*warnings, *(f"{log} is not used: {why}" for log, why in self.left_out.items())]
@@ -205,9 +214,14 @@ class IdentifiedJoint:
         if self.rig is None:
             return None
         kind, mounting = self.rig.axis_kind, Mounting.of(self.rig)
+        links = mounting.link_inertia / mounting.gear_ratio**2
+        if self.servo is not None:
+            if not (own := self.servo.found.actuator):
+                return None
+            axis = AxisModel(AxisParameters(links + own["armature"], own["damping"], own["frictionloss"], kind=kind))
+            return StoredModel(self.name, axis, mounting=mounting)
         if not {kind.parameter(VISCOUS), kind.parameter(COULOMB)} <= {*self.parameters}:
             return None
-        links = mounting.link_inertia / mounting.gear_ratio**2
         inertia = self.parameters[kind.inertia].value if kind.inertia in self.parameters else 0.0
         inertia = inertia if inertia > 0.0 or ARMATURE in self.parameters else links
         viscous, coulomb = (max(self.parameters[kind.parameter(term)].value, 0.0) for term in (VISCOUS, COULOMB))

@@ -10,7 +10,7 @@ from pathlib import Path
 from bench.axis_kind import ARMATURE
 from bench.effects.present import named
 from bench.errors import BenchError, InputError, UndeterminedError
-from bench.export.mjcf import Armature, robot_with
+from bench.export.mjcf import Armature, PositionDrive, robot_with
 from bench.jobs.process import Failure
 from bench.joints.goals import GivenGain, by_goals, drive_of, with_gains, with_one_delay
 from bench.joints.grade import GradedJoint, graded
@@ -65,6 +65,29 @@ class IdentifiedRobot(Shown):
         return {name: model for name, model in models.items() if model is not None}
 
     @property
+    def drives(self) -> dict[str, PositionDrive]:
+        """Position controllers of the joints that were found by goals, by name."""
+        return {name: drive for name, joint in self.joints.items() if (drive := drive_of(joint)) is not None}
+
+    @property
+    def actuators(self) -> dict[str, dict[str, float]]:
+        """The same with the armature and friction that they move, as `bench.export.actuator` takes them."""
+        found, models = dict[str, dict[str, float]](), self.models
+        for name, drive in self.drives.items():
+            if name not in models:
+                continue
+            own, links = models[name].model.parameters, models[name].mounting.link_inertia
+            found[name] = {
+                "kp": drive.kp,
+                "kv": drive.kd,
+                "delay": drive.delay,
+                "armature": max(own.inertia - links, 0.0),
+                "damping": own.viscous_friction_coefficient,
+                "frictionloss": own.coulomb_friction,
+            } | ({"forcerange": drive.limit} if math.isfinite(drive.limit) else {})
+        return found
+
+    @property
     def grade(self) -> dict[str, GradedJoint]:
         """The joints as the MJCF states them, each held against the logs."""
         return graded(self.mjcf, self.joints, self.stand)
@@ -81,8 +104,7 @@ class IdentifiedRobot(Shown):
             armature = None if found is None else Armature(max(found.value, 0.0), origin)
             models[name] = model, armature
         kept = [name for name in self.joints if name not in models]
-        drives = {name: drive for name, joint in self.joints.items() if (drive := drive_of(joint)) is not None}
-        return robot_with(self.mjcf, models, out, self.added, kept, stand=self.stand, drives=drives)
+        return robot_with(self.mjcf, models, out, self.added, kept, stand=self.stand, drives=self.drives)
 
 
 @with_known_arguments

@@ -164,9 +164,9 @@ class Robot:
                 body = model.body(int(model.jnt_bodyid[k])).name
                 found = "found a free or ball joint, whose motion is in no log of joints"
                 allowed = (
-                    "for a robot on a stand, `bench robot --stand`, or delete this joint and the <keyframe> element "
+                    "for a robot on a stand, --stand of `bench robot` and `bench servo`, or delete this joint and the "
+                    "<keyframe> element from the file; on its feet the forces of the ground are in no log of joints"
                 )
-                allowed += "from the file; on its feet the forces of the ground are in no log of joints"
                 raise InputError(f"{path}: body '{body}'", found, allowed)
         for reason in _bound(model, model.joint(joint).id):
             found = f"found {reason}, whose torque is in no log"

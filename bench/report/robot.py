@@ -6,7 +6,7 @@ As the contract's JSON (`bench.robot/1`) and as a document, which has the MJCF w
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,18 +24,19 @@ from bench.report.grade import grade_json, grade_section
 from bench.report.numbers import interval, number, sentence, unit_text
 from bench.report.parts import origin, parameters_table
 from bench.report.serial import as_json, picked, serialised
+from bench.report.servo import of_trainers, servo, servo_answers, servo_content
 from bench.report.simulation import moving_section
 from bench.report.verdict import reasons
 
 SCHEMA = "bench.robot/1"
 MJCF, EFFECTS_FILE, JSON = "robot_id.xml", "effects.toml", "robot.json"
 #: Columns of the table of joints, and those of them that only joints with goals have.
-COLUMNS = ("armature", "viscous", "Coulomb", "static", "dead time", "bias")
+COLUMNS = ("armature", "viscous", "Coulomb", "static", "dead time", "bias", "kp", "kv")
 EXTRA = COLUMNS[3:]
 #: Joints that an answer lists.
 SUMMARISED = 3
 #: Sections of a diagnosis that a robot's page has of each joint.
-SHOWN = ("motion", "where", "parameters", "notes", "checks")
+SHOWN = ("motion", "where", "parameters", "separate", "notes", "checks")
 
 
 def robot_json(
@@ -71,6 +72,8 @@ def _joint_json(joint: IdentifiedJoint) -> dict[str, Any]:
         content = diagnosis_content(joint.diagnosis)
         for name in ("schema", "provenance", "model"):
             del content[name]
+    elif joint.servo is not None:
+        content = servo_content(joint.servo)
     elif joint.estimate is not None:
         content["explained"] = joint.estimate.explained
     if joint.friction_models:
@@ -102,6 +105,7 @@ def robot(
         files = doc.downloads(
             doc.file(MJCF, "the MJCF with the joints as found", text),
             doc.file(EFFECTS_FILE, "models of all joints, for bench.Effects", joints_toml(found.models)),
+            *(of_trainers(servos) if (servos := found.actuators) else []),
             doc.file(JSON, "all results as numbers", robot_json(found, provenance, grade) + "\n"),
         )
         sections.append(doc.section("model", "The model", doc.points(took), files, detail=True))
@@ -119,22 +123,29 @@ def robot(
 
 def _joint_warnings(found: IdentifiedRobot) -> list[str]:
     """Warnings of the joints, each once with the names of those that it concerns."""
-    concerned: dict[str, list[str]] = {}
-    for name, joint in found.joints.items():
-        for warning in joint.warnings:
-            concerned.setdefault(warning, []).append(name)
-    every = len(found.joints)
-    return [
-        f"{'all joints' if len(names) == every > 1 else ', '.join(names)}: {warning}"
-        for warning, names in concerned.items()
-    ]
+    concerned = _concerned({name: joint.warnings for name, joint in found.joints.items()})
+    return [f"{names}: {warning}" for names, warning in concerned]
+
+
+def _concerned(texts: Mapping[str, Sequence[str]]) -> list[tuple[str, str]]:
+    """Names of the joints that each of their texts concerns, and the text."""
+    names: dict[str, list[str]] = {}
+    for name, every in texts.items():
+        for text in every:
+            names.setdefault(text, []).append(name)
+    return [("all joints" if len(some) == len(texts) > 1 else ", ".join(some), text) for text, some in names.items()]
 
 
 def _answers(found: IdentifiedRobot) -> dict[str, str]:
     """What was missing, how sure and how large, whether the joints move like the robot, and what to record next."""
     known = {name: joint.diagnosis for name, joint in found.joints.items() if joint.diagnosis is not None}
+    fitted = {name: servo_answers(joint.servo) for name, joint in found.joints.items() if joint.servo is not None}
+    servos = {
+        question: _by_joint({name: answers[question] for name, answers in fitted.items()})
+        for question in next(iter(fitted.values()), {})
+    }
     if not known:
-        return {}
+        return servos
     named = {name: one for name, one in known.items() if one.effects}
     sizes = {
         name: f"{number(one.torque.identify[0], digits=3)} to {number(one.torque.identify[1], one.torque.unit, 3)}"
@@ -151,6 +162,7 @@ def _answers(found: IdentifiedRobot) -> dict[str, str]:
         "RMS torque gap, before and after?": _by_joint({name: f"{text}." for name, text in sizes.items()}),
         "Does it move like the robot now?": _by_joint({name: moves(one) for name, one in (named or known).items()}),
         "What next?": _by_joint(later) or "No further recording is needed.",
+        **servos,
     }
 
 
@@ -163,8 +175,7 @@ def _by_joint(texts: Mapping[str, str]) -> str:
 
 def _settled(found: IdentifiedRobot) -> int:
     """How many joints leave nothing open."""
-    verdicts = [joint.diagnosis.verdict for joint in found.joints.values() if joint.diagnosis is not None]
-    return sum(verdict != "unexplained_remainder" for verdict in verdicts)
+    return sum(joint.verdict not in (None, "unexplained_remainder") for joint in found.joints.values())
 
 
 def _verdict(found: IdentifiedRobot) -> str:
@@ -218,6 +229,10 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
     lacking = [(name, why, motion) for name, joint in found.joints.items() for why, motion in _open(joint)]
     if lacking:
         tables.append(doc.table("Not determined by the logs", ("joint", "what~", "record instead~"), lacking))
+    advice = {name: one.servo.found.advice if one.servo is not None else () for name, one in found.joints.items()}
+    if any(advice.values()):
+        rows = _concerned(advice)
+        tables.append(doc.table("What would separate parameters of servos", ("joint", "record~"), rows))
     return tables
 
 
@@ -226,12 +241,26 @@ def _values(joint: IdentifiedJoint) -> tuple[Parameter | None, ...]:
     if joint.rig is None:
         return (None,) * len(COLUMNS)
     kind = joint.rig.axis_kind
-    names = (ARMATURE, kind.parameter(VISCOUS), kind.parameter(COULOMB), f"static_friction_{kind.effort}", *COMMAND)
+    names = (
+        ARMATURE,
+        kind.parameter(VISCOUS),
+        kind.parameter(COULOMB),
+        f"static_friction_{kind.effort}",
+        *COMMAND,
+        "kp",
+        "kv",
+    )
     return tuple(joint.parameters.get(name) for name in names)
 
 
 def _missing(joint: IdentifiedJoint) -> str:
     """What was missing, and how sure that is."""
+    if joint.servo is not None:
+        after, names = joint.servo.gaps["identify"].after, ", ".join(map(words, joint.servo.found.effects))
+        rest = "unknown effect" if joint.verdict == "unexplained_remainder" else "" if names else "nothing"
+        found = "; ".join(filter(None, (names, rest)))
+        off = number(after, joint.servo.kind.length_unit, 3), number(after / joint.servo.noise_floor, digits=2)
+        return f"{found}; free-running position off by {off[0]} RMS, {off[1]} × the noise"
     if joint.diagnosis is None:
         return "not determined"
     left = f" {'; '.join(map(words, reasons(joint.diagnosis)))}" if joint.diagnosis.objections else ""
@@ -253,11 +282,19 @@ def _open(joint: IdentifiedJoint) -> list[tuple[str, str]]:
 
 def _of_joint(k: int, joint: IdentifiedJoint, found: IdentifiedRobot) -> doc.Section:
     key, heading = f"joint-{k}", joint.name
+    if joint.servo is not None:
+        own = servo(joint.servo, f"{joint.name} of {readable(found.mjcf.name)}")
+        return _shortened(key, heading, own)
     if joint.diagnosis is None:
         tables = [parameters_table("Inertia and friction", joint.parameters)] if joint.parameters else []
         why = doc.points(what for what, _ in _open(joint))
         return doc.section(key, heading, why, *tables, detail=True)
     own = diagnosis(joint.diagnosis, f"{joint.name} of {readable(found.mjcf.name)}")
+    return _shortened(key, heading, own)
+
+
+def _shortened(key: str, heading: str, own: doc.Document) -> doc.Section:
+    """A joint's own document as a section of its robot's."""
     blocks = [block for section in own.sections if section.key in SHOWN for block in section.blocks]
     answers = doc.points(f"{question} {answer}" for question, answer in own.answers.items())
     return doc.section(key, heading, doc.Paragraph(text=own.verdict), answers, *blocks, detail=True)

@@ -29,24 +29,25 @@ GLANCE = 4.0
 
 def servo_json(found: Servo, provenance: Mapping[str, Any] | None = None) -> str:
     """The servo as the contract's JSON."""
+    return serialised({"schema": SCHEMA, **servo_content(found), "provenance": provenance})
+
+
+def servo_content(found: Servo) -> dict[str, Any]:
+    """What the JSON has of the servo itself."""
     of = found.found
     gaps = {name: {"before": gap.before, "after": gap.after} for name, gap in found.gaps.items()}
-    return serialised(
-        {
-            "schema": SCHEMA,
-            "verdict": found.verdict,
-            "effects": [{"name": name, "parameters": values} for name, values in of.effects.items()],
-            "parameters": of.parameters,
-            "inseparable": [{"combination": name, **as_json(value)} for name, value in of.inseparable.items()],
-            "separated_by": of.advice,
-            "refused": of.refused,
-            "gap": {"position": {"unit": found.kind.length_unit, "noise_floor": found.noise_floor, **gaps}},
-            "checks": found.checks,
-            "warnings": found.warnings,
-            "actuator": of.actuator or None,
-            "provenance": provenance,
-        }
-    )
+    return {
+        "verdict": found.verdict,
+        "effects": [{"name": name, "parameters": values} for name, values in of.effects.items()],
+        "parameters": of.parameters,
+        "inseparable": [{"combination": name, **as_json(value)} for name, value in of.inseparable.items()],
+        "separated_by": of.advice,
+        "refused": of.refused,
+        "gap": {"position": {"unit": found.kind.length_unit, "noise_floor": found.noise_floor, **gaps}},
+        "checks": found.checks,
+        "warnings": found.warnings,
+        "actuator": of.actuator or None,
+    }
 
 
 def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None) -> doc.Document:
@@ -64,19 +65,14 @@ def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None)
         tables.append(doc.table("Not determined", ("quantity", "why~"), rows))
     files = [doc.file(JSON, "all of it as numbers", servo_json(found, provenance) + "\n")]
     if of.actuator:
-        servos = {found.joint: of.actuator}
-        files = [
-            doc.file(ACTUATOR, "the MuJoCo actuator", position_actuator(found.joint, of.actuator)),
-            doc.file("mjlab.py", "the same for mjlab", mjlab_actuators(servos)),
-            doc.file("isaaclab.py", "the same for Isaac Lab", isaaclab_actuators(servos)),
-            *files,
-        ]
+        of_mujoco = doc.file(ACTUATOR, "the MuJoCo actuator", position_actuator(found.joint, of.actuator))
+        files = [of_mujoco, *of_trainers({found.joint: of.actuator}), *files]
     return doc.Document(
         title=title,
         subject=f"Position servo of {title}",
         verdict=_verdict(found),
         tone="open" if found.verdict == "unexplained_remainder" else "sure",
-        answers=_answers(found),
+        answers=servo_answers(found),
         glance=(_glance(found),),
         sections=doc.sections(
             doc.section("parameters", "Parameters", *tables),
@@ -91,6 +87,14 @@ def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None)
     )
 
 
+def of_trainers(servos: Mapping[str, Mapping[str, float]]) -> list[doc.File]:
+    """The actuators of joints for what trains policies, to take along."""
+    return [
+        doc.file("mjlab.py", "the actuators for mjlab", mjlab_actuators(servos)),
+        doc.file("isaaclab.py", "the actuators for Isaac Lab", isaaclab_actuators(servos)),
+    ]
+
+
 def _flat(effects: Mapping[str, Mapping[str, Parameter]]) -> dict[str, Parameter]:
     return {f"{name}: {quantity}": value for name, of in effects.items() for quantity, value in of.items()}
 
@@ -103,7 +107,8 @@ def _verdict(found: Servo) -> str:
     return f"The fitted servo moves like the measured one: its free-running position differs by {change}."
 
 
-def _answers(found: Servo) -> dict[str, str]:
+def servo_answers(found: Servo) -> dict[str, str]:
+    """Gains, dead time, what else the servo has, and how well it moves."""
     of, unit = found.found, found.kind.length_unit
     named = {**of.parameters, **of.inseparable}
     gains = [f"{words(name)} {brief(value)}" for name, value in named.items() if name[:2] in ("kp", "kv", "(k")]

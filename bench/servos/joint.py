@@ -41,10 +41,12 @@ class JointModel:
     before: Mapping[str, float] | None
 
     @classmethod
-    def of(cls, mjcf: Path, joint: str | None, rig: Rig | None, stated: Mapping[str, float]) -> JointModel:
-        """From the file of a robot; InputError as `Robot.of`."""
-        robot = Robot.of(mjcf, joint)
-        model = read_mjcf(mjcf)[0].compile()
+    def of(cls, mjcf: Path, robot: Robot, rig: Rig | None, stated: Mapping[str, float], stand: bool) -> JointModel:
+        """From the file of a robot, whose floating base is fixed or not, and the robot around the joint.
+
+        InputError where the joint moves no mass.
+        """
+        model = read_mjcf(mjcf, stand)[0].compile()
         dof = int(model.joint(robot.joint).dofadr[0])
         armature, damping = float(model.dof_armature[dof]), float(model.dof_damping[dof])
         friction, inertia = float(model.dof_frictionloss[dof]), robot.inertia + armature

@@ -24,6 +24,7 @@ from bench.gate.check import Check
 from bench.gate.gate import gate, joined
 from bench.names import with_known_arguments
 from bench.parameter import Parameter
+from bench.plant.robot import Robot
 from bench.presented import Presented
 from bench.rig.rig import Rig
 from bench.servos.fit import FORGETS, ServoFit, ServoLog, around, fitted, recorded
@@ -118,6 +119,7 @@ def servo(
     holdout: str | Path | Trace | None = None,
     stated: Mapping[str, float] | None = None,
     progress: Callable[[float], None] = lambda share: None,
+    stand: bool = False,
 ) -> Servo:
     """Gains, dead time, limit and friction of a position-controlled servo from goal and measured position.
 
@@ -128,13 +130,26 @@ def servo(
         holdout: another recording, not fitted.
         stated: positions of joints of the robot that stand and that the logs do not hold - rad (m).
         progress: called with the share done.
+        stand: whether a floating base of the robot is fixed.
 
     Raises:
         InputError: no goal in the log, or files that do not fit together.
         UndeterminedError: a log that determines no gain, with what to record instead.
     """
-    logs = [log] if isinstance(log, str | Path | Trace) else [*log]
-    model = None if mjcf is None else JointModel.of(Path(mjcf), joint, rig, stated or {})
+    logs, model = [log] if isinstance(log, str | Path | Trace) else [*log], None
+    if mjcf is not None:
+        model = JointModel.of(Path(mjcf), Robot.of(Path(mjcf), joint, stand=stand), rig, stated or {}, stand)
+    return by_logs(logs, rig, model, holdout, progress)
+
+
+def by_logs(
+    logs: Sequence[str | Path | Trace],
+    rig: Rig | None,
+    model: JointModel | None,
+    holdout: str | Path | Trace | None = None,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Servo:
+    """The same with the model of the joint."""
 
     def opened(one: str | Path | Trace) -> Trace:
         if model is not None:

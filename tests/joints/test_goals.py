@@ -113,11 +113,53 @@ def test_a_limit_that_is_nearly_always_reached_is_refused(leg):
     assert "force limit" in one.refused["effects"]
 
 
-def test_gains_that_are_not_known_lead_to_the_command_that_fits_them(leg, monkeypatch):
-    monkeypatch.chdir(leg[0])
-    done = command("robot", "log.csv", "--mjcf", "bare.xml", "--out", "none")
-    assert (done.status, done.err.strip().count("\n")) == (2, 0)
-    assert f"`bench servo log.csv --mjcf bare.xml --joint {HIP} --out servo` fits them" in done.err
+@pytest.fixture(scope="module")
+def fitted(leg):
+    """The folder that the command writes for a joint of a floating robot whose gains nobody states."""
+    folder, _ = leg
+    text = (folder / "bare.xml").read_text(encoding="utf-8")
+    floating = text.replace('<inertial pos="0 0 0" mass="6.9"', '<freejoint/><inertial pos="0 0 0" mass="6.9"')
+    (folder / "floating.xml").write_text(floating, encoding="utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        done = command(
+            "robot", "log.csv", "--mjcf", "floating.xml", "--stand", "--joint", CALF, "--out", "fitted", "--grade"
+        )
+    assert done.status == 0, done.err
+    return folder / "fitted"
+
+
+def test_gains_that_are_not_known_are_fitted(leg, fitted):
+    joint = json.loads((fitted / "robot.json").read_text(encoding="utf-8"))["joints"][CALF]
+    truth = {"kp": KP, "dead_time": leg[1]["dead_time"][2], "armature": leg[1]["armature"][2]}
+    truth["coulomb_friction_torque"] = leg[1]["coulomb_friction_torque"][2]
+    for name, value in truth.items():
+        low, high = joint["parameters"][name]["ci95"]
+        assert low <= value <= high, name
+    assert joint["parameters"]["kp"]["value"] == pytest.approx(KP, rel=0.01)
+    (both,) = joint["inseparable"]
+    low, high = both["ci95"]
+    assert low <= KD + leg[1]["viscous_friction_coefficient"][2] <= high
+    assert "viscous_friction_coefficient" in joint["refused"]
+
+
+def test_the_mjcf_and_what_trains_policies_have_fitted_gains(leg, fitted):
+    model = mujoco.MjModel.from_xml_string((fitted / "robot_id.xml").read_text(encoding="utf-8"))
+    joint = json.loads((fitted / "robot.json").read_text(encoding="utf-8"))["joints"][CALF]
+    assert model.nu == 1
+    assert model.actuator_gainprm[0, 0] == pytest.approx(joint["parameters"]["kp"]["value"], rel=1e-5)
+    assert -model.actuator_biasprm[0, 2] == pytest.approx(joint["parameters"]["kv"]["value"], rel=1e-5)
+    assert model.joint(CALF).armature[0] == pytest.approx(leg[1]["armature"][2], rel=0.02)
+    assert model.joint(CALF).frictionloss[0] == pytest.approx(leg[1]["coulomb_friction_torque"][2], rel=0.02)
+    for name in ("mjlab.py", "isaaclab.py"):
+        assert f"stiffness={joint['parameters']['kp']['value']:.6g}" in (fitted / name).read_text(encoding="utf-8")
+
+
+def test_gains_of_several_payloads_have_to_be_known(leg):
+    folder, _ = leg
+    both = {folder / "some.csv": folder / "bare.xml"}
+    asked = JointLogs(CALF, folder / "robot.xml", (folder / "log.csv", folder / "some.csv"), goals=True, mjcfs=both)
+    assert f"--kp {CALF}=40 --kd {CALF}=1 with yours, or one MJCF" in by_goals(asked).failed
 
 
 @pytest.mark.parametrize(
