@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import os
 import shlex
 import shutil
 import sys
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "page", "video"})
 #: Those of them that name folders, which may be there.
 FOLDERS = frozenset({"out", "synthetic", "notebooks"})
+#: Colours of a terminal, as its escape sequences number them.
+RED, YELLOW = "1;31", "1;33"
 #: Notes on the recordings of this run, in order. Bad input is one line, without them.
 NOTES: dict[str, None] = {}
 #: Parameters of commands whose file is read, and replaced with `--update`.
@@ -268,13 +271,19 @@ def printed(part: object) -> None:
     print_text(text)
 
 
-def say(text: str, err: bool = False) -> None:
-    """A line on standard output, or standard error; on a terminal as many as it takes, and no word is cut."""
+def say(text: str, err: bool = False, tone: str = "") -> None:
+    """A line on standard output, or standard error; on a terminal as many as it takes, and no word is cut.
+
+    tone: how a terminal shows what comes before the first colon.
+    """
     text, stream = plain(text), sys.stderr if err else sys.stdout
     if stream is not None and stream.isatty():
         from bench.report.terminal import wrapped
 
         text = "\n".join(wrapped(text, shutil.get_terminal_size().columns))
+        if tone and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb":
+            head, colon, rest = text.partition(":")
+            text = f"\x1b[{tone}m{head}{colon}\x1b[0m{rest}"
     with suppress(*[OSError] if err else []):  # where standard error is full or closed, the status has to do
         print(text, file=stream, flush=True)  # by the stream's own encoding, which `typer.echo` replaces
 
@@ -289,7 +298,7 @@ def list_files(files: Iterable[Path | None]) -> None:
 def warn(warnings: Iterable[str]) -> None:
     """A line on standard error for each warning."""
     for warning in warnings:
-        say(f"warning: {readable(warning)}", err=True)
+        say(f"warning: {readable(warning)}", err=True, tone=YELLOW)
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from bench.view.free_running import FreeRun
     from bench.view.side_by_side import SideBySide
 
-ModelArgument = Annotated[Path, Argument(help="model.toml that diagnose wrote.")]
+ModelArgument = Annotated[Path, Argument(metavar="MODEL", help="model.toml that diagnose wrote.")]
 #: Name of a joint that no other is given for, as `load_models` has it.
 ALONE = "axis"
 #: Format of a drive's feed-forward tables.
@@ -43,7 +43,9 @@ ENDINGS = {"bam": ".json", "isaaclab": ".py", "mjlab": ".py", "newton": ".py"}
 
 def replay(
     model: ModelArgument,
-    trace: Annotated[Path | None, Argument(help="Recording to run it along; without, it follows --profile.")] = None,
+    trace: Annotated[
+        Path | None, Argument(metavar="TRACE", help="Recording to run it along; without, it follows --profile.")
+    ] = None,
     out: Annotated[
         Path | None,
         Option(help="Signals: a folder, a CSV file, or .mcap with joint states for Foxglove and Rerun."),

@@ -308,7 +308,7 @@ def friction(
 
 
 def limits(
-    trace: Annotated[Path, Argument(help="Recording of any known format.")],
+    trace: Annotated[Path, Argument(metavar="TRACE", help="Recording of any known format.")],
     rig: common.BesideRigOption = None,
     out: Annotated[Path, Option(help="Diagram to write: .png, .pdf or .svg; or a folder for page and diagram.")] = Path(
         "limits.png"

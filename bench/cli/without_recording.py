@@ -105,8 +105,12 @@ def plan(
 
 
 def list_(
-    what: Annotated[Literal["rigs", "effects"] | None, Argument(help="rigs, or effects; both without.")] = None,
-    name: Annotated[str | None, Argument(help="One of them, or a rig file of your own, to print in full.")] = None,
+    what: Annotated[
+        Literal["rigs", "effects"] | None, Argument(metavar="WHAT", help="rigs, or effects; both without.")
+    ] = None,
+    name: Annotated[
+        str | None, Argument(metavar="NAME", help="One of them, or a rig file of your own, to print in full.")
+    ] = None,
     out: Annotated[Path | None, Option(help="Copy of the rig file to write, or a folder for it.")] = None,
 ) -> None:
     """List shipped rigs and physical effects, print one in full, or copy a rig file."""

@@ -562,8 +562,9 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
     for name in robot.names:
         found = motion.get(name) or robot.follows(name, motion)
         if found is None:
-            allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0, or which one of the log it is "
-            allowed += f'({", ".join(axes_of(recording.channels))}): axis = "..." under [joints.{name}] in a rig'
+            allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0"
+            if among := ", ".join(axes_of(recording.channels)):
+                allowed += f', or which one of the log it is ({among}): axis = "..." under [joints.{name}] in a rig'
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
         motion[name] = found
         if name in robot.twists:

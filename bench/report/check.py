@@ -112,7 +112,7 @@ def headline(checked: Checked, brief: bool = False) -> str:
         return "The same: no quantity differs by more than its margin"
     if checked.rig:
         return f"Undecided, as the rig differs: {'; '.join(checked.rig)}"
-    open_ = [described(one, checked) for one in checked.comparisons if one.result != SAME]
+    open_ = [described(one, checked, brief) for one in checked.comparisons if one.result != SAME]
     if checked.baseline.verdict != checked.now.verdict:
         verdicts = (words(one) for one in (checked.baseline.verdict, checked.now.verdict))
         open_.append(f"the verdict is {' -> '.join(verdicts)}")
@@ -131,9 +131,11 @@ def described(one: Comparison, checked: Checked, brief: bool = False) -> str:
     if one.baseline is None or one.now is None:
         return f"{label} cannot be compared{_why(one)}"
     before, after = shown(one.baseline, one.unit, named=False), shown(one.now, one.unit)
-    share = f" ({100.0 * (one.now / one.baseline - 1.0):+.3g} %)" if one.baseline else ""
+    share = f" ({100.0 * (one.now / one.baseline - 1.0):+.3g} %)".replace("-", "−") if one.baseline else ""
     if one.result == CHANGED:
         return f"{label} {'rose' if one.now > one.baseline else 'fell'} from {before} to {after}{share}"
+    if brief:
+        return f"{label} may have changed{share}"
     how = "is the same:" if one.result == SAME else "may have changed:"
     return f"{label} {how} {before} and now {after}{share}{_why(one)}"
 
@@ -222,7 +224,7 @@ def _compared(checked: Checked) -> Iterator[doc.AnyPart]:
         )
     because = any(one.reason for one in checked.comparisons)
     headings = ("quantity", "baseline>", "now>", "difference (95 %)>", "margin>", "unit", "result")
-    rows = ((*_cells(one), *([one.reason] if because else [])) for one in checked.comparisons)
+    rows = ((*_cells(one), *([unit_text(one.reason)] if because else [])) for one in checked.comparisons)
     marked = (k for k, one in enumerate(checked.comparisons) if one.result == CHANGED)
     yield doc.table("Worst first", (*headings, *(["because~"] if because else [])), rows, marked)
 
@@ -290,7 +292,7 @@ def _unlike(checked: Checked) -> doc.Points | doc.Paragraph:
     lines = [f"rig: {line}" for line in checked.rig]
     lines += [f"not as in the baseline: {line}" for line in checked.conditions]
     if lines:
-        return doc.points(lines)
+        return doc.points(map(unit_text, lines))
     if not checked.now.conditions:
         return doc.Paragraph(text="The two models are compared: neither is fitted to a recording here.")
     return doc.Paragraph(text="The rig, the motion and the sampling are those of the baseline.")

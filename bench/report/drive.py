@@ -15,7 +15,7 @@ from bench.export.feedforward import Tracking
 from bench.export.plan import PlannedMotion
 from bench.names import readable, words
 from bench.report import document as doc
-from bench.report.numbers import number, unit_text
+from bench.report.numbers import number, share, unit_text
 from bench.report.parts import origin, values_table
 from bench.rig.limits import OperatingRange, Reserve, reserve
 from bench.rig.rig import Rig
@@ -142,10 +142,10 @@ def in_range(rig: Rig, speed: Array, torque: Array, what: str) -> InRange:
 
 def _peak_finding(left: Reserve, speed: Array, torque: Array) -> str:
     braking = "braking" if speed[left.at] * torque[left.at] < 0.0 else "driving"
-    beyond = f"; {left.beyond:.1%} of the samples lie beyond the limit" if left.beyond else ""
+    beyond = f"; {share(left.beyond)} of the samples lie beyond the limit" if left.beyond else ""
     return (
-        f"least reserve to the peak torque {left.peak:.3g} N·m ({left.peak_share:.0%}) at "
-        f"{speed[left.at] * RPM:.0f} rpm, {braking}{beyond}."
+        f"least reserve to the peak torque {number(left.peak, 'N·m', 3)} ({share(left.peak_share)}) at "
+        f"{number(round(speed[left.at] * RPM), 'rpm')}, {braking}{beyond}."
     )
 
 
@@ -153,7 +153,7 @@ def _thermal_finding(left: Reserve) -> str:
     hot = ", the motor would overheat if this repeats" if left.thermal < 0.0 else ""
     return (
         f"RMS current {left.rms_current:.3g} A at {left.mean_speed * RPM:.0f} rpm on average has "
-        f"{left.thermal:.3g} A ({left.thermal_share:.0%}) in reserve to the continuous "
+        f"{number(left.thermal, 'A', 3)} ({share(left.thermal_share)}) in reserve to the continuous "
         f"{left.continuous_current:.3g} A{hot}."
     )
 

@@ -55,7 +55,7 @@ def interval(found: Parameter, unit: bool = True) -> str:
     power = 3 * math.floor(math.log10(size) / 3) if not small <= size < LARGE else 0
     scale = 10.0**power
     decimals = min(max(0, 1 - math.floor(math.log10(half / scale))), MOST_DECIMALS)
-    value = f"{found.value / scale:.{decimals}f}".replace("-", "−")
+    value = f"{found.value / scale:z.{decimals}f}".replace("-", "−")
     text = f"{value}{SPACE}±{SPACE}{half / scale:.{decimals}f}"
     if power:
         text = f"({text})·10{str(power).translate(_RAISED)}"
@@ -75,7 +75,8 @@ def share(value: float) -> str:
     """A share in per cent."""
     if 0.0 < value < LEAST_SHARE:
         return f"< {100.0 * LEAST_SHARE:g}{SPACE}%"
-    return f"{100.0 * value:.0f}{SPACE}%" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g}{SPACE}%"
+    text = f"{100.0 * value:z.0f}" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g}"
+    return f"{text}{SPACE}%".replace("-", "−")
 
 
 def chance(value: float) -> str:

@@ -65,7 +65,7 @@ def show(document: Document) -> None:
     """Print the verdict of a document, its answers, and its sections; the detailed ones only `in_full`."""
     width = console().width
     say(document.verdict, TONES[document.tone])
-    say(f"{document.subject}\n")
+    say(document.subject + "\n" * bool(document.answers))
     beside = max(map(cell_len, document.answers), default=0) + APART
     for question, answer in document.answers.items():
         if width - beside < LEAST_PROSE:

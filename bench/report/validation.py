@@ -19,7 +19,7 @@ from bench.arrays import NORMAL95
 from bench.files import held, whole
 from bench.names import words
 from bench.report import document as doc
-from bench.report.numbers import number, sentence, share, unit_text
+from bench.report.numbers import SPACE, number, sentence, share, unit_text
 from bench.report.parts import origin
 from bench.report.publish import markdown, write_document
 from bench.report.serial import as_json, known, picked, serialised
@@ -37,7 +37,7 @@ TITLES = {
 NOTE = (
     "known: runs that give the quantity, of all. Over the true value: bias with its interval, RMS error, median half "
     "width of the interval of 95 %; ±/RMS by root mean squares, 1.96 of a normal distribution's. 50%, 80%, 95%: share "
-    "of the intervals of that level that hold the truth; bounds: 95 % of the last, Clopper-Pearson."
+    "of the intervals of that level that contain the true value; bounds: 95 % of the last, Clopper-Pearson."
 )
 #: The level that the page's chart shows; the table has the others.
 LEVEL = LEVELS[-1]
@@ -142,7 +142,7 @@ def _verdict(first: list[Coverage], naming: Naming | None) -> str:
         shares = ", ".join(f"of {TERM_WORDS[one.quantity]} in {share(one.inside[-1].value)}" for one in first)
         runs, hidden = first[0].runs, "nothing" if first[0].group == "nulls" else first[0].group
         of = f"{runs} {'run' if runs == 1 else 'runs'} with {hidden} hidden"
-        verdict = f"Intervals of {share(LEVEL)} hold the truth {shares}, of {of}"
+        verdict = f"Intervals of {share(LEVEL)} contain the true value {shares}, of {of}"
     if naming is None:
         return f"{verdict}."
     false = naming.false
@@ -163,7 +163,7 @@ def _answers(found: Validation, first: list[Coverage]) -> Iterator[tuple[str, st
 
 
 def _chart(found: Validation, quantity: str, place: int) -> doc.Intervals:
-    """Share of intervals that hold the truth with its bounds, by group of runs, at the level of this place."""
+    """Share of intervals that contain the true value, with its bounds, by group of runs, at the level of this place."""
     level, shown = LEVELS[place], [one for one in found.coverage if one.quantity in SYMBOLS and one.told]
     spans = []
     for one in shown:
@@ -175,7 +175,7 @@ def _chart(found: Validation, quantity: str, place: int) -> doc.Intervals:
     least = min((one.inside[place].bounds[0] for one in shown), default=FROM)
     return doc.Intervals(
         title=f"{sentence(TERM_WORDS[quantity])}, {SYMBOLS[quantity]}.",
-        alternative=f"Share of the intervals of {share(level)} that hold the truth, by groups of runs, "
+        alternative=f"Share of the intervals of {share(level)} that contain the true value, by groups of runs, "
         "with bounds of 95 %; the line is what they claim.",
         label=f"in their {share(level)} interval",
         unit="%",
@@ -241,7 +241,7 @@ def _outcomes(runs: tuple[Run, ...]) -> doc.Table:
     """How many runs there are, and why some determine nothing, without the numbers of a run."""
     counts = Counter((run.status, run.reason.partition(":")[0]) for run in runs)
     rows = ((status, reason, str(count)) for (status, reason), count in sorted(counts.items(), key=lambda e: -e[1]))
-    return doc.table("Runs", ("identify", "why", "runs>"), rows)
+    return doc.table("By result", ("identify", "why", "runs>"), rows)
 
 
 def _naming(found: Naming) -> Iterator[doc.AnyPart]:
@@ -287,8 +287,8 @@ def confusion(counts: Mapping[str, Mapping[str, int]]) -> doc.HeatMap:
 def _bounded(found: Share) -> str:
     if not found.of:
         return "–"
-    low, high = found.bounds
-    return f"{found.value:.1%} ({low:.1%} to {high:.1%})"
+    value, low, high = (f"{100.0 * one:.1f}{SPACE}%" for one in (found.value, *found.bounds))
+    return f"{value} ({low} to {high})"
 
 
 def _of(found: Share) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bench.axis_kind import ARMATURE, COULOMB, OFFSET, VISCOUS, AxisKind
+from bench.names import words
 from bench.parameter import Parameter
 from bench.servos.fit import LONGEST_DEAD_TIME, ServoFit
 from bench.servos.joint import JointModel
@@ -70,7 +71,7 @@ def quantities(
         add(limit, lambda values: values["limit"], effort, f"{length}/s**2")
     else:
         least = fit.demand * scale(fit.values)
-        unit = effort if scaled else f"{length}/s**2 per {kind.inertia_unit}"
+        unit = effort if scaled else f"{length}/s**2 times the {words(kind.inertia)}"
         found.refused[limit] = f"not reached; it is at least {least:.3g} {unit}"
         found.advice.append("force_limit: larger or quicker steps of the goal, until the motion no longer speeds up.")
     if "speed_limit" in fit.names:

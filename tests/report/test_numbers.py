@@ -69,7 +69,7 @@ def test_a_number_and_its_unit(value, text):
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.87, "87 %"), (0.0123, "1.2 %"), (1e-6, "< 0.1 %"), (0.0, "0 %"), (-0.2, "-20 %")]
+    ("value", "text"), [(0.87, "87 %"), (0.0123, "1.2 %"), (1e-6, "< 0.1 %"), (0.0, "0 %"), (-0.2, "−20 %")]
 )
 def test_a_share(value, text):
     assert plain(share(value)) == text

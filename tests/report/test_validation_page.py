@@ -55,7 +55,7 @@ def test_the_tone_is_that_of_the_coverage(count, of, tone):
     assert page.tone == tone
     percent = f"{100 * count / of:.0f}"
     assert page.verdict.replace("\N{NO-BREAK SPACE}", " ") == (
-        f"Intervals of 95 % hold the truth of inertia in {percent} %, of {of} runs with nothing hidden."
+        f"Intervals of 95 % contain the true value of inertia in {percent} %, of {of} runs with nothing hidden."
     )
 
 
