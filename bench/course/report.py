@@ -143,13 +143,18 @@ def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover
     origin = (
         "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
     )
+    numbers = (number for result in results if result.key == "9" for number in result.numbers[:FIRST])
+    found = "; ".join(map(_short, numbers)) or "Not determined: see task 9"
     answers = {
+        "Inertia and friction?": f"{found}.",
         "Recordings": f"{origin}; axis: {recordings.rig.name}. Tasks 2 to 4 need none: they follow from the datasheet.",
         "Sources": "Each number has its source: the recording, the rig file, the motor's datasheet, the course, an "
         "assumption or a simulation.",
     }
     if recordings.synthetic:
         answers["Truth"] = "A truth next to a number is the value that the axis was simulated with."
+    record = "Record the axis, and run bench lab --data FOLDER" if recordings.synthetic else "Fill in the cover sheet"
+    answers["What next?"] = f"{f'Task {missing[0]} states what it needs' if missing else record}."
     return Document(
         title=TITLE,
         subject=TITLE,

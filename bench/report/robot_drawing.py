@@ -28,6 +28,8 @@ AROUND, ALONG = 12, 5
 CELLS, FEWER = 96, 0.85
 #: Groups of geoms that MuJoCo shows by itself.
 SHOWN = 3
+#: Radius of a rod, as a share of the longest, and its colour.
+THICK, GREY = 0.04, (0.5, 0.5, 0.5)
 #: Instants at most at which joints are counted that only pass by.
 INSTANTS = 1000
 #: Triangles by three of its vertices each (t, 3).
@@ -58,7 +60,7 @@ def _bodies(model: mujoco.MjModel, names: Sequence[str]) -> tuple[doc.Body, ...]
     shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN and _colour(model, g)[3] > 0.0]
     solid = {g: found for g in shown if (found := _solid(model, g)) is not None}
     budget = _shared({g: len(faces) for g, (_, faces) in solid.items()})
-    shapes: list[list[doc.Triangles]] = [[] for _ in range(model.nbody)]
+    shapes: list[list[doc.Triangles]] = [[] for _ in range(model.nbody)] if solid else _rods(model)
     for g, (vertices, faces) in solid.items():
         turn = np.empty(9)
         mujoco.mju_quat2Mat(turn, model.geom_quat[g])
@@ -76,6 +78,25 @@ def _bodies(model: mujoco.MjModel, names: Sequence[str]) -> tuple[doc.Body, ...]
         )
         for b in range(model.nbody)
     )
+
+
+def _rods(model: mujoco.MjModel) -> list[list[doc.Triangles]]:
+    """Of a robot without shapes: rods from the origin of each body to those it carries, and to its centre of mass."""
+    ends = [[model.body_ipos[b], *model.body_pos[model.body_parentid == b]] for b in range(1, model.nbody)]
+    radius = THICK * max((float(np.linalg.norm(end)) for of in ends for end in of), default=0.0)
+    shapes: list[list[doc.Triangles]] = [[]]
+    for of in ends:
+        shapes.append([])
+        for end in of:
+            length, turn, matrix = float(np.linalg.norm(end)), np.empty(4), np.empty(9)
+            if length > radius:
+                mujoco.mju_quatZ2Vec(turn, end)
+                mujoco.mju_quat2Mat(matrix, turn)
+                profile = np.array([[0.0, 0.0], [radius, 0.0], [radius, length], [0.0, length]])
+                vertices, faces = _revolved(profile)
+                placed = doc.packed(vertices @ matrix.reshape(3, 3).T)
+                shapes[-1].append(doc.Triangles(colour=GREY, vertices=placed, faces=doc.packed(faces, "<u2")))
+    return shapes
 
 
 def _joints(model: mujoco.MjModel, body: int, names: Sequence[str]) -> Iterator[doc.Pivot]:

@@ -23,6 +23,8 @@ from bench.servos.servo import Servo
 
 SCHEMA = "bench.servo/1"
 ACTUATOR, JSON = "actuator.xml", "servo.json"
+#: What to record where nothing is open.
+NO_FURTHER = "No further recording is needed."
 #: Times of the glance - s.
 GLANCE = 4.0
 
@@ -53,7 +55,7 @@ def servo_content(found: Servo) -> dict[str, Any]:
 def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None) -> doc.Document:
     """The document of a servo that `title` names."""
     of, graph = found.found, _graph(found)
-    tables = [parameters_table("Parameters", {**of.parameters, **_flat(of.effects)})]
+    tables = [parameters_table("The servo", {**of.parameters, **_flat(of.effects)})]
     if of.inseparable:
         rows = (
             (words(name), interval(value, unit=False), unit_text(value.unit)) for name, value in of.inseparable.items()
@@ -121,13 +123,17 @@ def servo_answers(found: Servo) -> dict[str, str]:
     gap = found.gaps.get("holdout", found.gaps["identify"])
     where = "on the holdout" if "holdout" in found.gaps else "on the log"
     more = ", ".join(words(name) for name in of.effects) or "nothing beyond gains, dead time, limit and friction"
+    partly = found.verdict == "unexplained_remainder"
+    record = "Record the current too: with it, diagnose finds the missing effect." if partly else NO_FURTHER
     return {
         "Gains?": f"{'; '.join(gains)}.",
         "Dead time?": dead,
-        "What else?": f"{sentence(more)}.",
-        "How good?": f"Free-running {where}, the position differs by {number(gap.after, unit, 3)} RMS, "
-        f"{number(gap.after / found.noise_floor, digits=2)} × the sensor noise; with {found.before} "
-        f"by {number(gap.before, unit, 3)} ({share(gap.after / gap.before)} remains).",
+        "What was missing?": f"{sentence(more)}.",
+        "How sure?": f"Half widths are those of 95 % intervals{', which do not cover the residual' * partly}.",
+        "Does it move like the axis?": f"{'Partly' if partly else 'Yes'}: free-running {where}, the position differs "
+        f"by {number(gap.after, unit, 3)} RMS, {number(gap.after / found.noise_floor, digits=2)} × the sensor noise; "
+        f"with {found.before} by {number(gap.before, unit, 3)} ({share(gap.after / gap.before)} remains).",
+        "What next?": f"For {of.advice[0]}" if of.advice else record,
     }
 
 

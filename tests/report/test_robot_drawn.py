@@ -10,7 +10,7 @@ from bench.report.publish import write_html
 from bench.report.robot_drawing import BUDGET, robot_drawing, simplified
 from bench.report.simulation import view
 from bench.view.side_by_side import RobotAlong
-from tests.export.two_links import L1, MJCF
+from tests.export.two_links import C2, L1, MJCF
 from tests.view.motions import AHEAD, SPEED, shown
 
 TIP, RATIO, TILT = 0.3, 2.0, 0.35
@@ -78,6 +78,15 @@ def test_shapes_of_mujoco_have_their_size(tmp_path):
         np.testing.assert_allclose(
             np.abs(unpacked(one.vertices, "<f4")).max(axis=0), reach.get(kind, (0.1, 0.2, 0.3)), rtol=0.1
         )
+
+
+def test_a_robot_without_shapes_is_drawn_as_rods_along_its_links(tmp_path):
+    (tmp_path / "bare.xml").write_text(MJCF)
+    poses = {"shoulder": np.zeros(2), "elbow": np.zeros(2)}
+    bodies = robot_drawing(RobotAlong(tmp_path / "bare.xml", "elbow", 1.0, np.arange(2.0), poses)).bodies
+    assert bodies[0].shapes == ()
+    lowest = [min(unpacked(one.vertices, "<f4")[:, 2].min() for one in body.shapes) for body in bodies[1:]]
+    np.testing.assert_allclose(lowest, [-L1, -C2], rtol=1e-6)
 
 
 def test_a_robot_of_meshes_stays_small(arm):
