@@ -51,20 +51,23 @@ class Policy:
     `python -m tests.studies.blind.thresholds` halves and doubles each of them (`docs/thresholds.md`).
 
     Attributes:
-        chance: gain over noise power, per fitted number and independent row, that is more than chance in a search over
-            some hundred candidates: on axes that lack nothing the best one saves 6 in the median and 116 at most.
+        chance: reduction of the squared residual, over noise power, per fitted number and independent row, above which
+            an effect is more than chance. On axes that lack nothing, the best of some hundred candidates reaches 6 in
+            the median and 116 at most.
         remainder: residual over noise floor above which the residual is not noise.
-        large: residual over white noise from which on it is not noise, even if the noise is stronger than it appears.
-        holdout_gap: torque gap of the holdout over that of the recording, noise at least, of a model.
-        remaining: weight of the residual above noise over that of the bare axis: it acts as a number of independent
-            rows, which other effects of a real axis make few (`bench.diagnosis.probability`; all weights are fitted,
-            `docs/certainty.md`).
-        over: weight of the residual above noise over noise.
+        large: residual over white noise above which the residual is not noise, whatever the estimate of the noise
+            floor.
+        holdout_gap: torque gap of the holdout over that of the recording (or over noise, if that is larger) above which
+            the model is not confirmed.
+        remaining: weight of the residual above noise, relative to the bare axis. It acts like a number of independent
+            rows, and is small because other effects of a real axis correlate the rows. All weights are fitted
+            (`docs/certainty.md`).
+        over: weight of the residual above noise, relative to noise.
         number: weight of a fitted number.
         outside: weight of an unknown effect.
         none: weight of effects that were not tried.
-        with_unknown: residual over noise floor, as share of that without a name, up to which the name is present
-            together with an unknown effect.
+        with_unknown: an effect is named together with an unknown one only if it reduces the residual over the noise
+            floor to this share or less.
     """
 
     chance: float = 40.0

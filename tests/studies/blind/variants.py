@@ -13,9 +13,13 @@ from bench.diagnosis.policy import POLICY, Policy
 
 #: Shares and bounds that effects state of themselves: where each stands, and what it decides.
 OF_EFFECTS = (
-    ("bench.effects.backlash", "OF_YIELDING", "gap over what its contact yields to the peak torque, at least"),
-    ("bench.effects.load_torque_event", "RESOLVED", "filter widths that an event lasts at least"),
-    ("bench.effects.load_torque_event", "LONGEST", "share of the recording that events last together at most"),
+    (
+        "bench.effects.backlash",
+        "OF_YIELDING",
+        "smallest gap that is named, over the deflection of its contact at the peak torque",
+    ),
+    ("bench.effects.load_torque_event", "RESOLVED", "shortest event that is named, in widths of the filter"),
+    ("bench.effects.load_torque_event", "LONGEST", "largest share of the recording that events last together"),
 )
 FACTORS = {"off": 0.0, "half": 0.5, "double": 2.0}
 #: Weights of the score: each may be zero.
