@@ -171,6 +171,13 @@ def write_diagnosis(out: Path, found: Diagnosis, title: str) -> list[Path]:
     return [*write_document(out, diagnosis(found, title)), pack(out / PACKED, found)]
 
 
+def _caption(one: NamedEffect) -> str:
+    """Name of an effect, with the harmonic where an axis may have several, and what it is."""
+    waves = [slot.quantity.name for slot in one.effect.shapes if slot.whole and slot.quantity.name in one.parameters]
+    numbered = [f"{words(name)} {number(one.parameters[name].value)}" for name in waves]
+    return f"{sentence(', '.join([words(one.name), *numbered]))}: {one.effect.summary}"
+
+
 def diagnosis(
     found: Diagnosis, title: str, provenance: Mapping[str, Any] | None = None, moving: Sequence[doc.Section] = ()
 ) -> doc.Document:
@@ -179,9 +186,7 @@ def diagnosis(
     `title` names rig and recordings; `moving`: of a robot's joint, the robot in motion.
     """
     tables = [parameters_table("The axis", found.parameters)]
-    tables += [
-        parameters_table(f"{sentence(words(one.name))}: {one.effect.summary}", one.parameters) for one in found.effects
-    ]
+    tables += [parameters_table(_caption(one), one.parameters) for one in found.effects]
     tables += recordings_table(found.recordings, found.between, found.parameters)
     notes, verdict, following = _notes(found), verdict_sentence(found), found.next_experiment
     graphs = [_over_time(found, series) for series in found.time_series]
