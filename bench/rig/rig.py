@@ -433,7 +433,8 @@ def rig_file(given: str | Path) -> Path:
     """The file of a rig: as given, or of a shipped one by its name; InputError where it is neither."""
     path, known = Path(given), shipped()
     try:
-        if path.suffix or path.name != str(given) or path.exists():
+        shadow = str(given) in known and path.is_dir()  # such as the one that an earlier --out wrote
+        if path.suffix or path.name != str(given) or (path.exists() and not shadow):
             return path
     except OSError:  # such as a name that is too long: its reader reports it
         return path

@@ -77,3 +77,9 @@ def test_a_draft_asks_for_the_sample_period_of_what_holds_no_time_alone(tmp_path
     cells = head.count(",") + 1
     path.write_text("\n".join([head, *(",".join([f"{k}"] * cells) for k in range(300))]))
     assert ("sample_period" in draft(inspect_recording(read_recording(path), GivenOptions()))) == asked
+
+
+def test_a_folder_of_a_shipped_rigs_name_hides_no_rig(tmp_path, monkeypatch):
+    (tmp_path / "emps").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert load_rig("emps").name == "EMPS"
