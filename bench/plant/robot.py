@@ -164,7 +164,7 @@ class Robot:
                 body = model.body(int(model.jnt_bodyid[k])).name
                 found = "found a free or ball joint, whose motion is in no log of joints"
                 allowed = (
-                    "for a robot on a stand, --stand of `bench robot` and `bench servo`, or delete this joint and the "
+                    "for a robot on a stand, add `--stand` to bench robot or bench servo, or delete this joint and the "
                     "<keyframe> element from the file; on its feet the forces of the ground are in no log of joints"
                 )
                 raise InputError(f"{path}: body '{body}'", found, allowed)

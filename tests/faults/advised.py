@@ -33,13 +33,6 @@ def two_axes():
     return "\n".join([head, *(f"{t!r},{w!r},{i!r},{w / 2!r},{i / 2!r}" for t, w, i in rows)]) + "\n"
 
 
-def following():
-    """The elbow of the robot 20 ms behind its goals."""
-    time = columns()[0]
-    goal, position = (np.sin(8.0 * (time - late)) for late in (0.0, 0.02))
-    return csv_of(time, position, goal, head="time [s],elbow.position [rad],elbow.goal [rad]")
-
-
 #: Files by name: text.
 FILES = {
     "log.csv": TABLE,
@@ -49,7 +42,6 @@ FILES = {
         "<worldbody>", '<worldbody><body name="trunk"><freejoint/><geom size="0.1" mass="1"/>'
     ).replace("</worldbody>", "</body></worldbody>"),
     "joint_log.csv": csv_of(*columns(), head="time [s],elbow.velocity [rad/s],elbow.torque [N*m]"),
-    "goals.csv": following(),
     "no_time.csv": "\n".join(",".join(row.split(",")[1:]) for row in TABLE.splitlines()),
     "no_effort.csv": "\n".join(",".join(row.split(",")[:2]) for row in TABLE.splitlines()),
     "per_second.csv": headed("time [s],velocity [1/s],current [A]"),
@@ -93,7 +85,6 @@ CASES = [
     "bench export joints.toml --to mjcf --out joint.xml",
     "bench export joints.toml --mjcf robot.xml --joint elbow --out robot_id.urdf",
     "bench robot joint_log.csv --mjcf legged.xml --out legged",
-    "bench robot goals.csv --mjcf robot.xml --at shoulder=0 --out by_goals",
     "bench export joints.toml --to mjlab --out actuators.py --with-assets",
     "bench fleet pendulum.csv --out fleet",
     "bench identify log.csv --rig rig.toml --max-size 1kB",
