@@ -81,10 +81,10 @@ def _at_joint(joint: IdentifiedJoint) -> list[Parameter | None]:
 
 def _lacks(joint: IdentifiedJoint, sprung: bool) -> tuple[str, ...] | None:
     """Names of effects that were found, and an unknown one where a residual remains; of no spring that is stated."""
-    if joint.servo is not None:
-        names = tuple(joint.servo.found.effects)
-    elif joint.diagnosis is not None:
+    if joint.diagnosis is not None:
         names = tuple(each.name for each in joint.diagnosis.effects if not (sprung and each.effect.spring))
+    elif joint.servo is not None:
+        names = tuple(joint.servo.found.effects)
     else:
         return None
     return names + ((UNKNOWN,) if joint.verdict == "unexplained_remainder" else ())

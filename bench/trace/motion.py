@@ -15,7 +15,7 @@ from bench.arrays import Array, hann, rms, spectra
 from bench.axis_kind import INERTIA
 from bench.errors import InputError, UndeterminedError
 from bench.trace.filter import LEAST_WIDTH, Column, GaussianFilter
-from bench.trace.noise import TOP, common_step, resolution, rounding_spectrum, white_noise
+from bench.trace.noise import TOP, common_step, resolution, rounding_spectrum, varying_noise, white_noise
 from bench.trace.signals import KNOWN_INERTIA, KNOWN_MOMENTUM, KNOWN_TORQUE
 from bench.trace.trace import Trace, less_known
 
@@ -139,11 +139,14 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
 
 
 def _noise_of_known(trace: Trace, parts: Sequence[slice], source: str) -> float:
-    """White noise of the known momentum less the mean inertia by which it has the noise of the speed."""
+    """White noise of the known momentum less the mean inertia by which it has the noise of the speed.
+
+    It is the noise of the other joints, as large as poses make it.
+    """
     inertia = float(np.mean(np.concatenate([trace[KNOWN_INERTIA][part] for part in parts])))
     speeds = (raw_speed(trace[source][part], source, trace.sample_period) for part in parts)
     momentum = (trace[KNOWN_MOMENTUM][part] for part in parts)
-    return white_noise(*(p - inertia * speed for p, speed in zip(momentum, speeds, strict=True)))
+    return varying_noise(*(p - inertia * speed for p, speed in zip(momentum, speeds, strict=True)))
 
 
 def _rounded(stretches: Sequence[Array], smooth: GaussianFilter, noise: float) -> tuple[Array, Array] | None:

@@ -25,6 +25,8 @@ from bench.trace.filter import GaussianFilter
 WINDOWS = (128, 64, 32)
 #: Share of the samples that must lie in whole windows of a length for it to be taken.
 HELD = 0.5
+#: Power of a window over the median above which it is a jerk: a change of pose makes less of a difference.
+JERK = 30.0
 #: Share of the spectrum, from the top, that counts as noise.
 TOP = 0.3
 #: Variance of a mean of neighbouring Hann-weighted periodogram values over that of independent ones:
@@ -57,6 +59,19 @@ def white_noise(*stretches: Array) -> float:
         stretches: regular samples (n,) without a hole, one or several; 0 comes of them when all are shorter than a
             window, or the signal never changes.
     """
+    powers, median = _powers(stretches)
+    return float(np.sqrt(np.median(powers) / median)) if powers.size else 0.0
+
+
+def varying_noise(*stretches: Array) -> float:
+    """The same of noise that grows and falls with the motion: the mean over all windows but those of jerks."""
+    powers, _ = _powers(stretches)
+    powers = powers[powers <= JERK * np.median(powers)] if powers.size else powers
+    return float(np.sqrt(np.mean(powers))) if powers.size else 0.0
+
+
+def _powers(stretches: Sequence[Array]) -> tuple[Array, float]:
+    """Noise of the windows as variances (k,), and the median of such an estimate over its expectation."""
     samples = sum(values.size for values in stretches)
     sizes = {window: sum(max(values.size - 2, 0) // window * window for values in stretches) for window in WINDOWS}
     window = next((window for window, size in sizes.items() if size >= HELD * samples), WINDOWS[-1])
@@ -64,16 +79,13 @@ def white_noise(*stretches: Array) -> float:
     whole = [one[: one.size // window * window].reshape(-1, window) for one in steps]
     differences = np.concatenate(whole) if whole else np.empty((0, window))
     differences = differences[differences.any(axis=1)]
-    if not differences.size:
-        return 0.0
     taper = np.hanning(window)
     frequency = np.linspace(0.0, np.pi, window // 2 + 1)
     top = slice(int((1.0 - TOP) * frequency.size), -1)
     shape = (2.0 * np.sin(frequency[top] / 2.0)) ** 4 * np.sum(taper**2)
     power = np.abs(np.fft.rfft(differences * taper, axis=1)[:, top]) ** 2
     degrees = shape.size / CORRELATION
-    median = scipy.special.gammaincinv(degrees, 0.5) / degrees
-    return float(np.sqrt(np.median(power @ (1.0 / shape)) / shape.size / median))
+    return power @ (1.0 / shape) / shape.size, float(scipy.special.gammaincinv(degrees, 0.5) / degrees)
 
 
 def resolution(values: Array) -> float:

@@ -87,8 +87,12 @@ def motion(duration=12.0, period=1e-3, phase=0.0):
 
 def log(hidden=HIDDEN, seed=0, noise=1.0, **how):
     """Columns of a log, by their names in its file, as the sensors have them."""
-    rng = np.random.default_rng(seed)
-    time, (q1, w1, a1), (q2, w2, a2) = motion(**how)
+    return sensed(*motion(**how), hidden, seed, noise)
+
+
+def sensed(time, shoulder, elbow, hidden=HIDDEN, seed=0, noise=1.0):
+    """The same of a motion."""
+    rng, (q1, w1, a1), (q2, w2, a2) = np.random.default_rng(seed), shoulder, elbow
     drive = elbow_torque(q1, w1, a1, q2, w2, a2) + hidden.torque(q2, w2, a2)
     lift = shoulder_torque(q1, w1, a1, q2, w2, a2)
     exact = {

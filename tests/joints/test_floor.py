@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import bench
@@ -11,7 +12,7 @@ from bench.fit.hypothesis import Term, plain
 from bench.fit.rows import Rows
 from bench.fit.solution import Floor
 from bench.plant.robot import Robot, joint_rig, read_log
-from tests.export.two_links import HIDDEN, MJCF, log, write_log
+from tests.export.two_links import HIDDEN, MJCF, log, motion, sensed, write_log
 
 
 @pytest.mark.parametrize("joint", ["shoulder", "elbow"])
@@ -39,3 +40,15 @@ def test_noise_of_the_known_torque_stays_on_a_link_that_hangs_loose(tmp_path):
     white = [Floor(one, found.hypothesis, found.layout, theta, found.left).white for one in (rows, loud)]
     assert rows.conditioning.known_noise > 0.0
     assert white[1] == pytest.approx(white[0], rel=1e-3)
+
+
+def test_noise_of_the_known_torque_that_changes_with_the_pose_is_in_the_floor(tmp_path):
+    """A forearm that unfolds: of the inertia by which it has the shoulder's speed the RMS is 1.6 times the median."""
+    (tmp_path / "arm.xml").write_text(MJCF)
+    time, shoulder, (angle, speed, acceleration) = motion()
+    unfolds = angle + np.pi * (1.0 - time / time[-1]), speed - np.pi / time[-1], acceleration
+    logged = write_log(tmp_path / "log.csv", sensed(time, shoulder, unfolds, replace(HIDDEN, cogging=0.0)))
+    robot = Robot.of(tmp_path / "arm.xml", "elbow")
+    rig = joint_rig(None, robot)
+    left = bench.identify(read_log(logged, rig, robot, {}), rig).residual
+    assert left.rms / left.noise_floor == pytest.approx(1.0, abs=0.03)

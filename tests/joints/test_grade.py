@@ -30,7 +30,7 @@ def grades(tmp_path):
             SimpleNamespace(name=name, effect=SimpleNamespace(spring=name == "torsion_spring")) for name in effects
         ]
         diagnosis = SimpleNamespace(effects=named, verdict=verdict)
-        joint = SimpleNamespace(rig=rig, parameters=parameters, diagnosis=diagnosis)
+        joint = SimpleNamespace(rig=rig, parameters=parameters, diagnosis=diagnosis, servo=None, verdict=verdict)
         return graded(tmp_path / "arm.xml", {"a|b": joint}, stand=False)
 
     return holding

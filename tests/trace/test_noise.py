@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from bench.trace.noise import resolution, white_noise
+from bench.trace.noise import resolution, varying_noise, white_noise
 
 
 def test_white_noise_is_found_under_a_servo_motion():
@@ -63,3 +63,13 @@ def test_the_median_of_a_mean_of_few_values_is_put_right():
     """Of windows of 32 the top holds five values, correlated: without that their median would seem 3.4 % higher."""
     stretches = np.random.default_rng(7).normal(size=(20_000, 34))
     assert white_noise(*stretches) == pytest.approx(1.0, rel=0.012)
+
+
+def test_noise_that_grows_with_the_motion_counts_by_its_mean_square():
+    """Of a deviation that rises from 1 to 3 the mean square is 13/3, the median of squares 4; jerks do not count."""
+    rng, size = np.random.default_rng(5), np.linspace(1.0, 3.0, 60_000)
+    values = size * rng.standard_normal(size.size)
+    assert varying_noise(values) == pytest.approx(math.sqrt(13.0 / 3.0), rel=0.02)
+    jerky = values + np.cumsum(300.0 * (np.arange(size.size) % 10_000 == 5_000))
+    assert varying_noise(jerky) == pytest.approx(varying_noise(values), rel=0.02)
+    assert varying_noise(np.zeros(5)) == 0.0
