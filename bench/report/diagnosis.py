@@ -28,7 +28,7 @@ from bench.report.gap import at_a_glance, gap_chart, remainder, rms_gaps, states
 from bench.report.identification import recordings_json
 from bench.report.numbers import brief, chance, coordinate_word, effort_word, listed, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import checks_section, origin, parameters_table, recordings_table
+from bench.report.parts import NO_FURTHER, checks_section, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
 from bench.report.serial import as_json, known, picked, serialised
 from bench.report.verdict import reason, reasons
@@ -283,7 +283,7 @@ def _answers(found: Diagnosis) -> dict[str, str]:
         f"{sentence(words(inertia))}?": f"{brief(value)} (95 %)"
         if value
         else f"Not determined together with the missing effects: {found.refused[of_axis]}",
-        "What next?": following(found) or "No further recording is needed.",
+        "What next?": following(found) or NO_FURTHER,
         **({"Does MuJoCo have all of it?": f"No: {' '.join(lacks)}"} if lacks else {}),
     }
 
@@ -481,7 +481,7 @@ def _suspects(found: Diagnosis) -> doc.Section:
 
 def _next(found: Diagnosis) -> doc.Section:
     """What to record next, and what is unexplained."""
-    text = following(found) or "No further recording is needed."
+    text = following(found) or NO_FURTHER
     blocks: list[doc.Paragraph | doc.Points] = [doc.Paragraph(text=text)]
     if found.objections:
         blocks += [doc.Paragraph(text="Evidence of a further effect:"), doc.points(map(words, reasons(found)))]

@@ -16,6 +16,9 @@ from bench.parameter import Parameter
 from bench.report.document import MEDIA, Chart, File, Panel, Section, Series, Table, downloads, points, section, table
 from bench.report.numbers import interval, number, unit_text
 
+#: What to record next where nothing is open.
+NO_FURTHER = "No further recording is needed."
+
 
 def parameters_table(
     caption: str, parameters: Mapping[str, Parameter], truth: Mapping[str, float] | None = None

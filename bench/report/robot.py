@@ -22,7 +22,7 @@ from bench.report import document as doc
 from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names, moves
 from bench.report.grade import grade_json, grade_section
 from bench.report.numbers import interval, number, sentence, unit_text
-from bench.report.parts import origin, parameters_table
+from bench.report.parts import NO_FURTHER, origin, parameters_table
 from bench.report.serial import as_json, picked, serialised
 from bench.report.servo import of_trainers, servo, servo_answers, servo_content
 from bench.report.simulation import moving_section
@@ -140,30 +140,28 @@ def _answers(found: IdentifiedRobot) -> dict[str, str]:
     """What was missing, how sure and how large, whether the joints move like the robot, and what to record next."""
     known = {name: joint.diagnosis for name, joint in found.joints.items() if joint.diagnosis is not None}
     fitted = {name: servo_answers(joint.servo) for name, joint in found.joints.items() if joint.servo is not None}
-    servos = {
-        question: _by_joint({name: answers[question] for name, answers in fitted.items()})
-        for question in next(iter(fitted.values()), {})
-    }
-    if not known:
-        return servos
+    if not known and not fitted:
+        return {}
     named = {name: one for name, one in known.items() if one.effects}
-    sizes = {
-        name: f"{number(one.torque.identify[0], digits=3)} to {number(one.torque.identify[1], one.torque.unit, 3)}"
-        for name, one in (named or known).items()
-        if one.torque.identify is not None
+    texts: dict[str, dict[str, str]] = {
+        "What was missing?": {
+            name: f"{', '.join(words(effect.effect.name) for effect in one.effects)}." for name, one in named.items()
+        },
+        "How sure?": {name: likely_names(one) for name, one in (named or known).items()},
+        "RMS torque gap, before and after?": {
+            name: f"{number(one.torque.identify[0], digits=3)} to {number(one.torque.identify[1], one.torque.unit, 3)}."
+            for name, one in (named or known).items()
+            if one.torque.identify is not None
+        },
+        "Does it move like the axis?": {name: moves(one) for name, one in (named or known).items()},
+        "What next?": {name: text for name, joint in found.joints.items() for _, text in _open(joint) if text},
     }
-    missing = {
-        name: f"{', '.join(words(effect.effect.name) for effect in one.effects)}." for name, one in named.items()
-    }
-    later = {name: text for name, joint in found.joints.items() for _, text in _open(joint) if text}
-    return {
-        "What was missing?": _by_joint(missing) or "No missing effect found.",
-        "How sure?": _by_joint({name: likely_names(one) for name, one in (named or known).items()}),
-        "RMS torque gap, before and after?": _by_joint({name: f"{text}." for name, text in sizes.items()}),
-        "Does it move like the robot now?": _by_joint({name: moves(one) for name, one in (named or known).items()}),
-        "What next?": _by_joint(later) or "No further recording is needed.",
-        **servos,
-    }
+    for name, own in fitted.items():
+        for question, text in own.items():
+            texts.setdefault(question, {})[name] = text
+    none = {"What was missing?": "No missing effect found.", "What next?": NO_FURTHER}
+    answers = {question: _by_joint(of) or none.get(question, "") for question, of in texts.items()}
+    return {question.replace("the axis", "the robot now"): text for question, text in answers.items() if text}
 
 
 def _by_joint(texts: Mapping[str, str]) -> str:

@@ -17,14 +17,12 @@ from bench.parameter import Parameter
 from bench.report import document as doc
 from bench.report.numbers import brief, interval, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import checks_section, one_panel, origin, parameters_table
+from bench.report.parts import NO_FURTHER, checks_section, one_panel, origin, parameters_table
 from bench.report.serial import as_json, serialised
 from bench.servos.servo import Servo
 
 SCHEMA = "bench.servo/1"
 ACTUATOR, JSON = "actuator.xml", "servo.json"
-#: What to record where nothing is open.
-NO_FURTHER = "No further recording is needed."
 #: Times of the glance - s.
 GLANCE = 4.0
 

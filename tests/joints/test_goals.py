@@ -9,6 +9,8 @@ import pytest
 from bench.errors import InputError
 from bench.joints.goals import by_goals, drive_of, with_gains, with_one_delay
 from bench.joints.identified import JointLogs
+from bench.joints.robot import robot
+from bench.report.robot import robot as document_of
 from bench.servos.commanded import Delay, Gains, shared
 from tests.command import bench as command
 from tests.studies.quadruped import KD, KP, hidden, joints_of, mjcf, moved, write_log
@@ -153,6 +155,17 @@ def test_the_mjcf_and_what_trains_policies_have_fitted_gains(leg, fitted):
     assert model.joint(CALF).frictionloss[0] == pytest.approx(leg[1]["coulomb_friction_torque"][2], rel=0.02)
     for name in ("mjlab.py", "isaaclab.py"):
         assert f"stiffness={joint['parameters']['kp']['value']:.6g}" in (fitted / name).read_text(encoding="utf-8")
+
+
+def test_joints_of_known_and_of_unknown_gains_answer_together(leg):
+    folder, _ = leg
+    found = robot(folder / "log.csv", folder / "bare.xml", joints=[HIP, CALF], kp={HIP: KP}, kd={HIP: KD})
+    assert [*found.drives] == [*found.actuators] == [HIP, CALF]
+    assert found.drives[HIP].kp == KP != found.drives[CALF].kp
+    answers = document_of(found, "leg").answers
+    for question in ("How sure?", "Does it move like the robot now?", "What next?"):
+        assert HIP in answers[question] and CALF in answers[question]
+    assert f"{CALF}: kp 4" in answers["Gains?"] and HIP not in answers["Gains?"]
 
 
 def test_gains_of_several_payloads_have_to_be_known(leg):
