@@ -31,7 +31,7 @@ def test_a_floating_base_is_fixed_and_its_keyframes_are_left_out(folder):
 
 def test_a_floating_base_is_refused_by_name_with_its_remedy(folder):
     with pytest.raises(
-        InputError, match=r"body 'trunk': found a free or ball joint.*--stand of `bench robot` and `bench servo`"
+        InputError, match=r"body 'trunk': found a free or ball joint.*add `--stand` to bench robot or bench servo"
     ):
         Robot.of(folder / "floating.xml", "hip")
 

@@ -120,6 +120,7 @@ def test_bins_that_are_dragged_over_or_reached_by_keys_shade_their_time_ranges(o
     """Of the time itself: bins of its panel are the time range."""
     page = opened(found / "report.html")
     panel, output = page.locator("svg[data-of=time]"), page.locator("form.bins output")
+    page.locator("form.bins").wait_for(state="visible")
     assert output.inner_text() == ""
     share = """() => { // of the first graph's width that is shaded, at its top
         const canvas = document.querySelector(".graph canvas"), at = canvas.getBoundingClientRect();
@@ -159,7 +160,7 @@ def test_bins_that_are_dragged_over_or_reached_by_keys_shade_their_time_ranges(o
 def test_a_time_range_marks_its_bins(opened, found):
     page = opened(found / "report.html")
     marked = "() => [...document.querySelectorAll('svg[data-of=time] .shown')].map(one => one.getAttribute('d'))[0]"
-    assert page.evaluate(marked) == ""
+    page.locator("svg[data-of=time] .shown[d='']").wait_for(state="attached")  # once numbers of bins are unpacked
     page.locator(".graph").first.press("+")
     settled(page)
     panel, (first, last) = page.locator("svg[data-of=time]"), range_of(page)
