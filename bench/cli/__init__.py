@@ -26,7 +26,7 @@ from typer.exceptions import TyperException
 
 from bench import __version__
 from bench.cli.check import check
-from bench.cli.common import NOTES, RED, guarded, say, warn
+from bench.cli.common import NOTES, guarded, say, warn
 from bench.cli.grouped import RENAMED, Grouped
 from bench.cli.lab import lab
 from bench.cli.model import export, replay
@@ -147,5 +147,5 @@ def _failed(message: str, status: int) -> int:
         print_exc()
     line = " ".join(message.replace("Value error, ", "").split())
     if line:
-        say(f"bench: {short(line, LONGEST)}", err=True, tone=RED)
+        say(f"bench: {short(line, LONGEST)}", err=True, tone="red")
     return status

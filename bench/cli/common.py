@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "page", "video"})
 #: Those of them that name folders, which may be there.
 FOLDERS = frozenset({"out", "synthetic", "notebooks"})
-#: Colours of a terminal, as its escape sequences number them.
-RED, YELLOW = "1;31", "1;33"
 #: Notes on the recordings of this run, in order. Bad input is one line, without them.
 NOTES: dict[str, None] = {}
 #: Parameters of commands whose file is read, and replaced with `--update`.
@@ -274,7 +272,7 @@ def printed(part: object) -> None:
 def say(text: str, err: bool = False, tone: str = "") -> None:
     """A line on standard output, or standard error; on a terminal as many as it takes, and no word is cut.
 
-    tone: how a terminal shows what comes before the first colon.
+    tone: colour in which a terminal shows what comes before the first colon.
     """
     text, stream = plain(text), sys.stderr if err else sys.stdout
     if stream is not None and stream.isatty():
@@ -283,7 +281,7 @@ def say(text: str, err: bool = False, tone: str = "") -> None:
         text = "\n".join(wrapped(text, shutil.get_terminal_size().columns))
         if tone and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb":
             head, colon, rest = text.partition(":")
-            text = f"\x1b[{tone}m{head}{colon}\x1b[0m{rest}"
+            text = typer.style(f"{head}{colon}", tone, bold=True) + rest
     with suppress(*[OSError] if err else []):  # where standard error is full or closed, the status has to do
         print(text, file=stream, flush=True)  # by the stream's own encoding, which `typer.echo` replaces
 
@@ -298,7 +296,7 @@ def list_files(files: Iterable[Path | None]) -> None:
 def warn(warnings: Iterable[str]) -> None:
     """A line on standard error for each warning."""
     for warning in warnings:
-        say(f"warning: {readable(warning)}", err=True, tone=YELLOW)
+        say(f"warning: {readable(warning)}", err=True, tone="yellow")
 
 
 @dataclass(frozen=True)

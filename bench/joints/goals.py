@@ -114,16 +114,10 @@ def _by_servo(asked: JointLogs) -> IdentifiedJoint:
         raise InputError(f"{asked.mjcf}: joint '{asked.joint}'", found, allowed)
     model = JointModel.of(asked.mjcf, asked.robot(), asked.rig, asked.stated, asked.stand)
     found = by_logs(asked.logs, None, model, asked.holdout)
-    together = {name: f"only {name} is determined: {value}" for name, value in found.found.inseparable.items()}
-    return IdentifiedJoint(
-        asked.joint,
-        _without_gear(model.rig),
-        servo=found,
-        refused={
-            **found.found.refused,
-            **{name: why for name, why in together.items() if "kp" not in found.parameters},
-        },
-    )
+    refused = dict(found.found.refused)
+    if "kp" not in found.parameters:
+        refused |= {name: f"only {name} is determined: {value}" for name, value in found.found.inseparable.items()}
+    return IdentifiedJoint(asked.joint, _without_gear(model.rig), servo=found, refused=refused)
 
 
 def _without_gear(rig: Rig) -> Rig:

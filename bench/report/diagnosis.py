@@ -28,7 +28,7 @@ from bench.report.gap import at_a_glance, gap_chart, remainder, rms_gaps, states
 from bench.report.identification import recordings_json
 from bench.report.numbers import brief, chance, coordinate_word, effort_word, listed, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import NO_FURTHER, checks_section, origin, parameters_table, recordings_table
+from bench.report.parts import MOVES, NO_FURTHER, checks_section, origin, parameters_table, recordings_table
 from bench.report.publish import write_document
 from bench.report.serial import as_json, known, picked, serialised
 from bench.report.verdict import reason, reasons
@@ -279,7 +279,7 @@ def _answers(found: Diagnosis) -> dict[str, str]:
     return {
         "What was missing?": f"{sentence('; '.join(missing)) or 'No effect of the catalogue.'}{_tabulated(found)}",
         "How sure?": _sure(found),
-        "Does it move like the axis now?": moves(found),
+        MOVES: moves(found),
         f"{sentence(words(inertia))}?": f"{brief(value)} (95 %)"
         if value
         else f"Not determined together with the missing effects: {found.refused[of_axis]}",

@@ -16,7 +16,8 @@ from bench.parameter import Parameter
 from bench.report.document import MEDIA, Chart, File, Panel, Section, Series, Table, downloads, points, section, table
 from bench.report.numbers import interval, number, unit_text
 
-#: What to record next where nothing is open.
+#: What pages of a model ask, and what to record next where nothing is open.
+MOVES = "Does it move like the axis now?"
 NO_FURTHER = "No further recording is needed."
 
 

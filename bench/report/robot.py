@@ -22,7 +22,7 @@ from bench.report import document as doc
 from bench.report.diagnosis import diagnosis, diagnosis_content, following, likely_names, moves
 from bench.report.grade import grade_json, grade_section
 from bench.report.numbers import interval, number, sentence, unit_text
-from bench.report.parts import NO_FURTHER, origin, parameters_table
+from bench.report.parts import MOVES, NO_FURTHER, origin, parameters_table
 from bench.report.serial import as_json, picked, serialised
 from bench.report.servo import of_trainers, servo, servo_answers, servo_content
 from bench.report.simulation import moving_section
@@ -153,7 +153,7 @@ def _answers(found: IdentifiedRobot) -> dict[str, str]:
             for name, one in (named or known).items()
             if one.torque.identify is not None
         },
-        "Does it move like the axis?": {name: moves(one) for name, one in (named or known).items()},
+        MOVES: {name: moves(one) for name, one in (named or known).items()},
         "What next?": {name: text for name, joint in found.joints.items() for _, text in _open(joint) if text},
     }
     for name, own in fitted.items():
@@ -161,7 +161,7 @@ def _answers(found: IdentifiedRobot) -> dict[str, str]:
             texts.setdefault(question, {})[name] = text
     none = {"What was missing?": "No missing effect found.", "What next?": NO_FURTHER}
     answers = {question: _by_joint(of) or none.get(question, "") for question, of in texts.items()}
-    return {question.replace("the axis", "the robot now"): text for question, text in answers.items() if text}
+    return {question: text for question, text in answers.items() if text}
 
 
 def _by_joint(texts: Mapping[str, str]) -> str:
@@ -239,15 +239,8 @@ def _values(joint: IdentifiedJoint) -> tuple[Parameter | None, ...]:
     if joint.rig is None:
         return (None,) * len(COLUMNS)
     kind = joint.rig.axis_kind
-    names = (
-        ARMATURE,
-        kind.parameter(VISCOUS),
-        kind.parameter(COULOMB),
-        f"static_friction_{kind.effort}",
-        *COMMAND,
-        "kp",
-        "kv",
-    )
+    friction = kind.parameter(VISCOUS), kind.parameter(COULOMB), f"static_friction_{kind.effort}"
+    names = (ARMATURE, *friction, *COMMAND, "kp", "kv")
     return tuple(joint.parameters.get(name) for name in names)
 
 

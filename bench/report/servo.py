@@ -17,7 +17,7 @@ from bench.parameter import Parameter
 from bench.report import document as doc
 from bench.report.numbers import brief, interval, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import NO_FURTHER, checks_section, one_panel, origin, parameters_table
+from bench.report.parts import MOVES, NO_FURTHER, checks_section, one_panel, origin, parameters_table
 from bench.report.serial import as_json, serialised
 from bench.servos.servo import Servo
 
@@ -128,7 +128,7 @@ def servo_answers(found: Servo) -> dict[str, str]:
         "Dead time?": dead,
         "What was missing?": f"{sentence(more)}.",
         "How sure?": f"Half widths are those of 95 % intervals{', which do not cover the residual' * partly}.",
-        "Does it move like the axis?": f"{'Partly' if partly else 'Yes'}: free-running {where}, the position differs "
+        MOVES: f"{'Partly' if partly else 'Yes'}: free-running {where}, the position differs "
         f"by {number(gap.after, unit, 3)} RMS, {number(gap.after / found.noise_floor, digits=2)} × the sensor noise; "
         f"with {found.before} by {number(gap.before, unit, 3)} ({share(gap.after / gap.before)} remains).",
         "What next?": f"For {of.advice[0]}" if of.advice else record,

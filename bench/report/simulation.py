@@ -20,7 +20,7 @@ from bench.plant.simulate import Simulated
 from bench.report import document as doc
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, time_graph
-from bench.report.parts import model_sections, one_panel, origin, values_table
+from bench.report.parts import MOVES, model_sections, one_panel, origin, values_table
 from bench.report.robot_drawing import robot_drawing
 from bench.trace.noise import white_noise
 from bench.view.free_running import BARE, HELD, HORIZONS, FreeRun
@@ -125,7 +125,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         moves = f"{like}: off by {off} RMS; the sensor's noise is {number(noise, digits=3)}."
     answers = {
         f"How large is the residual {effort}?": f"{number(torque[1], replayed.effort_unit, 3)} RMS",
-        "Does it move like the axis?": moves,
+        MOVES: moves,
         "Is it this axis?": " ".join(replayed.warnings) or "Nothing speaks against it.",
     }
     both = {

@@ -71,7 +71,7 @@ def varying_noise(*stretches: Array) -> float:
 
 
 def _powers(stretches: Sequence[Array]) -> tuple[Array, float]:
-    """Noise of the windows as variances (k,), and the median of such an estimate over its expectation."""
+    """Variances of the noise in windows (k,) - unit squared -, and the median of such an estimate over its mean."""
     samples = sum(values.size for values in stretches)
     sizes = {window: sum(max(values.size - 2, 0) // window * window for values in stretches) for window in WINDOWS}
     window = next((window for window, size in sizes.items() if size >= HELD * samples), WINDOWS[-1])

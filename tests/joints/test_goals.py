@@ -163,7 +163,7 @@ def test_joints_of_known_and_of_unknown_gains_answer_together(leg):
     assert [*found.drives] == [*found.actuators] == [HIP, CALF]
     assert found.drives[HIP].kp == KP != found.drives[CALF].kp
     answers = document_of(found, "leg").answers
-    for question in ("How sure?", "Does it move like the robot now?", "What next?"):
+    for question in ("How sure?", "Does it move like the axis now?", "What next?"):
         assert HIP in answers[question] and CALF in answers[question]
     assert f"{CALF}: kp 4" in answers["Gains?"] and HIP not in answers["Gains?"]
 

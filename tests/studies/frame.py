@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import resource
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -55,6 +56,11 @@ def running(jobs: int, show: bool = True) -> Iterator[Run]:
     """Processes, and their progress on standard error."""
     with workers(jobs) as pool, Progress(console=Console(stderr=True), disable=not show) as progress:
         yield Run(pool, progress)
+
+
+def cpu() -> float:
+    """Time that this process, and those of its that have ended, took of processors - s."""
+    return sum(sum(resource.getrusage(whose)[:2]) for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
 
 
 def table(heads: Sequence[str], rows: Iterable[Iterable[object]]) -> str:

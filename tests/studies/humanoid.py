@@ -23,7 +23,7 @@ import numpy as np
 
 import bench
 from tests.export.two_links import waves
-from tests.studies.frame import table
+from tests.studies.frame import cpu, table
 
 RATE = 500.0
 #: Noise of position - rad -, speed - rad/s - and torque, as a share of its RMS.
@@ -116,9 +116,9 @@ def measured(joints: int, seconds: float, seed: int) -> tuple[str, ...]:
         robot, log = Path(folder) / "robot.xml", Path(folder) / "log.csv"
         robot.write_text(mjcf(joints), encoding="utf-8")
         write_log(log, mujoco.MjModel.from_xml_path(str(robot)), of, rng, round(seconds * RATE))
-        begun, clock = _cpu(), time.perf_counter()
+        begun, clock = cpu(), time.perf_counter()
         found = bench.robot(log, robot)
-        cpu, clock = _cpu() - begun, time.perf_counter() - clock
+        spent, clock = cpu() - begun, time.perf_counter() - clock
     inside = asked = 0
     named, missed, false = 0, 0, list[str]()
     for k, (name, joint) in enumerate(found.joints.items()):
@@ -132,14 +132,9 @@ def measured(joints: int, seconds: float, seed: int) -> tuple[str, ...]:
                 inside, asked = inside + bool(low <= of[one][k] <= high), asked + 1
     memory = max(resource.getrusage(whose).ru_maxrss for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return (
-        str(joints), f"{seconds:g}", f"{cpu:.0f}", f"{clock:.0f}", f"{memory / 1024:.0f}",
+        str(joints), f"{seconds:g}", f"{spent:.0f}", f"{clock:.0f}", f"{memory / 1024:.0f}",
         f"{inside} of {asked}, {3 * joints} wanted", f"{named} of {named + missed}", ", ".join(false) or "none",
     )  # fmt: skip
-
-
-def _cpu() -> float:
-    """Of this process and of those that have ended - s."""
-    return sum(sum(resource.getrusage(whose)[:2]) for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
 
 
 def main() -> None:

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import resource
 import tempfile
 from itertools import chain
 from pathlib import Path
@@ -23,7 +22,7 @@ import mujoco
 import numpy as np
 
 import bench
-from tests.studies.frame import running, table
+from tests.studies.frame import cpu, running, table
 
 KP, KD, RATE, STEP = 40.0, 1.0, 400.0, 0.25e-3
 #: Noise of a position, and its step - rad.
@@ -128,9 +127,9 @@ def judged(seed: int, number: int) -> list[tuple[str, float, float, bool]]:
     with tempfile.TemporaryDirectory() as folder:
         log, robot = write_log(Path(folder) / "log.csv", moved(of, rng)), Path(folder) / "robot.xml"
         robot.write_text(mjcf(), encoding="utf-8")
-        before = _cpu()
+        before = cpu()
         found = bench.robot(log, robot)
-        rows = [("cpu", 0.0, _cpu() - before, True)]
+        rows = [("cpu", 0.0, cpu() - before, True)]
     for k, joint in enumerate(found.joints.values()):
         for name, truth in of.items():
             one = joint.parameters.get(name)
@@ -144,11 +143,6 @@ def judged(seed: int, number: int) -> list[tuple[str, float, float, bool]]:
         if joint.diagnosis is None or joint.diagnosis.effects or joint.diagnosis.verdict != "nothing_missing":
             rows.append(("effects found that are not there", 0.0, math.nan, False))
     return rows
-
-
-def _cpu() -> float:
-    """Of this process and of those that have ended - s."""
-    return sum(sum(resource.getrusage(whose)[:2]) for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
 
 
 def main() -> None:
