@@ -174,3 +174,16 @@ def test_values_of_as_many_instants_between_the_leading_ones_are_not_theirs(late
     found = regular({**one(times, 1e-3), "current": SampledSignal(clock(times + late, 1e-3), ramp)})
     expected = ramp - late / 1.001 if apart else ramp
     np.testing.assert_allclose(found.signals["current"][5:-5], expected[5:-5], atol=1e-6)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.1])
+def test_nothing_is_placed_between_the_neighbours_of_an_unknown_value(jitter):
+    """Regular samples around it stay as they were measured; interpolated ones between these would be made of it."""
+    steps = 1e-3 * (1.0 + jitter * np.random.default_rng(0).uniform(-1.0, 1.0, 4000))
+    time, unknown = np.cumsum(steps), np.arange(4000) % 100 == 50
+    found = regular({"velocity": SampledSignal(clock(time), np.where(unknown, 1e3, 1.0), unknown)})
+    assert found.time_base.resampled == (jitter > 0.0)
+    for before, after in zip(time[np.flatnonzero(unknown) - 1], time[np.flatnonzero(unknown) + 1], strict=True):
+        assert not ((found.time > before + 2.0 * jitter * 1e-3) & (found.time < after - 2.0 * jitter * 1e-3)).any()
+    assert found.time.size >= 4000 - (3 if jitter else 1) * np.count_nonzero(unknown)
+    assert len(found.time_base.holes) == np.count_nonzero(unknown)
