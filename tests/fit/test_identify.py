@@ -149,11 +149,6 @@ def test_the_default_is_better_than_the_labs_in_every_measure():
     assert (ours_rms < labs_rms).all()
 
 
-def test_load_inertia_is_what_is_left_without_the_rotor():
-    found = identify(recording(np.random.default_rng(9)), RIG)
-    assert found["load_moment_of_inertia"].value == pytest.approx(found["moment_of_inertia"].value - 2e-4)
-
-
 def test_current_alone_is_identified_in_amperes():
     rig = RIG.model_copy(update={"motor": type(RIG.motor)()})
     found = identify(recording(np.random.default_rng(10)), rig)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bench.fit.identify import identify
+from bench.rig.rig import Rig
 from bench.trace.read import read
 from bench.trace.trace import Trace
 from tests.fit.motions import NAMES, RIG, UNITS, Truth, recording
@@ -65,6 +66,20 @@ def test_current_and_torque_constant_go_against_each_other(seed):
 def test_an_axis_that_is_heavier_in_everything_takes_as_much_more_current(seed):
     trace, factor = drawn(seed), float(np.random.default_rng(seed).uniform(0.5, 5.0))
     assert_alike(identify(scaled(trace, current=factor), RIG), identify(trace, RIG), (factor,) * 3)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_load_behind_a_gear_has_the_kinetic_energy_that_rotor_and_gear_leave(seed):
+    """J*omega**2 = (J_rotor + J_gear)*omega**2 + J_load*(omega/i)**2, to the ends of its interval."""
+    trace, rng = drawn(seed), np.random.default_rng(seed)
+    ratio, rotor, gear = float(rng.uniform(2.0, 20.0)), 1e-4, float(rng.uniform(0.5e-4, 1.5e-4))
+    table = {"motor": {"torque_constant": 0.8, "rotor_inertia": rotor}, "load": {"gear_ratio": ratio}}
+    table["load"]["gear_inertia"] = gear
+    found = identify(trace, Rig(**table), CUTOFF)
+    whole, load = found["moment_of_inertia"], found["load_moment_of_inertia"]
+    behind = np.array([load.value, *load.ci95]) / ratio**2
+    assert behind + rotor + gear == pytest.approx([whole.value, *whole.ci95], rel=1e-9)
+    assert load.std_error / ratio**2 == pytest.approx(whole.std_error, rel=1e-9)
 
 
 @pytest.mark.parametrize("order", [(2, 1, 0), (1, 2, 0), (2, 0, 1)])

@@ -139,6 +139,18 @@ def test_emulated_friction_holds_a_standing_axis(plant, load_torque):
     assert states.motor_torque[-1] == pytest.approx(load_torque, abs=1e-9)
 
 
+@pytest.mark.parametrize("emulated", [False, True])
+def test_friction_that_stops_the_axis_within_a_tick_stops_it_dead(emulated):
+    """J*w = 0.6*K_0*T, beside viscous friction that takes a tenth of the speed in that time."""
+    period, inertia, coulomb = 250e-6, 1e-3, 0.1
+    axis = AxisModel(AxisParameters(inertia, 0.1 * inertia / period, coulomb))
+    start = standstill(period, 0.01)
+    start = dataclasses.replace(start, velocity=start.velocity + 0.6 * coulomb * period / inertia)
+    states = run(Plant(axis, Cascade(0.0, 0.0, 0.0, 0.0, 1.0, period), period, emulated=emulated), start)
+    assert states.velocity[0] == pytest.approx(0.015)
+    assert np.abs(states.velocity[1:]).max() < 0.015 * 1e-2
+
+
 def test_emulated_friction_slips_beyond_breakaway(plant):
     weak = Cascade(0.0, 0.0, 0.0, 0.0, 3.5, 250e-6)
     parameters = dataclasses.replace(plant.axis.parameters, load_torque=-0.1)
