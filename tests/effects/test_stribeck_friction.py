@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from bench.effects.signals import Axis
 from bench.effects.stribeck_friction import EFFECT
 from tests.effects.axes import FREE, moved, present, signals
 from tests.effects.recording import SCOPES
@@ -31,3 +32,8 @@ def test_a_rise_ends_within_a_fifth_of_the_top_speed():
     assert EFFECT.plausible([[0.08]], [(19.9,)], scope)
     assert not EFFECT.plausible([[0.08]], [(20.1,)], scope)
     assert not EFFECT.plausible([[0.08], [0.01]], [(19.9,), (20.1,)], scope)
+
+
+@pytest.mark.parametrize(("rise", "coulomb", "sure"), [(0.08, 0.06, True), (0.08, 0.0, False), (0.0, 0.06, False)])
+def test_a_rise_is_one_of_dry_friction_that_there_is_at_any_speed(rise, coulomb, sure):
+    assert EFFECT.physical([rise], [5.0], Axis(1e-3, 0.0, coulomb)) is sure

@@ -125,3 +125,13 @@ def test_more_noise_widens_the_intervals():
     print(f"\nintervals under threefold noise: {median} times as wide (J, viscous, Coulomb)")
     assert (median > 2.0).all()
     assert (median < 4.0).all()
+
+
+def test_friction_that_there_is_none_of_is_zero_within_its_errors_on_either_side():
+    """A value below zero is no refusal as long as its interval reaches above."""
+    deviations = []
+    for seed in range(8):
+        found = identify(recording(np.random.default_rng(seed), Truth(viscous=0.0), duration=3.0), RIG, CUTOFF)
+        one = found["viscous_friction_coefficient"]
+        deviations.append(one.value / one.std_error)
+    assert -3.5 < min(deviations) < 0.0 < max(deviations) < 3.5
