@@ -413,8 +413,7 @@ def _over_time(found: Diagnosis, series: TimeSeries) -> doc.TimeGraph:
         f"{sentence(effort)} has holes about standstill, where the direction of friction is not known."
     )
     title = {"recording": "The recording.", "holdout": "The holdout, which was not fitted."}[series.name]
-    part = series.time.size / sum(one.time.size for one in found.time_series)
-    return time_graph(title, alternative, series.time, signals, [labels[k] for k in shown], part)
+    return time_graph(title, alternative, series.time, signals, [labels[k] for k in shown])
 
 
 def _where(found: Diagnosis, over: doc.TimeGraph) -> doc.Section:

@@ -276,7 +276,7 @@ def packed(values: NDArray[Any], kind: str = "<f4") -> str:
 
 
 class Samples(Part):
-    """A curve on the grid of its graph, in 16 bits; see `bench.report.over_time`.
+    """A curve on the grid of its graph, or at the instants of a motion, in 16 bits; see `bench.report.over_time`.
 
     Attributes:
         offset, scale: a value is offset + scale*number.
@@ -324,11 +324,11 @@ class TimeGraph(Drawing):
 
 
 class Triangles(Part):
-    """Triangles of one colour: vertices as 32-bit floats - m -, of each face three as 16-bit numbers, in base 64."""
+    """Triangles of one colour: x of all vertices, then y, then z - m -, and the three vertices of each face."""
 
     colour: tuple[float, ...]
-    vertices: str
-    faces: str
+    vertices: Samples
+    faces: Samples
 
 
 class Pivot(Part):
@@ -361,25 +361,25 @@ class RobotDrawing(Part):
         bodies: the first is fixed, the others come after the one that carries them.
         ratio: of the joint's gear.
         start, step: of the instants of the poses - s.
-        poses: of the other joints - rad (m) -: 32-bit floats in base 64.
+        poses: of the other joints - rad (m).
     """
 
     bodies: tuple[Body, ...]
     ratio: float
     start: float
     step: float = Field(gt=0.0)
-    poses: tuple[str, ...]
+    poses: tuple[Samples, ...]
 
 
 class ModelRun(Part):
-    """How a model was run, and its position less that of the ghost: 32-bit floats in base 64, nan where unknown.
+    """How a model was run, and its position less that of the ghost at the instants of the motion.
 
     `others`: the same of a robot's other joints at the instants of its poses, where they have models, too.
     """
 
     name: str
-    apart: str
-    others: tuple[str, ...] = ()
+    apart: Samples
+    others: tuple[Samples, ...] = ()
 
 
 class Moving(Drawing):
@@ -548,7 +548,11 @@ class Document(Part):
     warnings: tuple[str, ...] = Field(default=(), exclude=True)
 
     @property
+    def blocks(self) -> tuple[AnyPart, ...]:
+        """All parts of its sections."""
+        return tuple(block for section in self.sections for block in section.blocks)
+
+    @property
     def files(self) -> tuple[File, ...]:
         """Files to take along."""
-        blocks = [block for section in self.sections for block in section.blocks]
-        return tuple(file for block in blocks if isinstance(block, Downloads) for file in block.files)
+        return tuple(file for block in self.blocks if isinstance(block, Downloads) for file in block.files)

@@ -22,9 +22,15 @@ from markupsafe import Markup
 
 from bench.names import plain
 from bench.report.document import LARGEST, Chart, Document, Intervals, Moving, Panel, Series, Table, TimeGraph
+from bench.report.over_time import coarser
 
 if TYPE_CHECKING:  # 0.05 s, which only a page has to pay
     from jinja2 import Environment
+
+#: Bytes of a page at most, where its graphs over time then have so many intervals: one for each three pixels.
+PAGE, COARSEST = 600_000, 400
+#: How many times fewer intervals each trial has.
+FEWER = 1.2
 
 
 def html(document: Document, script: str | None = None) -> str:
@@ -32,31 +38,59 @@ def html(document: Document, script: str | None = None) -> str:
 
     `script`: address, as seen from the page, of the script file that it shares with others; without, it is in the page.
     """
-    blocks = [block for section in document.sections for block in section.blocks]
-    moving = any(isinstance(block, TimeGraph | Moving) for block in blocks)
-    lively = moving or any(isinstance(block, Table) and block.sought for block in blocks)
-    inside = None
-    if lively and script is None:
-        inside = program(any(isinstance(block, Moving) for block in blocks)) if moving else _asset("assets", "seek.js")
+    page = _rendered(document, script)
+    if (size := len(page.encode())) <= PAGE:
+        return page
+    intervals = _intervals(document)
+    room = max(PAGE - size + intervals, 1)
+    most = max((graph.count for graph in document.blocks if isinstance(graph, TimeGraph)), default=0) // COARSEST
+    times, thinner = max(intervals // room, 1), document
+    while times < most and _intervals(thinner) > room:
+        times = min(math.ceil(FEWER * times), most)
+        thinner = coarser(document, times)
+    return page if thinner is document else _rendered(thinner, script)
+
+
+def _intervals(document: Document) -> int:
+    """Bytes of the page that are intervals of graphs over time, and bins on them."""
+    charts = (block for block in (*document.blocks, *document.glance) if isinstance(block, Chart))
+    bins = sum(len(_deflated(panel.bins)) for chart in charts for panel in chart.panels if panel.bins is not None)
+    return bins + sum(len(_data(block)) for block in document.blocks if isinstance(block, TimeGraph))
+
+
+def _rendered(document: Document, script: str | None) -> str:
+    """The page of a document, with as much as that has."""
+    kinds = {type(block) for block in document.blocks}
+    seeks = any(isinstance(block, Table) and block.sought for block in document.blocks)
+    drawing, moving = bool(kinds & {TimeGraph, Moving}), Moving in kinds
+    lively = drawing or seeks
+    inside = program(drawing, moving) if lively and script is None else None
     page = _environment().get_template("page.html.j2")
     return page.render(
         page=document,
         style=Markup(f"{_asset('uplot', 'uPlot.min.css')}\n{_asset('assets', 'page.css')}"),
         script=None if inside is None else Markup(inside),
         shared=script if lively else None,
+        lively=lively,
         policy=_policy(inside),
     )
 
 
-def program(moving: bool = True) -> str:
-    """uPlot and the page's own scripts, for inside of a page or for a file of its own; with what moves a drawing."""
-    own = (_asset("assets", name) for name in ("page.js", *(["motion.js"] if moving else []), "seek.js"))
-    return "\n".join((_asset("uplot", "uPlot.iife.min.js"), *own))
+def program(drawing: bool = True, moving: bool = True) -> str:
+    """The page's own scripts, for inside of a page or for a file of its own: with uPlot for graphs over time, and with
+    what moves a drawing.
+    """
+    parts = [("assets", "inflated.js"), ("assets", "seek.js")]
+    parts += [("uplot", "uPlot.iife.min.js"), ("assets", "page.js")] if drawing else []
+    parts += [("assets", "motion.js")] if moving else []
+    return "\n".join(_asset(*part) for part in parts)
 
 
 @cache
 def _asset(*parts: str) -> str:
-    return files("bench.report").joinpath("page", *parts).read_text(encoding="utf-8")
+    """A part of every page, without its indentation."""
+    text = files("bench.report").joinpath("page", *parts).read_text(encoding="utf-8")
+    return "\n".join(line.lstrip() for line in text.splitlines())
 
 
 @cache
@@ -69,7 +103,8 @@ def _environment() -> Environment:
     )  # fmt: skip
     found.filters.update(drawn=drawn, sketched=sketched, laid=laid, rail=rail)
     found.filters["deflated"] = _deflated
-    found.filters["data"] = lambda graph: _json(_compressed(graph.model_dump()))
+    found.filters["zipped"] = lambda text: _zipped(text.encode())
+    found.filters["data"] = _data
     found.filters["link"] = lambda file: f"data:{file.media};base64,{base64.b64encode(file.content.encode()).decode()}"
     return found
 
@@ -79,13 +114,20 @@ def _shown(value: Any) -> Any:  # noqa: ANN401 - whatever a template prints
     return plain(value) if type(value) is str else value
 
 
-def _compressed(graph: dict[str, Any]) -> dict[str, Any]:
-    """The data of a graph over time, its curves in a third to two thirds of their bytes; of another one, the same."""
-    for curve in (curve for panel in graph.get("panels", ()) for curve in panel["curves"]):
-        for end in ("low", "high"):
-            if (text := curve["samples"][end]) is not None:
-                curve["samples"][end] = _deflated(text)
-    return graph
+def _data(drawing: TimeGraph | Moving) -> Markup:
+    return _json(_compressed(drawing.model_dump()))
+
+
+def _compressed(data: Any) -> Any:  # noqa: ANN401 - any content of a part
+    """The data of a drawing, all samples in it in a third to two thirds of their bytes."""
+    match data:
+        case {"offset": _, "low": low, "high": high}:
+            return data | {"low": _deflated(low), "high": None if high is None else _deflated(high)}
+        case dict():
+            return {key: _compressed(value) for key, value in data.items()}
+        case tuple():
+            return [_compressed(value) for value in data]
+    return data
 
 
 def _deflated(text: str) -> str:
@@ -96,7 +138,11 @@ def _deflated(text: str) -> str:
     steps = np.diff(np.frombuffer(base64.b64decode(text), "<i2"), prepend=np.int16(0))  # modulo 2**16
     folded = ((steps << 1) ^ (steps >> 15)).view(np.uint16)
     halves = np.concatenate([folded >> 8, folded & 0xFF]).astype(np.uint8)
-    return base64.b64encode(zlib.compress(halves.tobytes(), 9)).decode("ascii")
+    return _zipped(halves.tobytes())
+
+
+def _zipped(content: bytes) -> str:
+    return base64.b64encode(zlib.compress(content, 9)).decode("ascii")
 
 
 def _json(content: Mapping[str, Any]) -> Markup:

@@ -144,7 +144,7 @@ def identification(
     tables = (parameters_table("The axis", estimate.parameters), *_in_addition(estimate), *alone)
     sections = [doc.section("parameters", "Parameters", *tables), checks_section(estimate.checks, estimate.warnings)]
     if motions:
-        graphs = (_over_time(one, min(len(motions), DRAWN)) for one in motions[:DRAWN])
+        graphs = map(_over_time, motions[:DRAWN])
         text = identification_json(estimate, refinement, None, provenance) + "\n"
         file = doc.file("identify.json", "all results as numbers", text)
         sections[1:1] = [
@@ -165,7 +165,7 @@ def identification(
                 name="identification" if place == 1 else f"identification-{place}",
                 title=f"{title.partition(': ')[0]}: {one.name}",
                 rows=(
-                    (_over_time(one, 1, acceleration=True), parameters_table("", one.along.parameters)),
+                    (_over_time(one, acceleration=True), parameters_table("", one.along.parameters)),
                     (_rest(one.along, [one]),),
                 ),
             )
@@ -257,8 +257,8 @@ def _motor(motor: MotorConstants) -> str:
     return f"{'; '.join([*found, *refused])}."
 
 
-def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeGraph:
-    """Speed, and torque with the model's; one of so many graphs."""
+def _over_time(one: Moved, acceleration: bool = False) -> doc.TimeGraph:
+    """Speed, and torque with the model's."""
     moved, unit = one.motion, one.along.residual.unit
     effort = effort_word(unit)
     signals = [Plotted("speed", one.kind.speed_unit, moved.time, moved.velocity)]
@@ -266,7 +266,7 @@ def _over_time(one: Moved, graphs: int, acceleration: bool = False) -> doc.TimeG
         signals.append(Plotted("acceleration", one.kind.acceleration_unit, moved.time, moved.acceleration))
     signals.append(Plotted(effort, unit, moved.time, moved.effort, [one.left], "modelled"))
     alternative = f"Speed of {one.name}, its {effort} as measured and with inertia and friction only, and the residual."
-    return time_graph("Over time.", alternative, moved.time, signals, (), 1.0 / graphs)
+    return time_graph("Over time.", alternative, moved.time, signals)
 
 
 def _rest(estimate: Estimate, motions: Sequence[Moved]) -> doc.Chart:

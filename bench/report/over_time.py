@@ -1,7 +1,8 @@
 """Signals over time as a document stores them: lowest and highest value of each interval, in 16 bits.
 
 A page draws at most a few intervals per pixel, so what lies between lowest and highest of an interval would not show.
-Signals of unlike rows (every sample, rows of a torque balance) come on one grid: one time axis for all.
+Signals of unlike rows (every sample, rows of a torque balance) come on one grid: one time axis for all. A document has
+as many intervals as `Grid.of` gives it; a page that becomes too large has `coarser` ones.
 """
 
 from __future__ import annotations
@@ -10,21 +11,24 @@ import base64
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.report.document import Samples, TimeCurve, TimeGraph, TimePanel, packed
+from bench.report.document import Panel, Part, Samples, TimeCurve, TimeGraph, TimePanel, packed
 from bench.report.numbers import unit_text
 
 Values = NDArray[np.floating]
+AnyOf = TypeVar("AnyOf", bound=Part)
 
-#: Numbers of a page's graphs: FEW where samples are few, then MORE for each of them, at most MOST; so much more where
-#: each sample is one. A page deflates them to 1 to 2.5 bytes: that is 0.4 MB for 10 s at 1 kHz.
-FEW, MORE, MOST, EXACT = 170_000, 5, 1_400_000, 1.5
+#: Numbers of a graph at most, and how many times that where each sample is one.
+MOST, EXACT = 170_000, 1.5
 #: Steps between lowest and highest value, and the code of no value.
 STEPS, NOTHING = 65534, -32768
+#: Bits of each value that longer intervals go without: 4096 steps remain, ten for each pixel.
+ROUGH = 4
 
 
 @dataclass(frozen=True)
@@ -37,9 +41,9 @@ class Grid:
     single: bool
 
     @classmethod
-    def of(cls, time: Array, curves: int, share: float = 1.0) -> Grid:
-        """Grid for so many curves over time - s - (n,) - that may take a share of what a page may hold."""
-        most = share * min(max(FEW, MORE * time.size), MOST) / curves
+    def of(cls, time: Array, curves: int) -> Grid:
+        """Grid for so many curves of a graph over time - s - (n,)."""
+        most = MOST / curves
         period = float(np.median(np.diff(time[: min(time.size, 10_000)])))
         span = float(time[-1] - time[0])
         samples = round(span / period) + 1
@@ -62,17 +66,20 @@ class Grid:
             first = np.flatnonzero(np.diff(places, prepend=-1))
             low[places[first]] = np.minimum.reduceat(values, first)
             high[places[first]] = np.maximum.reduceat(values, first)
-        least, most = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
-        middle, scale = 0.5 * (least + most), (most - least) / STEPS or 1.0
-        return Samples(
-            offset=middle,
-            scale=scale,
-            low=_stepped(low if not self.single else 0.5 * (low + high), middle, scale),
-            high=None if self.single else _stepped(high, middle, scale),
-        )
+        return in_steps(0.5 * (low + high)) if self.single else in_steps(low, high)
 
 
-def _stepped(values: Array, middle: float, scale: float) -> str:
+def in_steps(low: Values, high: Values | None = None) -> Samples:
+    """Values (n,), or lowest and highest ones, in 16 bits; nan is a hole."""
+    both = low if high is None else np.concatenate([low, high])
+    known = both[np.isfinite(both)]
+    least, most = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
+    middle, scale = 0.5 * (least + most), (most - least) / STEPS or 1.0
+    highest = None if high is None else _stepped(high, middle, scale)
+    return Samples(offset=middle, scale=scale, low=_stepped(low, middle, scale), high=highest)
+
+
+def _stepped(values: Values, middle: float, scale: float) -> str:
     """16-bit steps from the middle of the range, little endian, in base 64."""
     steps = np.clip(np.rint((values - middle) / scale), -STEPS // 2, STEPS // 2)
     return packed(np.where(np.isnan(steps), NOTHING, steps), "<i2")
@@ -120,15 +127,13 @@ def time_graph(
     time: Array,
     signals: Sequence[Plotted],
     choices: Sequence[str] = (),
-    part: float = 1.0,
 ) -> TimeGraph:
     """Signals from top to bottom over the time of a recording - s - (n,).
 
     Args:
         choices: names of the models.
-        part: of what a page may hold that this graph may take.
     """
-    grid = Grid.of(time, sum(1 + 2 * len(signal.shown) for signal in signals), part)
+    grid = Grid.of(time, sum(1 + 2 * len(signal.shown) for signal in signals))
     panels = []
     for signal in signals:
         places, unit, left = grid.places(signal.time), unit_text(signal.unit), []
@@ -154,3 +159,37 @@ def numbers_over(graph: TimeGraph, time: Array, values: NDArray[np.integer]) -> 
     nearest = after - (at - time[after - 1] < time[after] - at)
     reach = max(graph.step, float(np.median(np.diff(time))))
     return packed(np.where(np.abs(time[nearest] - at) < reach, values[nearest], -1), "<i2")
+
+
+def coarser(part: AnyOf, times: int) -> AnyOf:
+    """A document, or a part of one, whose graphs over time have intervals that are so many times as long."""
+    fields: dict[str, Any] = {}
+    for name, value in part:
+        if isinstance(value, Part):
+            fields[name] = coarser(value, times)
+        elif isinstance(value, tuple):
+            fields[name] = tuple(coarser(one, times) if isinstance(one, Part) else one for one in value)
+    match part:
+        case TimeGraph():
+            fields["start"] = part.start + 0.5 * (times - 1) * part.step
+            fields |= {"step": times * part.step, "count": math.ceil(part.count / times)}
+        case TimeCurve():
+            fields["samples"] = _joined(part.samples, times)
+        case Panel() if part.bins is not None:
+            fields["bins"] = packed(_runs(part.bins, times)[:, times // 2], "<i2")
+    return part.model_copy(update=fields)
+
+
+def _joined(samples: Samples, times: int) -> Samples:
+    """Lowest and highest value of so many intervals each, downwards and upwards in steps that are 2**ROUGH as large."""
+    low, high = (_runs(text, times) for text in (samples.low, samples.high or samples.low))
+    known = (high != NOTHING).any(axis=1)
+    ends = np.where(low == NOTHING, -NOTHING - 1, low).min(axis=1) >> ROUGH, -(-high.max(axis=1) >> ROUGH)
+    lowest, highest = (packed(np.where(known, end, NOTHING), "<i2") for end in ends)
+    return samples.model_copy(update={"scale": samples.scale * 2**ROUGH, "low": lowest, "high": highest})
+
+
+def _runs(text: str, times: int) -> NDArray[np.int16]:
+    """16-bit numbers in base 64 in rows of so many, the last one of which is filled up."""
+    numbers = np.frombuffer(base64.b64decode(text), "<i2")
+    return np.pad(numbers, (0, -numbers.size % times), constant_values=NOTHING).reshape(-1, times)

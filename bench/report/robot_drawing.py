@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from bench.arrays import Array
 from bench.plant.mjcf_file import read_spec
 from bench.report import document as doc
+from bench.report.over_time import in_steps
 from bench.view.side_by_side import RobotAlong
 
-#: Triangles of a whole robot, 12 bytes each with its vertices: some 50 kB of a page.
+#: Triangles of a whole robot, 6 to 7 bytes each with its vertices: some 20 kB of a page.
 BUDGET = 3000
 #: Triangles that every shape may have.
 LEAST = 24
@@ -51,7 +52,7 @@ def robot_drawing(robot: RobotAlong) -> doc.RobotDrawing:
         ratio=robot.ratio,
         start=float(even[0]),
         step=float(even[1] - even[0]),
-        poses=tuple(doc.packed(np.interp(even, robot.times, values)) for values in beside.values()),
+        poses=tuple(in_steps(np.interp(even, robot.times, values)) for values in beside.values()),
     )
 
 
@@ -65,9 +66,8 @@ def _bodies(model: mujoco.MjModel, names: Sequence[str]) -> tuple[doc.Body, ...]
         turn = np.empty(9)
         mujoco.mju_quat2Mat(turn, model.geom_quat[g])
         vertices, faces = simplified(vertices, faces, budget[g])
-        placed = doc.packed(vertices @ turn.reshape(3, 3).T + model.geom_pos[g])
-        shape = doc.Triangles(colour=_rounded(_colour(model, g)[:3]), vertices=placed, faces=doc.packed(faces, "<u2"))
-        shapes[model.geom_bodyid[g]].append(shape)
+        placed = vertices @ turn.reshape(3, 3).T + model.geom_pos[g]
+        shapes[model.geom_bodyid[g]].append(_triangles(_rounded(_colour(model, g)[:3]), placed, faces))
     return tuple(
         doc.Body(
             parent=int(model.body_parentid[b]),
@@ -94,9 +94,13 @@ def _rods(model: mujoco.MjModel) -> list[list[doc.Triangles]]:
                 mujoco.mju_quat2Mat(matrix, turn)
                 profile = np.array([[0.0, 0.0], [radius, 0.0], [radius, length], [0.0, length]])
                 vertices, faces = _revolved(profile)
-                placed = doc.packed(vertices @ matrix.reshape(3, 3).T)
-                shapes[-1].append(doc.Triangles(colour=GREY, vertices=placed, faces=doc.packed(faces, "<u2")))
+                shapes[-1].append(_triangles(GREY, vertices @ matrix.reshape(3, 3).T, faces))
     return shapes
+
+
+def _triangles(colour: tuple[float, ...], vertices: Array, faces: Faces) -> doc.Triangles:
+    corners = doc.Samples(offset=0.0, scale=1.0, low=doc.packed(faces, "<i2"), high=None)
+    return doc.Triangles(colour=colour, vertices=in_steps(vertices.T.ravel()), faces=corners)
 
 
 def _joints(model: mujoco.MjModel, body: int, names: Sequence[str]) -> Iterator[doc.Pivot]:

@@ -19,7 +19,7 @@ from bench.plant.axis_model import parameter_quantities
 from bench.plant.simulate import Simulated
 from bench.report import document as doc
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
-from bench.report.over_time import Plotted, time_graph
+from bench.report.over_time import Plotted, in_steps, time_graph
 from bench.report.parts import MOVES, model_sections, one_panel, origin, values_table
 from bench.report.robot_drawing import robot_drawing
 from bench.trace.noise import white_noise
@@ -27,10 +27,8 @@ from bench.view.free_running import BARE, HELD, HORIZONS, FreeRun
 from bench.view.joint_motion import JointMotion
 from bench.view.side_by_side import RobotAlong, SideBySide
 
-#: Instants of a motion on a page, 8 bytes each and a third more as text: 0.4 MB.
+#: Numbers of a motion on a page, twice as many instants for each run: at most 0.25 MB.
 MOST = 40_000
-#: Part of a page's graphs over time that is allowed with them.
-PART = 0.8
 #: The axis of a model that is not coupled.
 FREE_RUNNING = ("time since it was started", "s")
 #: Points that are drawn of the curve of how far off it is.
@@ -189,7 +187,7 @@ def view(
         for of, (ghost, simulated) in both.items()
     ]
     alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
-    graph = time_graph("Over time.", alternative, shown.time, signals, part=PART)
+    graph = time_graph("Over time.", alternative, shown.time, signals)
     let_free = [] if free is None else _let_free(free, kind)
     return doc.Document(
         title=title,
@@ -262,7 +260,7 @@ def motion_of(shown: SideBySide, robot: RobotAlong | None = None) -> doc.Moving:
         high=high,
         slowed=slowed,
         position=doc.packed(ghost),
-        runs=tuple(doc.ModelRun(name=how, apart=doc.packed(values)) for how, values in apart.items()),
+        runs=tuple(doc.ModelRun(name=how, apart=in_steps(values)) for how, values in apart.items()),
         robot=None if robot is None else robot_drawing(robot),
     )
 
@@ -320,8 +318,8 @@ def _robot_motion(mjcf: Path, along: str, motions: Mapping[str, JointMotion]) ->
         runs=tuple(
             doc.ModelRun(
                 name=how,
-                apart=doc.packed(apart(first, how)),
-                others=tuple(doc.packed(apart(name, how)) for name in motion.measured if name != first),
+                apart=in_steps(apart(first, how)),
+                others=tuple(in_steps(apart(name, how)) for name in motion.measured if name != first),
             )
             for how in runs
         ),

@@ -6,6 +6,9 @@ import re
 import numpy as np
 import pytest
 
+from bench.report import document as doc
+from bench.report.over_time import Plotted, numbers_over, time_graph
+from bench.report.publish import write_html
 from tests.conftest import opening
 from tests.report.conftest import RIG_NAME, TRACE_NAME
 
@@ -171,6 +174,25 @@ def test_a_time_range_marks_its_bins(opened, found):
     page.locator(".graph").first.press("0")
     settled(page)
     assert page.evaluate(marked) == ""
+
+
+def test_bins_of_a_section_mark_the_graph_of_that_section(opened, tmp_path):
+    """As the joints of a robot have, in whose page each has a graph."""
+    time, sections = np.arange(100.0), []
+    for k in (1, 2):
+        graph = time_graph("r", "a", time, [Plotted("speed", "rad/s", time, np.zeros(100))])
+        dots = doc.series("gap", "dots", "ink", np.arange(4.0), np.arange(4.0))
+        bins = numbers_over(graph, time, np.arange(100) // 25)
+        chart = doc.Chart(title="t", alternative="a", panels=(doc.Panel(x_label="x", series=(dots,), bins=bins),))
+        sections.append(doc.section(f"joint-{k}", f"joint {k}", chart, graph))
+    page = doc.Document(title="t", subject="s", verdict="v", tone="sure", answers={}, sections=tuple(sections))
+    write_html(tmp_path / "page.html", page)
+    shown = opened(tmp_path / "page.html")
+    shown.locator("#joint-2 svg[role=slider]").press("Home")
+    shown.locator("#joint-2").get_by_role("button", name="next time range").click()
+    settled(shown)
+    assert range_of(shown, 0) == (0.0, 99.0)
+    assert range_of(shown, 1)[1] < 80.0
 
 
 def test_another_model_can_be_chosen(opened, found):

@@ -1,8 +1,10 @@
 """A page as data: it comes back from its file as it was, whatever its text holds is text, and damage is reported."""
 
+import base64
 import html as entities
 import json
 import re
+import zlib
 
 import pytest
 from hypothesis import given
@@ -51,7 +53,7 @@ def page_full_of(text):
         full_of(text, TimeCurve, role="measured", choice=None, samples=samples),
         full_of(text, TimeCurve, role="model", choice=0, samples=samples),
     )
-    runs = full_of(text, ModelRun, apart="AAAAAAAAAAA="), full_of(text, ModelRun, apart="AAAAAAAAgD8=")
+    runs = (full_of(text, ModelRun, apart=samples),) * 2
     moved = {"low": 0.0, "high": 1.0, "position": "AAAAAAAAgD8=", "runs": runs}
     series = full_of(text, Series, style="line", colour="ink", x=(0.0, 1.0), y=(0.0, 1.0))
     span = full_of(text, Span, colour="ink", value=3.0, low=-1.0, high=4.0)
@@ -93,10 +95,15 @@ def test_a_page_asks_for_nothing_from_anywhere():
 
 
 def test_a_file_inside_comes_out_as_it_was():
-    import base64
-
-    made = html(page_full_of("µ <&>\n"))
-    (found,) = re.findall(r'href="data:text/plain;base64,([^"]*)"', made)
+    """Deflated where the page has a script."""
+    page = page_full_of("µ <&>\n")
+    (found,) = re.findall(r'data-content="([^"]*)" data-media="text/plain"', html(page))
+    assert zlib.decompress(base64.b64decode(found)).decode() == "µ <&>\n"
+    still = tuple(block for block in page.blocks if block.kind == "downloads")
+    section = page.sections[0].model_copy(update={"blocks": still})
+    (found,) = re.findall(
+        r'href="data:text/plain;base64,([^"]*)"', html(page.model_copy(update={"sections": (section,)}))
+    )
     assert base64.b64decode(found).decode() == "µ <&>\n"
 
 

@@ -1,11 +1,11 @@
 """A robot in a page: its triangles are few and lie on its meshes, and its links stand where their joints say."""
 
-import base64
 import struct
 
 import numpy as np
 import pytest
 
+from bench.report.over_time import unpacked
 from bench.report.publish import write_html
 from bench.report.robot_drawing import BUDGET, robot_drawing, simplified
 from bench.report.simulation import view
@@ -35,9 +35,9 @@ def write_stl(path, triangles):
     path.write_bytes(bytes(80) + struct.pack("<I", len(triangles)) + record.tobytes())
 
 
-def unpacked(text, kind):
-    """Rows of three numbers that a page holds."""
-    return np.frombuffer(base64.b64decode(text), kind).reshape(-1, 3)
+def corners(shape):
+    """Vertices (v, 3) that a page holds."""
+    return unpacked(shape.vertices)[0].reshape(3, -1).T
 
 
 @pytest.fixture
@@ -75,9 +75,7 @@ def test_shapes_of_mujoco_have_their_size(tmp_path):
     assert bodies[0].shapes == ()  # the ground has no end
     for body, kind in zip(bodies[1:], sizes, strict=False):
         (one,) = body.shapes
-        np.testing.assert_allclose(
-            np.abs(unpacked(one.vertices, "<f4")).max(axis=0), reach.get(kind, (0.1, 0.2, 0.3)), rtol=0.1
-        )
+        np.testing.assert_allclose(np.abs(corners(one)).max(axis=0), reach.get(kind, (0.1, 0.2, 0.3)), rtol=0.1)
 
 
 def test_a_robot_without_shapes_is_drawn_as_rods_along_its_links(tmp_path):
@@ -85,7 +83,7 @@ def test_a_robot_without_shapes_is_drawn_as_rods_along_its_links(tmp_path):
     poses = {"shoulder": np.zeros(2), "elbow": np.zeros(2)}
     bodies = robot_drawing(RobotAlong(tmp_path / "bare.xml", "elbow", 1.0, np.arange(2.0), poses)).bodies
     assert bodies[0].shapes == ()
-    lowest = [min(unpacked(one.vertices, "<f4")[:, 2].min() for one in body.shapes) for body in bodies[1:]]
+    lowest = [min(corners(one)[:, 2].min() for one in body.shapes) for body in bodies[1:]]
     np.testing.assert_allclose(lowest, [-L1, -C2], rtol=1e-6)
 
 
@@ -93,7 +91,7 @@ def test_a_robot_of_meshes_stays_small(arm):
     robot = RobotAlong(arm, "elbow", 1.0, np.arange(9.0), {"shoulder": np.zeros(9), "elbow": np.zeros(9)})
     page = view(shown(), arm, "run", robot=robot).sections[0].blocks[0]
     shapes = [one for body in page.robot.bodies for one in body.shapes]
-    assert 100 < sum(len(unpacked(one.faces, "<u2")) for one in shapes) <= BUDGET
+    assert 100 < sum(unpacked(one.faces)[0].size // 3 for one in shapes) <= BUDGET
     assert 10_000 < len(page.robot.model_dump_json()) < 100_000
 
 

@@ -1,17 +1,17 @@
 """Curves on a page: nothing that stands out is lost, nothing is made up, and many samples take little room."""
 
 import base64
+import math
+import re
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.report.document import Document, Section
-from bench.report.html import html
-from bench.report.over_time import STEPS, Grid, Plotted, time_graph, unpacked
-
-MEGABYTE = 1_000_000
+from bench.report.document import Chart, Document, Panel, Section
+from bench.report.html import COARSEST, PAGE, html
+from bench.report.over_time import STEPS, Grid, Plotted, coarser, numbers_over, time_graph, unpacked
 
 
 def page_of(*graphs):
@@ -79,12 +79,37 @@ def test_a_hole_stays_one():
     assert np.isfinite(low[200:]).all()
 
 
-@pytest.mark.parametrize(("samples", "most"), [(10_000, 1.0), (1_000_000, 5.0)])
-def test_a_page_stays_small(samples, most):
+@pytest.mark.parametrize("samples", [10_000, 1_000_000])
+def test_a_page_stays_small_and_uses_its_room(samples):
     time, signals = recording(samples)
-    holdout = time_graph("h", "a", time[:10_000], signals_of(signals, 10_000), "abc", 0.5)
-    size = len(html(page_of(time_graph("r", "a", time, signals, "abc", 0.5), holdout)).encode())
-    assert size < most * MEGABYTE
+    holdout = time_graph("h", "a", time[:10_000], signals_of(signals, 10_000), "abc")
+    size = len(html(page_of(time_graph("r", "a", time, signals, "abc"), holdout)).encode())
+    assert 0.6 * PAGE < size < PAGE
+
+
+def test_longer_intervals_hold_the_lowest_and_highest_of_those_in_them():
+    """Of samples and of intervals, holes and a last one that is not full; chosen bins are those of the middle."""
+    time, rng = 1e-3 * np.arange(1003), np.random.default_rng(0)
+    values = np.where((time > 0.3) & (time < 0.4), np.nan, rng.normal(size=time.size))
+    graph = time_graph("r", "a", time, [Plotted("speed", "rad/s", time, values)])
+    bins = numbers_over(graph, time, np.arange(time.size) // 10)
+    panel = Panel(x_label="x", series=(), bins=bins)
+    for times in (4, 12):
+        found = coarser(page_of(graph, Chart(title="t", alternative="a", panels=(panel,))), times)
+        over, chart = found.blocks
+        assert over.step == pytest.approx(times * graph.step)
+        assert over.start == pytest.approx(time[:times].mean())
+        (low, high), scale = unpacked(over.panels[0].curves[0].samples), over.panels[0].curves[0].samples.scale
+        every = [values[k : k + times] for k in range(0, time.size, times)]
+        assert low.size == high.size == over.count == len(every)
+        for k, own in enumerate(part[np.isfinite(part)] for part in every):
+            assert np.isfinite(low[k]) == bool(own.size)
+            if own.size:
+                assert own.min() - 1.1 * scale < low[k] < own.min() + 0.1 * scale
+                assert own.max() - 0.1 * scale < high[k] < own.max() + 1.1 * scale
+        chosen = np.frombuffer(base64.b64decode(chart.panels[0].bins), "<i2")
+        middles = np.arange(times // 2, time.size, times)
+        np.testing.assert_array_equal(chosen[: middles.size], middles // 10)
 
 
 def signals_of(signals, count):
@@ -98,14 +123,19 @@ def signals_of(signals, count):
 def test_many_models_of_a_short_recording_stay_small_too():
     time, signals = recording(10_000, models=7)
     size = len(html(page_of(time_graph("r", "a", time, signals, "abcdefg"))).encode())
-    assert size < MEGABYTE
+    assert size < PAGE
+
+
+def test_graphs_of_many_recordings_still_have_an_interval_for_each_three_pixels():
+    time, signals = recording(3000)
+    page = html(page_of(*[time_graph("r", "a", time, signals, "ab")] * 40))
+    assert {int(count) for count in re.findall(r'"count":(\d+)', page)} == {math.ceil(3000 / (3000 // COARSEST))}
 
 
 @pytest.mark.slow
-def test_ten_million_samples_take_five_megabytes():
+def test_ten_million_samples_take_no_more():
     time, signals = recording(10_000_000)
-    size = len(html(page_of(time_graph("r", "a", time, signals, "ab"))).encode())
-    assert MEGABYTE < size < 5 * MEGABYTE
+    assert len(html(page_of(time_graph("r", "a", time, signals, "ab"))).encode()) < PAGE
 
 
 def test_what_is_left_is_measured_less_modelled():

@@ -1,7 +1,8 @@
 "use strict";
 (() => {
   const SLOWED = [1, 2, 5, 10, 20, 50, 100], LEFT = 80, RIGHT = 680, LEAP = 0.1; // px of the rail, as drawing.py has them; s
-  const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), floats = (text) => new Float32Array(bytes(text).buffer);
+  const floats = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+  const samples = async ({ offset, scale, low }) => Float32Array.from(await numbers(low), (k) => (k === NOTHING ? NaN : offset + scale * k));
   const figures = (value, unit) => (Number.isNaN(value) ? "not known" : value.toPrecision(4).replace(/-/g, "−") + " " + unit);
 
   // a frame: three rows of turn and place
@@ -16,15 +17,18 @@
   };
 
   class Robot { // drawn from behind to the front, in parallel
-    constructor(figure, data, whole) {
-      this.data = data;
+    static async of(figure, data, whole) {
+      for (const shape of data.bodies.flatMap((body) => body.shapes)) {
+        const [at, corners] = await Promise.all([shape.vertices, shape.faces].map(samples)), many = at.length / 3;
+        Object.assign(shape, { corners, at: at.map((_, k) => at[Math.floor(k / 3) + (k % 3) * many]) });
+      }
+      return new Robot(figure, data, await Promise.all(data.poses.map(samples)), whole);
+    }
+
+    constructor(figure, data, poses, whole) {
+      Object.assign(this, { data, poses });
       this.canvas = figure.querySelector("canvas");
       this.azimuth = figure.querySelector("[name=azimuth]");
-      this.poses = data.poses.map(floats);
-      for (const body of data.bodies) for (const shape of body.shapes) {
-        shape.at = floats(shape.vertices);
-        shape.corners = new Uint16Array(bytes(shape.faces).buffer);
-      }
       this.moved = new Set();
       data.bodies.forEach((body, k) => {
         if (body.joints.some((joint) => (whole ? joint.of !== null : joint.of === 0)) || (k > 0 && this.moved.has(body.parent))) this.moved.add(k);
@@ -110,13 +114,16 @@
   }
 
   class Motion {
-    constructor(figure) {
-      this.data = JSON.parse(figure.querySelector("script[type='application/json']").textContent);
-      this.position = floats(this.data.position);
-      this.runs = this.data.runs.map((run) => floats(run.apart));
-      this.others = this.data.runs.map((run) => run.others.map(floats));
+    static async of(figure) {
+      const data = JSON.parse(figure.querySelector("script[type='application/json']").textContent), every = (of) => Promise.all(of.map(samples));
+      const runs = await every(data.runs.map((run) => run.apart)), others = await Promise.all(data.runs.map((run) => every(run.others)));
+      const robot = data.robot === null ? null : await Robot.of(figure, data.robot, others[0].length > 0);
+      return new Motion(figure, { data, runs, others, robot, position: floats(data.position) });
+    }
+
+    constructor(figure, content) {
+      Object.assign(this, content);
       this.run = figure.querySelector("[name=run]");
-      this.robot = this.data.robot === null ? null : new Robot(figure, this.data.robot, this.others[0].length > 0);
       if (this.robot) this.robot.frame(this.data, this.position);
       this.last = this.data.count - 1;
       this.at = 0; // in instants
@@ -223,5 +230,5 @@
     }
   }
 
-  document.querySelectorAll("figure.moving").forEach((figure) => new Motion(figure));
+  document.querySelectorAll("figure.moving").forEach(Motion.of);
 })();

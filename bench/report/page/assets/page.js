@@ -1,19 +1,9 @@
 "use strict";
 (() => {
-  const NOTHING = -32768, HEIGHT = { first: 170, other: 130, paper: 90 }, LEAST = 8, DENSE = 8;
+  const HEIGHT = { first: 170, other: 130, paper: 90 }, LEAST = 8, DENSE = 8;
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
-  const numbers = async (text) => { // differences, folded, upper bytes before lower ones, deflated (bench/report/html.py)
-    const packed = new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]);
-    const bytes = new Uint8Array(await new Response(packed.stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
-    const found = new Int16Array(bytes.length / 2);
-    for (let k = 0, value = 0; k < found.length; k++) {
-      const folded = (bytes[k] << 8) | bytes[k + found.length];
-      found[k] = value = (value + ((folded >>> 1) ^ -(folded & 1))) & 0xffff;
-    }
-    return found;
-  };
   const line = uPlot.paths.linear();
-  const shown = (value, unit) => (value == null ? "–" : Number(value.toPrecision(4)) + (unit ? " " + unit : ""));
+  const shown = (value, unit) => (value == null ? "–" : String(Number(value.toPrecision(4))).replace(/-/g, "−") + (unit ? " " + unit : ""));
 
   const labels = (u, splits, axis, space, step) => { // with as many digits as distinguish them
     let digits = 0;
@@ -379,8 +369,9 @@
     }
   }
 
-  document.querySelectorAll("figure.time").forEach(async (figure, k) => {
+  document.querySelectorAll("figure.time").forEach(async (figure) => {
     const graph = await TimeGraph.of(figure);
-    if (k === 0) document.querySelectorAll("figure:has(svg[data-bins])").forEach((chart) => Bins.of(chart, graph));
+    const graphOf = (chart) => chart.closest("section")?.querySelector("figure.time") ?? document.querySelector("figure.time");
+    document.querySelectorAll("figure:has(svg[data-bins])").forEach((chart) => { if (graphOf(chart) === figure) Bins.of(chart, graph); });
   });
 })();
