@@ -445,12 +445,15 @@ def hint(fitted: Fit, effects: Iterable[Effect]) -> Fit | None:
     return None
 
 
-def by_hint(rows: Rows, hypothesis: Hypothesis) -> tuple[str, dict[str, float]]:
+def by_hint(rows: Rows, hypothesis: Hypothesis, offset: bool) -> tuple[str, dict[str, float]]:
     """The effect that a recording hints at: what share of the residual it explains, as text where that is much, and by
-    how much it would move J, K_w and K_0; empty without one.
+    how much it would move J, K_w and K_0; empty without one. With `offset` a constant is fitted anyway.
     """
+    effects = catalogue().values()
+    for effect in effects if offset else ():
+        hypothesis = hypothesis.plus(Term(effect)) if effect.constant else hypothesis
     fitted = fit(rows, hypothesis)
-    beside = hint(fitted, catalogue().values())
+    beside = hint(fitted, effects)
     if beside is None:
         return "", {}
     moves = {term: beside.value(term) - fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB)}

@@ -196,7 +196,7 @@ def _gather(trace: Trace | Iterable[Trace], rig: Rig, cutoff: float | None) -> G
     others = list(_in_parallel(summed, parts))
     checks = joined([*(part.checks for part in still), gated.checks, *(checked for _, _, checked in others)])
     require(checks, first)
-    whole, (told, hinted) = found, by_hint(found.rows, found.hypothesis)
+    whole, (told, hinted) = found, by_hint(found.rows, found.hypothesis, OFFSET in found.names)
     if others:
         equations = join([found.whole, *(each for each, _, _ in others if each is not None)])
         offset = rig.offset and equations.one_way is None

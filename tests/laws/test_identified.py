@@ -69,6 +69,19 @@ def test_an_axis_that_is_heavier_in_everything_takes_as_much_more_current(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+def test_a_constant_load_changes_the_offset_alone(seed):
+    """Inertia, friction, their errors, the residual and its floor are those without the load."""
+    trace, rig = drawn(seed), RIG.model_copy(update={"offset": True})
+    loaded = replace(trace, signals={**trace.signals, "current": trace["current"] + 0.3})
+    found, without = identify(loaded, rig, CUTOFF), identify(trace, rig, CUTOFF)
+    assert_alike(found, without, rel=1e-6)
+    offset, before = (each["torque_offset"].value for each in (found, without))
+    assert offset - before == pytest.approx(0.3 * RIG.motor.torque_constant, rel=1e-6)
+    assert found.residual.rms == pytest.approx(without.residual.rms, rel=1e-6)
+    assert found.residual.noise_floor == pytest.approx(without.residual.noise_floor, rel=1e-3)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_a_load_behind_a_gear_has_the_kinetic_energy_that_rotor_and_gear_leave(seed):
     """J*omega**2 = (J_rotor + J_gear)*omega**2 + J_load*(omega/i)**2, to the ends of its interval."""
     trace, rng = drawn(seed), np.random.default_rng(seed)
