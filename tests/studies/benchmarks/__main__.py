@@ -52,7 +52,7 @@ BENCHMARKS: Benchmarks = {
 
 def section(tables: Iterable[Table]) -> str:
     """What stands under a heading: when and with what, and the tables."""
-    packages = ", ".join(f"{name} {version(name)}" for name in ("mujoco", "numpy", "scipy", "pyarrow"))
+    packages = ", ".join(f"{name} {version(name)}" for name in ("mujoco-core", "numpy", "scipy", "pyarrow"))
     origin = f"{date.today()}, Python {platform.python_version()}, {packages}, {os.cpu_count()} cores."
     return "\n\n".join([origin, *(table.markdown for table in tables)])
 
