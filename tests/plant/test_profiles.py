@@ -10,6 +10,7 @@ from bench.errors import InputError
 from bench.plant.axis_model import AxisParameters
 from bench.plant.profile_names import DEFAULT, NAMES
 from bench.plant.profiles import PROFILES, MotionLimits, plan, s_curve, through_speeds
+from bench.plant.simulate import followed
 
 FINE = MotionLimits(speed=150.0, acceleration=1200.0, full_acceleration=1500.0, travel=np.inf, period=10e-6)
 
@@ -88,6 +89,27 @@ def test_joined_motions_go_on_where_the_first_ended():
     assert len(both.time) == len(first.time) + len(second.time)
     np.testing.assert_allclose(np.diff(both.time), FINE.period, rtol=1e-6)
     assert np.abs(np.diff(both.position)).max() <= FINE.speed * FINE.period * 1.001
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_twice_the_limits_are_twice_the_motion_in_the_same_time(name):
+    limits = dataclasses.replace(FINE, period=1e-3)
+    double = {each: 2.0 * getattr(limits, each) for each in ("speed", "acceleration", "full_acceleration")}
+    once, twice = plan(name, limits), plan(name, dataclasses.replace(limits, **double))
+    np.testing.assert_allclose(twice.time, once.time)
+    for signal in ("position", "velocity", "acceleration"):
+        np.testing.assert_allclose(getattr(twice, signal), 2.0 * getattr(once, signal), rtol=1e-9, atol=1e-6)
+
+
+def test_speeds_in_a_row_are_followed_through_each_of_them_from_rest_to_rest():
+    speed = np.random.default_rng(0).normal(size=200).cumsum()
+    r = followed(speed, 1e-3, 250e-6)
+    ramp = round((r.time.size - 1 - 4 * 199) / 2)
+    assert ramp > 0
+    assert r.velocity[[0, -1]] == pytest.approx([0.0, 0.0], abs=1e-12)
+    np.testing.assert_allclose(r.velocity[ramp:-ramp:4], speed, atol=1e-9)
+    between = (r.velocity[1:] + r.velocity[:-1]) / 2.0
+    np.testing.assert_allclose(np.diff(r.position), between * 250e-6, atol=5e-5)
 
 
 def test_unknown_profile_names_the_nearest():
