@@ -70,3 +70,11 @@ def test_zeros_that_the_motion_contradicts_are_a_drop_out_and_a_motor_that_coast
     assert found.status == "fail" and "exactly 0 A" in found.found and "dropped out" in found.advice
     quiet = abs(sound["current"]) < 0.05 * abs(sound["current"]).max()
     assert signals.clips(Seen(changed(sound, current=np.where(quiet, 0.0, sound["current"])), rig)).status == "pass"
+
+
+@pytest.mark.parametrize("damage", [None, turned, dropped, scaled])
+@pytest.mark.parametrize("factor", [1e-3, 1e3])
+def test_the_answer_does_not_depend_on_the_unit_of_the_effort(sound, rig, damage, factor):
+    current = sound["current"] if damage is None else damage(sound)
+    once, other = (throughout.holds(Seen(changed(sound, current=by * current), rig)) for by in (1.0, factor))
+    assert other == once
