@@ -1,6 +1,5 @@
 """The commands as a user meets them: what they print and write, and one line with a status for whatever is wrong."""
 
-import gzip
 import json
 import subprocess
 import sys
@@ -110,8 +109,8 @@ def test_inspect_says_what_a_trace_holds(bench, trace):
     assert json.loads(out)
 
 
-def csv(path, text, encoding="utf-8"):
-    path.write_bytes(text.encode(encoding))
+def csv(path, text):
+    path.write_text(text, encoding="utf-8")
     return path
 
 
@@ -125,62 +124,18 @@ def with_row(k, row):
 
 
 @pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        (BODY.replace("current [A]", "other [K]", 1), ["current"]),
-        (BODY.replace("velocity [rad/s]", "velocity", 1), ["velocity", "unit"]),
-        (BODY.replace("velocity [rad/s]", "velocity [A]", 1), ["velocity", "A"]),
-        (BODY.replace("velocity [rad/s]", "velocity [bananas]", 1), ["bananas"]),
-        ("", ["empty"]),
-        (HEAD, ["found"]),
-        (with_row(10, "10,fast,0.1"), ["fast"]),
-        (with_row(10, "10,inf,0.1"), ["velocity"]),
-        (with_row(10, "4,1.0,0.1"), ["time"]),
-        (HEAD + "\n".join(f"{k // 2},{k}.5,{k}" for k in range(3000)) + "\n", ["time"]),
-        (HEAD.replace("[ms]", "[kg]") + "\n".join(ROWS), ["time", "kg"]),
-    ],
-    ids=[
-        "missing column",
-        "no unit",
-        "wrong dimension",
-        "unknown unit",
-        "empty file",
-        "header only",
-        "text in a number",
-        "infinite",
-        "time backwards",
-        "duplicate times",
-        "time of another dimension",
-    ],
+    ("text", "word"),
+    [(BODY.replace("current [A]", "other [K]", 1), "current"), (with_row(10, "10,fast,0.1"), "fast")],
+    ids=["what identify needs is missing", "what no reader takes"],
 )
-def test_bad_input_is_one_line_that_names_the_file_and_status_two(bench, tmp_path, text, words):
+def test_bad_input_is_one_line_that_names_the_file_and_status_two_and_writes_nothing(bench, tmp_path, text, word):
+    """What else a file may hold is asked of the readers, in `trace/test_bad_input.py`."""
     path = csv(tmp_path / "bad.csv", text)
     status, out, err = bench("identify", path, "--rig", "rig.toml", "--json", "found.json", "--out", "figures")
     assert (status, out) == (2, "")
     assert err.count("\n") == 1
-    assert "bad.csv" in err
-    for word in words:
-        assert word in err
+    assert "bad.csv" in err and word in err
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["bad.csv", "rig.toml"]
-
-
-def test_truncated_and_foreign_files_are_refused_in_one_line(bench, tmp_path, trace):
-    whole = trace.read_bytes()
-    write(recording(np.random.default_rng(1), duration=4.0), tmp_path / "whole.parquet")
-    write(recording(np.random.default_rng(1), duration=4.0), tmp_path / "whole.trace")
-    broken = {
-        "cut.csv.gz": whole[: len(whole) // 2],
-        "cut.parquet": (tmp_path / "whole.parquet").read_bytes()[:-2000],
-        "cut.trace": (tmp_path / "whole.trace").read_bytes()[:-2000],
-        "latin.csv": BODY.replace("velocity [rad/s]", "Temperatur ö [K]").encode("latin-1"),
-        "junk.bin": bytes(range(256)) * 40,
-        "picture.csv": gzip.compress(b"\x89PNG" + bytes(2000)),
-    }
-    for name, content in broken.items():
-        (tmp_path / name).write_bytes(content)
-        status, out, err = bench("identify", name, "--rig", "rig.toml")
-        assert (status, out, err.count("\n")) == (2, "", 1), f"{name}: {status} {err}"
-        assert name in err
 
 
 @pytest.mark.parametrize(
@@ -254,7 +209,6 @@ def test_a_hole_is_reported_and_not_bridged(bench, tmp_path):
     status, out, _ = bench("inspect", "run.csv")
     assert status == 0
     assert "2 segments" in out
-    assert len(read(tmp_path / "run.csv").segments) == 2
 
 
 @pytest.mark.skipif(bound_by_permissions() is None, reason="root, and no setpriv")

@@ -94,6 +94,7 @@ BYTES = {
     "truncated gz": (gzip.compress(GOOD.encode())[:-40], r"gzip is truncated or damaged"),
     "damaged gz": (gzip.compress(GOOD.encode())[:30] + b"spam" * 30, r"gzip is truncated or damaged"),
     "empty gz": (gzip.compress(b""), r"the file is empty"),
+    "picture in gz": (gzip.compress(b"\x89PNG" + bytes(2000)), r"not a trace in any format"),
     "binary": (bytes(range(256)) * 30, r"not a trace in any format the bench reads; allowed: LeRobot dataset, Parquet"),
     "jpeg-like": (b"\xff\xd8\xff\xe0" + bytes(1000), r"not a trace in any format"),
     "parquet magic alone": (b"PAR1", r"Parquet file is truncated or damaged"),
