@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from bench.errors import InputError, UndeterminedError
 from bench.export.mjcf import robot_with
 from bench.joints.identified import JointLogs
-from bench.joints.links import doubt_links, seek_payload
+from bench.joints.links import doubt_links, seek_payload, shared
+from bench.joints.weight import OWN
 from bench.plant.robot import AddedBody, Robot
 from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
 from tests.joints import ur5e
@@ -103,3 +105,35 @@ def test_friction_that_takes_nearly_all_torque_doubts_no_link(tmp_path):
     hidden = [*(replace(one, effect="") for one in ur5e.HIDDEN[:5]), ur5e.Hidden(0.05, 0.8, 1.0)]
     logged = write_log(tmp_path / "log.csv", ur5e.log(hidden, seed=0))
     assert not doubt_links([JointLogs(joint, tmp_path / "arm.xml", (logged,)) for joint in ur5e.NAMES])
+
+
+def products(seed, factor=1.0, strengths=(0.8, -0.3, 0.0)):
+    """Of two joints by 24 stretches: their own columns, three common ones, of which the last is rounding, and an effort
+    with white noise; all of it in a unit that is a factor smaller.
+    """
+    rng, found = np.random.default_rng(seed), []
+    for noise in (0.1, 0.3):
+        columns = rng.normal(size=(960, OWN + 3)) * np.append(np.ones(OWN + 2), 1e-9)
+        effort = columns @ [*rng.normal(size=OWN), *strengths] + noise * rng.normal(size=960)
+        table = factor * np.column_stack([columns, effort])
+        found.append(np.array([part.T @ part for part in np.split(table, 24)]))
+    return found
+
+
+@pytest.mark.parametrize("factor", [1e-4, 1e4])
+def test_common_strengths_and_which_nothing_shows_do_not_depend_on_the_unit(factor):
+    once, other = (shared(products(0, by), range(3)) for by in (1.0, factor))
+    assert once.open.tolist() == other.open.tolist() == [False, False, True]
+    np.testing.assert_allclose(other.strengths[:2], once.strengths[:2], rtol=1e-9)
+    np.testing.assert_allclose(other.deviations[:2], once.deviations[:2], rtol=1e-9)
+
+
+def test_common_strengths_scatter_as_their_errors_say_by_the_quieter_joint_most():
+    """s**2/n of each joint's own noise, both together."""
+    found = [shared(products(seed), range(2)) for seed in range(60)]
+    strengths, errors = np.array([each.strengths for each in found]), np.array([each.deviations for each in found])
+    expected = 1.0 / np.sqrt(960.0 / 0.1**2 + 960.0 / 0.3**2)
+    print(f"\nscatter {strengths.std(axis=0)}, errors {np.mean(errors, axis=0)}, white noise {expected:.3g}")
+    assert strengths.mean(axis=0) == pytest.approx([0.8, -0.3], abs=4.0 * expected / np.sqrt(60.0))
+    assert strengths.std(axis=0) == pytest.approx(expected, rel=0.35)
+    assert np.mean(errors, axis=0) == pytest.approx(expected, rel=0.15)
