@@ -202,7 +202,11 @@ STATES = [
     (german_names, set(), []),
     (group_suffixes, set(), []),
     (foreign_names, set(), []),
-    (unknown_names, RECORDED - {"1"}, ["[trace.columns]", "'ch2'"]),
+    (
+        unknown_names,
+        RECORDED - {"1"},
+        ['[trace.columns] and velocity = "ch2 [rad/s]" and current = "ch3 [A]"', "'ch2'"],
+    ),
     (unknown_names_in_the_advice, set(), []),
     (a_full_rig, set(), []),
     (a_rig_of_another_motor, {"3", "4", "10", "11", "range", "tracking"}, ["rotor_inertia", "kT(Iq)"]),
@@ -334,14 +338,6 @@ def test_a_workbook_is_called_what_it_is(own):
     (own / "Katapult.xlsx").write_bytes(b"PK")
     with pytest.raises(InputError, match=r"Katapult\.xlsx: is no table that can be read, as files ending in \.xlsx"):
         _ = LabRecordings.in_folder(own).flights
-
-
-def test_unknown_names_get_the_lines_that_work(own):
-    unknown_names(own)
-    text = reason(own, "MaxAcc")
-    assert '[trace.columns] and velocity = "ch2 [rad/s]" and current = "ch3 [A]"' in text
-    (own / "rig.toml").write_text('[trace.columns]\nvelocity = "ch2 [rad/s]"\ncurrent = "ch3 [A]"\n')
-    assert LabRecordings.in_folder(own).sound("MaxAcc").time.size > 100
 
 
 def test_another_disk_is_given_by_its_moment_of_inertia(own):
