@@ -42,6 +42,15 @@ def test_both_tell_the_same_armature(read):
     assert by_diagnose.value == pytest.approx(by_identify.value, abs=0.1 * by_identify.half_width)
 
 
+def test_where_the_cut_off_is_lowered_gaps_before_and_after_are_of_the_same_rows(read):
+    """Noise of the shoulder's speed is in the known torque: without an effect nothing is removed from the gap."""
+    columns, rng = log(PLAIN), np.random.default_rng(3)
+    columns["shoulder.velocity [rad/s]"] += 0.02 * rng.normal(size=columns["time [s]"].size)
+    found = diagnose(*read(columns), excluded=frozenset(catalogue()))
+    assert any("moves with the filter's cut-off" in warning for warning in found.warnings)
+    assert found.torque.identify[0] == found.torque.identify[1]
+
+
 def test_the_share_explained_is_that_of_the_measured_torque(read):
     """A log of noise alone where the links' torque is known: what is left is as large as what was measured."""
     columns = log(PLAIN)
