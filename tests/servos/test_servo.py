@@ -14,7 +14,7 @@ import bench
 from bench.errors import UndeterminedError
 from bench.parameter import Parameter
 from bench.servos.quantities import Quantities
-from bench.servos.servo import refuse_unresolved
+from bench.servos.servo import _known, refuse_unresolved
 from bench.trace.trace import Trace
 from tests.command import bench as command
 from tests.docs.pages import PAGES, run_commands
@@ -142,6 +142,15 @@ def test_an_inertia_that_is_not_the_joint_s_gives_no_scale(tmp_path, stated):
     assert "kp" not in found.parameters and not found.actuator
     assert found.inseparable["kp/moment_of_inertia"].value == pytest.approx(6.0 / (LINK + armature), rel=0.05)
     assert any("armature" in line and "state that of motor and gear" in line for line in found.advice)
+
+
+def test_the_slope_of_a_known_weight_is_that_of_its_torque_over_position():
+    """Of a pendulum behind a gear, m*g*r*sin(q/i - q_0)/i; the servo is corrected by it where it is off its log."""
+    pendulum = {"eccentric_mass": 0.3, "eccentric_radius": 0.1, "hanging_position": 0.4, "gear_ratio": 2.0}
+    position = np.linspace(-7.0, 7.0, 2001)
+    torque, slope = _known(log(position, position, 100.0), bench.Rig(load=pendulum))
+    assert torque == pytest.approx(0.3 * 9.80665 * 0.1 * np.sin(position / 2.0 - 0.4) / 2.0)
+    assert slope[1:-1] == pytest.approx(np.gradient(torque, position)[1:-1], abs=1e-5)
 
 
 def test_a_holdout_that_is_the_recording_has_its_residual(of_arm):
