@@ -5,7 +5,7 @@ import pytest
 
 from bench.errors import UndeterminedError
 from bench.rig.rig import Rig
-from bench.servos.breakaway import _impulse, static_friction
+from bench.servos.breakaway import _impulse, _standing, static_friction
 from bench.servos.commanded import Gains, balance
 from bench.trace.trace import Trace, with_known
 
@@ -75,3 +75,17 @@ def test_the_impulse_response_solves_its_equation(damping):
     assert speed[0] == pytest.approx(1.0 / 0.05, rel=1e-3)
     rest = 0.05 * np.gradient(speed, time) + damping * speed + 8.0 * x
     assert np.abs(rest[2:-2]).max() < 1e-3
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_joint_that_creeps_is_not_at_rest_whichever_way(way):
+    """At rest for 0.2 s, then 0.16 of the largest noise a sample on, and at rest there."""
+    noise, rng = 1e-4, np.random.default_rng(0)
+    path = np.concatenate([np.zeros(100), 0.16 * noise * np.arange(100), np.full(100, 16.0 * noise)])
+    found = [*_standing(way * (path + 0.1 * noise * rng.normal(size=path.size)), 20, noise)]
+    assert found[0][0] < 20 and found[-1][1] > 280
+    resting = np.zeros(path.size, dtype=bool)
+    for first, last in found:
+        resting[first : last + 1] = True
+    assert not resting[130:170].any()
+    assert resting[:90].mean() > 0.5 and resting[-90:].mean() > 0.5
