@@ -24,6 +24,8 @@ _FIRST_WORD, _LAST_WORD = re.compile(r"^\S{0,19}\s+"), re.compile(r"\s+\S{0,19}$
 #: Words of a quantity's name that may be left out, and symbols of the equation of motion.
 _FILLING = frozenset(("moment", "of", "moving", "coefficient", "torque", "force"))
 _SYMBOLS = {"J": "inertia", "m": "mass", "K_w": "viscous_friction", "K_0": "coulomb_friction"}
+#: Shares below it are not distinguished.
+LEAST_SHARE = 1e-3
 #: Words of pandas, scikit-learn, statsmodels and of signal processing, and the bench's for the same.
 OTHER_WORDS = {
     "ci": "ci95", "std": "std_error", "stderr": "std_error", "params": "parameters", "r2": "explained",
@@ -74,6 +76,19 @@ def plain(text: str) -> str:
 def words(name: str) -> str:
     """A name of the bench in words, e.g. `Coulomb friction torque` for `coulomb_friction_torque`."""
     return _PERSONS.sub(lambda match: match[0].capitalize(), name.replace("_", " ").replace("back emf", "back-EMF"))
+
+
+def percent(share: float) -> str:
+    """A share in per cent, with two digits below ten."""
+    if 0.0 < share < LEAST_SHARE:
+        return f"< {100.0 * LEAST_SHARE:g} %"
+    text = f"{100.0 * share:z.0f}" if not 0.0 < share < 0.1 else f"{100.0 * share:.2g}"
+    return f"{text} %".replace("-", "−")
+
+
+def counted(count: int, one: str, many: str = "") -> str:
+    """A count and what it is of: `1 recording`, `2 recordings`; `many` where an s is not enough."""
+    return f"{count} {one if count == 1 else many or f'{one}s'}"
 
 
 def cell(text: str) -> str:

@@ -69,7 +69,7 @@ def _grade(submissions: Path, truth: Path | None, key: Path | None, out: Path, a
     for error in graded.unread:
         say(f"not graded: {error}", err=True)
     if graded.suspicions:
-        say(f"{len(graded.suspicions)} pairs of forms share wrong answers: see suspicion.csv", err=True)
+        say(f"pairs of forms with the same wrong answers: {len(graded.suspicions)}, see suspicion.csv", err=True)
     list_files(files[:3])
     if graded.unread:
         raise Exit(1)

@@ -29,8 +29,11 @@ from bench.errors import BenchError, UndeterminedError
 from bench.fit.determined import RECORD
 from bench.fit.lab import least_squares
 from bench.fit.rows import ONE_WAY
+from bench.names import percent
 from bench.trace.filter import GaussianFilter
 
+#: Name of the torque that inertia and friction do not explain.
+REMAINING = "RMS of M - M_est, all samples"
 #: Width of the filter by which lateness is measured - samples.
 SMOOTHING = 5.0
 
@@ -151,7 +154,7 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
         f"A = [α_filt, ω, sgn(ω)], b = M over the {fitted} samples of task 8; the theta with the least "
         "E = |A·theta - b|² is (J, K_fric_w, K_fric_0).",
         f"M_est is drawn for all {run.time.size} samples. M - M_est is {left:.3g} N·m RMS, "
-        f"{left / rms(run.torque):.2%} of the torque; over the fitted samples {left_of_fitted:.3g} N·m.",
+        f"{percent(left / rms(run.torque))} of the torque; over the fitted samples {left_of_fitted:.3g} N·m.",
         *_difference_from_task_6(loads, recordings),
     )
     numbers = (
@@ -161,7 +164,7 @@ def inertia_and_friction(recordings: LabRecordings) -> TaskResult:
         Number("E", found.error, "(N·m)²"),
         *loads[:1],
         Number("samples of M_est", float(estimated.size), "1"),
-        Number("RMS of M - M_est, all samples", left, "N·m"),
+        Number(REMAINING, left, "N·m"),
     )
     title, name = "Task 9: reconstructed torque over the measured one", "M_est, all samples"
     return TaskResult(findings, numbers, (torque_chart(title, run, estimated, name, "M_est"),))

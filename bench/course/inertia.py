@@ -16,6 +16,7 @@ from bench.course.result import COMPUTED, RECORDING, Number, TaskResult, chart, 
 from bench.course.run import LabRun
 from bench.errors import InputError, UndeterminedError
 from bench.fit.determined import RECORD
+from bench.names import percent
 from bench.report.document import Chart
 
 #: Of the sine - s.
@@ -151,8 +152,8 @@ def inertia_without_friction(recordings: LabRecordings) -> TaskResult:
         f"{taken.sum()} of {taken.size} samples accelerate at alpha_max/4 or more; J is the mean of M/α over them, "
         f"{inertia * KG_CM2:.4g} ± {half * KG_CM2:.1g} kg·cm².",
         "In which unit? N·m over rad/s² is N·m·s² = kg·m², as the radian counts as 1; 1 kg·m² = 10⁴ kg·cm².",
-        f"M - J·α is {left:.3g} N·m RMS, {left / rms(run.torque[taken]):.1%} of the torque of "
-        f"these samples. M/α itself scatters by {float(np.std(ratio) / abs(np.mean(ratio))):.1%} from sample to "
+        f"M - J·α is {left:.3g} N·m RMS, {percent(left / rms(run.torque[taken]))} of the torque of "
+        f"these samples. M/α itself scatters by {percent(float(np.std(ratio) / abs(np.mean(ratio))))} from sample to "
         "sample, most of it noise of the differentiated speed.",
         *of_load,
     )

@@ -21,6 +21,7 @@ from bench.arrays import Array, rms
 from bench.course.axis import MAINS
 from bench.course.methods import KG_CM2, RPM
 from bench.course.run import LabRun
+from bench.names import percent
 from bench.rig.limits import peak_curve
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
@@ -109,7 +110,7 @@ def glitches(values: Array, smooth: bool) -> NDArray[np.int64]:
 def holes(name: str, run: LabRun) -> str:
     """What holes cut off, where that is too much; empty where it is not."""
     share, since = run.missing
-    found = f"it has a hole after {since:.4g} s, and {share:.0%} of it are cut off by holes"
+    found = f"it has a hole after {since:.4g} s, and {percent(share)} of it are cut off by holes"
     return found if share > (0.0 if name == FASTEST else CUT) else ""
 
 
@@ -135,7 +136,8 @@ def _of_signals(run: LabRun, rig: Rig) -> Iterator[str]:
         levels = np.unique(np.round(values / largest, 9))
         step = float(np.diff(levels).min()) if levels.size > 1 else 0.0
         if step > COARSE:
-            yield f"its {signal} comes in steps of {step * largest:.2g} {unit}, {step:.1%} of the largest: too coarse"
+            found = f"{step * largest:.2g} {unit}, {percent(step)} of the largest"
+            yield f"its {signal} comes in steps of {found}: too coarse"
     changes = np.flatnonzero(np.diff(run.current, prepend=np.nan, append=np.nan))
     lengths, values = np.diff(changes), np.abs(run.current[changes[:-1]])
     held = (lengths > HELD) & (values > 0.0) & (values < AT_LIMIT * (peak or math.inf))
@@ -171,7 +173,8 @@ def _of_balance(name: str, run: LabRun, rig: Rig) -> Iterator[str]:
     if abs(found.late) > LATE:
         yield f"its torque comes {found.late:+.1f} samples after the acceleration that it makes"
     if found.left > LEFT:
-        yield f"inertia and friction do not explain {found.left:.0%} of its torque; noise alone is below {LEFT:.0%}"
+        share = percent(found.left)
+        yield f"inertia and friction do not explain {share} of its torque; noise alone is below {percent(LEFT)}"
     friction = found.coulomb / found.torque
     if name == WITHOUT_FRICTION and friction > FRICTION:
         yield f"it shows friction, {found.coulomb:.3g} N*m, which was to be switched off"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,6 +16,7 @@ from bench.arrays import Array
 from bench.assets import asset
 from bench.course import methods
 from bench.course.course import TASKS, course
+from bench.course.friction import REMAINING
 from bench.course.methods import KG_CM2
 from bench.course.pdf import EQUATION, no_typst, write_pdf
 from bench.course.recordings import LabRecordings
@@ -143,18 +145,15 @@ def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover
     origin = (
         "Synthetic recordings of the rig in MuJoCo" if recordings.synthetic else f"Recordings in {recordings.folder}"
     )
-    numbers = (number for result in results if result.key == "9" for number in result.numbers[:FIRST])
-    found = "; ".join(map(_short, numbers)) or "Not determined: see task 9"
+    record = "Record the axis, and run bench lab --data FOLDER" if recordings.synthetic else "Fill in the cover sheet"
+    truth = " A truth next to a number is the value that the axis was simulated with." if recordings.synthetic else ""
     answers = {
-        "Inertia and friction?": f"{found}.",
+        **_first_answers({result.key: result for result in results}),
+        "What next?": f"{f'Task {missing[0]} states what it needs' if missing else record}.",
         "Recordings": f"{origin}; axis: {recordings.rig.name}. Tasks 2 to 4 need none: they follow from the datasheet.",
         "Sources": "Each number has its source: the recording, the rig file, the motor's datasheet, the course, an "
-        "assumption or a simulation.",
+        f"assumption or a simulation.{truth}",
     }
-    if recordings.synthetic:
-        answers["Truth"] = "A truth next to a number is the value that the axis was simulated with."
-    record = "Record the axis, and run bench lab --data FOLDER" if recordings.synthetic else "Fill in the cover sheet"
-    answers["What next?"] = f"{f'Task {missing[0]} states what it needs' if missing else record}."
     return Document(
         title=TITLE,
         subject=TITLE,
@@ -164,6 +163,26 @@ def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover
         sections=(cover.sheet(recordings.synthetic), *numbered((summary(results), *map(task_section, results)))),
         origin=(f"servobench {__version__}",),
     )
+
+
+def _first_answers(results: Mapping[str, TaskResult]) -> dict[str, str]:
+    """What task 9 and the simulation of tracking come to."""
+    fitted = results["9"]
+    if fitted.reason is not None:
+        return {"Inertia and friction?": "Not determined: see task 9."}
+    left, tracked = fitted[REMAINING], results.get("tracking")
+    moves = "Not simulated: the rig lacks what that needs."
+    if tracked is not None and tracked.reason is None:
+        off, without = (tracked[f"RMS deviation, J_load {which}"].value for which in ("identified", "= 0"))
+        moves = f"In simulation the position is {off:.3g}° RMS off its plan with the identified J_load in the "
+        moves += f"feed-forward, {without:.3g}° without J_load."
+    return {
+        "Inertia and friction?": f"{'; '.join(map(_short, fitted.numbers[:FIRST]))}.",
+        "How sure?": "± is half of the interval of 95 %, if nothing but inertia and friction acts.",
+        "What was missing?": f"{left.value:.3g} {left.unit} RMS of torque, which inertia and friction do not explain. "
+        "bench diagnose RECORDING --rig RIG finds its causes.",
+        "Does it move like the axis?": moves,
+    }
 
 
 def summary(results: Sequence[TaskResult]) -> Section:
@@ -179,8 +198,11 @@ def summary(results: Sequence[TaskResult]) -> Section:
 
 
 def _short(number: Number) -> str:
-    half = "" if number.half is None else f" ± {number.half:.2g}"
-    return f"{number.name} = {number.value:.5g}{half}{'' if number.unit == '1' else f' {number.unit}'}"
+    value = f"{number.value:.5g}"
+    if number.half:
+        digits = max(0, 1 - math.floor(math.log10(number.half)))
+        value = f"{number.value:.{digits}f} ± {number.half:.{digits}f}"
+    return f"{number.name} = {value}{'' if number.unit == '1' else f' {number.unit}'}"
 
 
 def numbered(sections: Iterable[Section]) -> Iterator[Section]:

@@ -8,6 +8,7 @@ from bench.arrays import Array
 from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, chart, curve, panel
 from bench.errors import InputError
+from bench.names import percent
 from bench.rig.motor import DATASHEET, TorqueConstant
 from bench.rig.rig import Rig
 
@@ -30,7 +31,7 @@ def at_both_points(recordings: LabRecordings) -> TaskResult:
     stall, peak = datasheet_points(recordings.rig)[1].tolist()
     findings = (
         f"kT is {stall:.4g} N·m/A at stall and {peak:.4g} N·m/A at peak. It falls by "
-        f"{1 - peak / stall:.0%}, as the stator's iron saturates: more current no longer raises the flux in "
+        f"{percent(1 - peak / stall)}, as the stator's iron saturates: more current no longer raises the flux in "
         "proportion, so torque grows more slowly than current."
     )
     constants = {"kT from stall": stall, "kT from peak": peak}

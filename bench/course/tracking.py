@@ -14,6 +14,7 @@ from bench.course.recordings import LabRecordings
 from bench.course.result import SIMULATED, Number, TaskResult, chart, curve, panel
 from bench.course.winding import identified_axis
 from bench.errors import InputError
+from bench.names import percent
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.drive import Cascade
 from bench.plant.plant import Plant
@@ -64,8 +65,8 @@ def track(recordings: LabRecordings, axis: AxisParameters, identified: float, kn
         f"The simulated axis is that of the recording: J = {axis.inertia * KG_CM2:.4g} kg·cm², {truly}"
         f" The disk's geometry is {theory / (axis.inertia - rotor) - 1.0:+.1%} off its J_load, as hub, coupling and "
         "bolts turn, too.",
-        f"The theoretical J_load reduces the RMS deviation to {rms[1] / rms[0]:.1%} of that without J_load, the "
-        f"identified one to {rms[2] / rms[0]:.1%}. The rest is friction at each reversal, not fed forward.",
+        f"The theoretical J_load reduces the RMS deviation to {percent(rms[1] / rms[0])} of that without J_load, the "
+        f"identified one to {percent(rms[2] / rms[0])}. The rest is friction at each reversal, not fed forward.",
     )
     drawn = [
         curve(references.time[::4], deviation[::4, k], f"{name}: {load * KG_CM2:.4g} kg·cm²")

@@ -28,6 +28,7 @@ from bench.effects.signals import Axis
 from bench.errors import BenchError, InputError
 from bench.fit.fit import fit
 from bench.fit.rows import sign_reach
+from bench.names import percent
 from bench.plant.axis_model import AxisModel
 from bench.plant.drive import Cascade, References
 from bench.plant.plant import Plant
@@ -137,7 +138,7 @@ def nearly_as_good(added: Added, model: AxisModel) -> Iterator[Alternatives]:
             continue
         other = fit(added.recordings.rows, visited.hypothesis, visited)
         if other.rms < NEARLY * whole.rms:
-            reason = f"{rival.name} has a residual only {other.rms / whole.rms - 1.0:.0%} larger"
+            reason = f"{rival.name} has a residual only {percent(other.rms / whole.rms - 1.0)} larger"
             try:
                 instead = stored_model(other, added.extension.outside, added.recordings.rig).model
             except InputError:

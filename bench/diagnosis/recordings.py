@@ -23,6 +23,7 @@ from bench.fit.hypothesis import plain
 from bench.fit.quantities import Uncertain
 from bench.fit.rows import Rows, clear_motion, sign_reach
 from bench.fit.solution import Solution, solution_of
+from bench.names import percent
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.trace.filter import LEAST_WIDTH
@@ -208,7 +209,7 @@ def _decidable(trace: Trace, rig: Rig, policy: Policy) -> tuple[Rows, tuple[str,
     if found is None:
         raise UndeterminedError(
             WHAT,
-            f"noise of the {source} is more than {NOISY:.0%} of the acceleration's power at every cut-off of the "
+            f"noise of the {source} is more than {percent(NOISY)} of the acceleration's power at every cut-off of the "
             f"filter that keeps {INDEPENDENT} independent samples",
             f"{RECORD[INERTIA]}, or a finer {source}",
         )

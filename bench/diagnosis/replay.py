@@ -18,7 +18,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
-from bench.names import meant, with_known_arguments
+from bench.names import meant, percent, with_known_arguments
 from bench.plant.model_file import LARGEST_VALUE, StoredModel, load_model, read_table
 from bench.plant.tracking import track
 from bench.presented import Shown
@@ -151,7 +151,7 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: GivenRig, units: Un
         warnings.append(f"the model is of '{table['name']}', the rig file of '{rig.name}'")
     left = known_rms(torque - simulated) / max(known_rms(torque), 1e-300)
     if left > LEFT:
-        warnings.append(f"the model does not explain {left:.0%} of the torque: another axis, or other units?")
+        warnings.append(f"the model does not explain {percent(left)} of the torque: another axis, or other units?")
     moved = measured[0], position, measured[1], velocity
     return Replay(
         trace.time, *moved, torque, simulated, rig.axis_kind.speed_unit, rig.own_effort(trace)[1], tuple(warnings)

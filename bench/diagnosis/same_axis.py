@@ -21,6 +21,7 @@ from bench.fit.hypothesis import Hypothesis, lay_out
 from bench.fit.quantities import uncertain
 from bench.fit.rows import Rows
 from bench.fit.solution import equations_of
+from bench.names import percent
 from bench.parameter import Parameter
 
 #: Factors by which J, K_w and K_0 of one axis may differ between recordings without a warning.
@@ -75,7 +76,9 @@ def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> Same
             apart.append(f"{1.0 + found.value:.3g} times the {label} (± {NORMAL95 * found.std_error:.2g})")
     left, least = (found.rms / rms(found.effort) for found in (there, here))
     if left > max(LEFT, MORE * least):
-        apart.append(f"{left:.0%} of its torque unexplained by the effects found, {least:.1%} of the recording's")
+        apart.append(
+            f"{percent(left)} of its torque unexplained by the effects found, {percent(least)} of the recording's"
+        )
     if apart:
         message = f"the holdout recording has {' and '.join(apart)}: another axis? It was not used as proof"
         return SameAxis(False, differs, (message,))

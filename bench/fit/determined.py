@@ -10,7 +10,7 @@ from bench.errors import UndeterminedError
 from bench.fit.dependence import Dependence
 from bench.fit.estimate import Estimate, RefusedEstimateError
 from bench.fit.solution import INDEPENDENT_SHARE, NOISE_ALONE, NormalEquations
-from bench.names import words
+from bench.names import percent, words
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 
@@ -102,9 +102,11 @@ def _hidden(term: str, share: float, noise: float, kind: AxisKind) -> Undetermin
     """Why a term is not determined of whose column's power a share is independent, and a share noise."""
     what = kind.in_words(term)
     if term in NOISY and share + noise >= INDEPENDENT_SHARE:
-        reason = f"{min(noise, 1.0):.0%} of the measured {NOISY[term]}'s power is noise"
+        reason = f"{percent(min(noise, 1.0))} of the measured {NOISY[term]}'s power is noise"
         return UndeterminedError(what, reason, f"{RECORD[term]}, or {FINER}")
-    reason = f"{PLAINLY[term]}: only {max(share, 0.0):.1%} of what would show it differs from other terms and noise"
+    reason = (
+        f"{PLAINLY[term]}: only {percent(max(share, 0.0))} of what would show it differs from other terms and noise"
+    )
     return UndeterminedError(what, reason, RECORD[term])
 
 
@@ -153,7 +155,7 @@ def negative_friction(
 
 
 def _share(estimate: Estimate, kind: AxisKind) -> str:
-    return f"inertia and friction explain {estimate.explained:.0%} of the {kind.effort}'s variance"
+    return f"inertia and friction explain {percent(estimate.explained)} of the {kind.effort}'s variance"
 
 
 def remainder(estimate: Estimate, kind: AxisKind, hint: str, depends: Dependence | None) -> tuple[str, ...]:

@@ -48,7 +48,7 @@ from bench.fit.hypothesis import (
 )
 from bench.fit.rows import Rows
 from bench.fit.solution import NOISE_ALONE, Floor, bounded, solved
-from bench.names import words
+from bench.names import percent, words
 from bench.trace.filter import Column
 
 #: Rounds in which levels of dry friction that multiply, and torque that is copied, are brought in line.
@@ -458,7 +458,7 @@ def by_hint(rows: Rows, hypothesis: Hypothesis, offset: bool) -> tuple[str, dict
         return "", {}
     moves = {term: beside.value(term) - fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB)}
     share = max(1.0 - beside.squares / max(fitted.squares, 1e-300), 0.0)
-    return f"{words(beside.terms[-1].effect.name)} would explain {share:.0%} of it" * (share > SUGGESTED), moves
+    return f"{words(beside.terms[-1].effect.name)} would explain {percent(share)} of it" * (share > SUGGESTED), moves
 
 
 def shaped(start: Fit, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:

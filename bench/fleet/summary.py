@@ -21,6 +21,7 @@ from bench.fleet.change_point import ChangePoint, change_point
 from bench.fleet.evaluate import PlannedRecording
 from bench.fleet.manifest import Manifest
 from bench.fleet.store import Plain
+from bench.names import percent
 
 #: Chance of a report that any axis changed of a fleet in which none did.
 ALARM = 0.01
@@ -237,7 +238,7 @@ def _why(found: Plain) -> dict[str, str]:
     if found.get("verdict") == "unexplained_remainder":
         why["unexplained"] = "no effect of the catalogue explains the residual"
     elif "verdict" not in found and explained is not None and explained < EXPLAINED:
-        share = f"inertia and friction explain only {explained:.0%} of the effort"
+        share = f"inertia and friction explain only {percent(explained)} of the effort"
         why["unexplained"] = f"{share}; add `--diagnose` to search for the missing effects"
     if found["checks"]:
         why["checks"] = "; ".join(f"{check['name']}: {check['found']}" for check in found["checks"])

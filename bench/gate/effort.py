@@ -8,6 +8,7 @@ import numpy as np
 
 from bench.arrays import rms
 from bench.gate.check import Balanced, Check, Seen, absent
+from bench.names import percent
 
 FOLLOWS, CONSTANTS, SIGNED = "effort_follows_motion", "motor_constants_agree", "effort_has_a_sign"
 #: Share of the RMS speed above which an axis moves; of the largest effort that counts as zero; of the motion that goes
@@ -27,7 +28,7 @@ ABOVE_NOISE = 3.0
 #: Share that position must explain beyond motion for effort to follow position.
 MORE = 0.3
 
-ALLOWED = f"inertia, friction and position explain {WARNED:.0%} of the effort at least, with positive inertia"
+ALLOWED = f"inertia, friction and position explain {percent(WARNED)} of the effort at least, with positive inertia"
 ALLOWED_SIGN = "an effort of both signs, or one that differs from zero where the axis moves"
 ALLOWED_CONSTANTS = "kT is Ke, 3/2 or sqrt(3) of it, as Ke is meant, within their tolerances, 10 % where none is stated"
 
@@ -52,7 +53,7 @@ def has_sign(seen: Seen) -> Check:
     if held or bottom < -NEAR_ZERO * top or not BOTH < forward < 1.0 - BOTH or at_zero < AT_ZERO:
         return Check(SIGNED, "pass", f"{name} has {'both signs' if bottom < 0.0 else 'one sign'}", ALLOWED_SIGN)
     other = "below" if side > 0.0 else "above"
-    found = f"{name} is never {other} 0, and at 0 in {at_zero:.0%} of the motion, both ways"
+    found = f"{name} is never {other} 0, and at 0 in {percent(at_zero)} of the motion, both ways"
     advice = "its sign is lost: a register's sign bit, a magnitude or an effective value; record it with its sign"
     return Check(SIGNED, "fail", found, ALLOWED_SIGN, advice, unanswerable=True)
 
@@ -72,7 +73,7 @@ def follows_motion(seen: Seen) -> Check:
 def judged(fitted: Balanced, name: str) -> Check:
     """The result of a balance of the effort of a name."""
     by_motion, by_position = max(fitted.by_motion, 0.0), max(fitted.by_position, 0.0)
-    explained = f"motion explains {by_motion:.0%} of {name}, with position {by_position:.0%}"
+    explained = f"motion explains {percent(by_motion)} of {name}, with position {percent(by_position)}"
     if by_position < WARNED and fitted.effort_over_noise < ABOVE_NOISE:
         found = f"{explained}; {name} is {fitted.effort_over_noise:.1f} times its noise"
         advice = "no torque signal, or accelerations too small for it: record harder ones"

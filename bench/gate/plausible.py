@@ -9,6 +9,7 @@ import numpy as np
 
 from bench.axis_kind import INERTIA
 from bench.gate.check import Check, Seen, absent
+from bench.names import percent
 from bench.trace.trace import ASSUMED_UNITS
 
 NAME, UNITS = "agrees_with_rig", "units"
@@ -19,7 +20,7 @@ EXPLAINED = 0.8
 #: Share of the samples that lie below what counts as the largest: spikes are no motion - %.
 MOST = 99.5
 
-ALLOWED = f"the values of the rig, within {WARNED - 1.0:.0%}"
+ALLOWED = f"the values of the rig, within {percent(WARNED - 1.0)}"
 
 
 def agrees(seen: Seen) -> Check:

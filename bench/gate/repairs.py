@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.gate.check import JITTER, Check, Repaired, Seen, absent, resolution_of
-from bench.trace.time_base import HOLE, counted, interpolate
+from bench.names import counted, percent
+from bench.trace.time_base import HOLE, interpolate
 from bench.trace.trace import Trace
 from bench.trace.wraps import Wraps, jumps, period_of
 
@@ -45,7 +46,7 @@ CHANCE = 0.01
 #: Signals that a sensor reports, of which a repeated sample repeats all.
 SENSED = ("position", "velocity", "current", "torque", "force", "voltage")
 
-ALLOWED = f"every sample once; up to {MOST:.0%} are put right"
+ALLOWED = f"every sample once; up to {percent(MOST)} are put right"
 ADVICE = "record with a buffer that loses none, or with time stamps of the drive itself"
 
 
@@ -201,5 +202,5 @@ def runs_on(seen: Seen) -> Check | Repaired:
 
 
 def _undone(trace: Trace, wraps: Wraps) -> Check:
-    found = f"position wraps at {wraps.period:.5g} {trace.units['position']}; {wraps.count} wraps undone"
+    found = f"position wraps at {wraps.period:.5g} {trace.units['position']}; {counted(wraps.count, 'wrap')} undone"
     return Check(WRAPS, "pass", found, ALLOWED_WRAPS)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.gate.check import EFFORTS, Check, Seen, absent, least_squares, resolution_of
+from bench.names import percent
 from bench.rig.rig import Rig
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
@@ -169,7 +170,7 @@ def _standing(
     share = float(lengths.sum()) / len(trace)
     if share <= CLIPPED:
         return None
-    where = f"{share:.1%} of {name} are exactly {side * top + 0.0:.4g} {trace.units[name]}"
+    where = f"{percent(share)} of {name} are exactly {side * top + 0.0:.4g} {trace.units[name]}"
     return where, samples, (int(starts[0]), int(starts[-1] + lengths[-1] - 1))
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from bench.arrays import Array, rms
 from bench.gate.check import Balanced, Check, Seen, absent, basis_of
+from bench.names import percent
 from bench.trace.trace import Trace
 
 NAME = "balance_holds_throughout"
@@ -126,6 +127,7 @@ def _delayed(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, s
     delay = float(shifts[best]) * trace.sample_period
     if abs(delay) >= max(LATE, SAMPLES * trace.sample_period) and left[best] < min(LEFT * left[none], 1.0 - EXPLAINED):
         late = f"{name} is {abs(delay) * 1e3:.3g} ms {'late' if delay > 0.0 else 'early'}"
-        found = f"{late}: so shifted, motion explains {1.0 - left[best]:.0%} of it, and {1.0 - left[none]:.0%} as it is"
+        shifted, plain = (percent(1.0 - left[at]) for at in (best, none))
+        found = f"{late}: so shifted, motion explains {shifted} of it, and {plain} as it is"
         advice = "the columns were probably recorded separately: record them by one clock, or shift one of them"
         yield found, advice, float(left[best] / left[none])

@@ -9,6 +9,7 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.axis_kind import INERTIA
 from bench.gate.check import JITTER, Check, Seen, absent
+from bench.names import counted, percent
 from bench.trace.time_base import HOLE, TimeBase
 from bench.trace.trace import Trace
 
@@ -43,14 +44,14 @@ def regular(seen: Seen) -> Check:
     """Whether the sample times are regular."""
     trace = seen.trace
     base = trace.time_base or _base_of(trace)
-    holes = f"{len(base.holes)} holes" if base.holes else "no hole"
-    found = f"steps of {base.sample_period:.4g} s within {base.jitter:.1%}, {holes}"
+    holes = counted(len(base.holes), "hole") if base.holes else "no hole"
+    found = f"steps of {base.sample_period:.4g} s within {percent(base.jitter)}, {holes}"
     advice = "record with the drive's own clock"
     if base.steps is not None and base.steps[1] > UNEVEN * base.steps[0]:
         found = f"steps of {base.steps[0]:.3g} to {base.steps[1]:.3g} s, four of five: no sample period"
         return Check(REGULAR, "fail", found, ALLOWED_TIME, f"{advice}, or at a rate that the recorder keeps up with")
     if base.interpolated > PLACED * len(trace):
-        return Check(REGULAR, "fail", f"{found}; {base.interpolated} samples missing", ALLOWED_TIME, advice)
+        return Check(REGULAR, "fail", f"{found}; {counted(base.interpolated, 'sample')} missing", ALLOWED_TIME, advice)
     if not base.resampled and base.jitter > IRREGULAR:
         allowed = f"{ALLOWED_TIME} (Trace.from_arrays and read bring others to them)"
         return Check(REGULAR, "fail", found, allowed, advice)
@@ -90,11 +91,11 @@ def rate(seen: Seen) -> Check:
         effort = [seen.effort[0][part] for part in parts] if seen.effort is not None else speeds
         position = [trace["position"][part] for part in parts] if "position" in trace else None
         if _missed(effort) and (position is None or followed(position)[1] < ALIKE):
-            found = f"{found}, at which speed changes by {changes:.0%} of its spread from one sample to the next"
+            found = f"{found}, at which speed changes by {percent(changes)} of its spread from one sample to the next"
             noise = "record the position too, which separates noise from fast motion, or " * (position is None)
             advice = f"{noise}record faster; if the drive oscillates, lower its gains"
             return Check(RATE, "fail", found, ALLOWED_RATE, advice, unanswerable=True)
-        found = f"{found}; the speed contains noise: it changes by {changes:.0%} of its spread in one sample"
+        found = f"{found}; the speed contains noise: it changes by {percent(changes)} of its spread in one sample"
     heavy = _heavy(seen)
     if heavy is not None:
         found = f"{found}, which makes {trace.axis_kind.in_words(INERTIA)} {heavy:.3g} times the motor's own"

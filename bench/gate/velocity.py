@@ -16,6 +16,7 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.gate.check import Check, Seen, absent, least_squares, resolution_of
 from bench.gate.timing import rate
+from bench.names import percent
 from bench.trace.motion import integrated
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
@@ -33,7 +34,7 @@ STEPS = 5.0
 #: Spread of the displacements, as share of their RMS, up to which the speed is steady.
 STEADY = 0.1
 
-ALLOWED = f"the same motion in both: 1 within {WARNED:.0%}, a lag aside"
+ALLOWED = f"the same motion in both: 1 within {percent(WARNED)}, a lag aside"
 
 
 def is_derivative(seen: Seen) -> Check:
@@ -81,7 +82,7 @@ def judged(ratio: float, lag: float, remainder: float) -> Check:
         found = f"velocity is {ratio:.4g} times the derivative of position"
         return Check(NAME, "fail", found, ALLOWED, f"{likeliest if ratio > 0.0 else ''}{units}")
     if remainder >= REMAINDER:
-        found = f"{min(remainder, 1.0):.0%} of velocity's travel is not in position: not the same motion"
+        found = f"{percent(min(remainder, 1.0))} of velocity's travel is not in position: not the same motion"
         return Check(NAME, "fail", found, ALLOWED, f"{units}; a sensor may stand still, or the columns be two axes'")
     late = f", {lag * 1e3:.3g} ms late" if abs(lag) > 1e-5 else ""
     found = f"velocity is {ratio:.4g} times the derivative of position{late}"

@@ -14,7 +14,7 @@ from bench.arrays import Array, rms
 from bench.effects.present import GivenEffects, Present, given_effects
 from bench.errors import InputError
 from bench.files import write_text
-from bench.names import with_known_arguments
+from bench.names import percent, with_known_arguments
 from bench.plant.axis_model import AxisParameters, effect_values
 from bench.plant.drive import References
 from bench.plant.plant import OF_MECHANICS, Plant, States
@@ -125,13 +125,13 @@ def _warnings(rig: Rig, plant: Plant, states: States, references: References) ->
                 f"{inertia}), which alternates above 1 and grows above 2; set [drive] control_period to "
                 f'"{1e6 * cascade.control_period / (1 + int(loop)):.3g} us"'
             )
-        yield f"the simulated drive chatters: its torque alternates in {share:.0%} of the control periods; {why}"
+        yield f"the simulated drive chatters: its torque alternates in {percent(share)} of the control periods; {why}"
     missed, planned = rms(states.velocity - references.velocity), rms(references.velocity)
     if missed > ASTRAY * planned:
         full = float(np.mean(np.abs(states.torque) >= (1.0 - 1e-6) * cascade.torque_limit))
         yield (
             f"the simulated axis does not follow its profile: the speed is off by {missed / planned:.2g} times the "
-            f"profile's RMS speed, with the torque at its limit for {full:.0%} of the time"
+            f"profile's RMS speed, with the torque at its limit for {percent(full)} of the time"
         )
 
 

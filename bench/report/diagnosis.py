@@ -20,7 +20,7 @@ from bench.diagnosis.tabulated import UNKNOWN, UnknownEffect
 from bench.diagnosis.verdict import Gap
 from bench.diagnosis.where import Where
 from bench.gate.gate import warnings_of
-from bench.names import words
+from bench.names import counted, words
 from bench.packed import pack
 from bench.plant.model_file import lacking, model_toml, model_xml, tables_toml
 from bench.report import document as doc
@@ -473,7 +473,7 @@ def _suspects(found: Diagnosis) -> doc.Section:
     if likely:
         tables[0] = tables[0].model_copy(update={"links": tuple(place.get(name, "") for name in accepted)})
     if rest:
-        limit = f"{len(rest)} effects with a probability of at most {share(LEAST_SHOWN)}"
+        limit = f"{counted(len(rest), 'effect')} with a probability of at most {share(LEAST_SHOWN)}"
         tables.append(doc.table(limit, headings, rest).model_copy(update={"folded": True}))
     return doc.section("suspects", "Suspects", *tables, detail=True)
 

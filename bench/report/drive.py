@@ -34,7 +34,7 @@ def plan_table(best: PlannedMotion) -> doc.Table:
 
 def others_line(found: list[PlannedMotion]) -> str:
     """How well all profiles determine the same, in a line."""
-    others = [f"{each.profile} {'nothing' if each.reason else f'{each.worst:.2%}'}" for each in found]
+    others = [f"{each.profile} {'nothing' if each.reason else share(each.worst)}" for each in found]
     return f"largest standard error over its value: {', '.join(others)}"
 
 

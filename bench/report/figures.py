@@ -40,8 +40,8 @@ in_style = rc_context(STYLE)
 FORMATS = (".png", ".pdf", ".svg")
 #: Width of a picture, and height of its title - inch.
 WIDTH, TITLE = 11.0, 0.35
-#: Panels of a chart next to each other, and height of a row of them - inch.
-ACROSS, ROW = 4, 2.4
+#: Panels of a chart next to each other, intervals of the axis of each of more than two, and height of a row - inch.
+ACROSS, NARROW, ROW = 4, 5, 2.4
 #: Height of a panel over time, of one of a stack, of a row of intervals and of one of a table - inch.
 TIME_PANEL, STACKED, SPAN, LINE = 1.5, 1.6, 0.3, 0.2
 #: Letters across a legend over its axes, those that the sample of a line takes, and across a title.
@@ -156,6 +156,8 @@ def _side_by_side(figure: Figure | SubFigure, chart: doc.Chart) -> None:
             axes.set_axis_off()
             continue
         _panel(axes, chart.panels[place])
+        if across > 2 and not chart.panels[place].log:  # so many labels of four digits have room
+            axes.locator_params(axis="x", nbins=NARROW)
         if place % across == 0:
             axes.set_ylabel(plain(_labelled(chart.y_label, chart.y_unit)), parse_math=False)
     handles, labels = every[0].get_legend_handles_labels()

@@ -23,7 +23,7 @@ from bench.fleet.change_point import FEWEST, expected
 from bench.fleet.fleet import RESULTS, TABLE, Fleet
 from bench.fleet.store import Plain, Store
 from bench.fleet.summary import ALARM, STATUSES, AxisSummary, Changed, History, Summary
-from bench.names import short, words
+from bench.names import counted, short, words
 from bench.parameter import Parameter
 from bench.report import document as doc
 from bench.report.numbers import SPACE, brief, chance, listed, number, sentence, share
@@ -140,7 +140,7 @@ def fleet_document(fleet: Fleet, provenance: Mapping[str, Any]) -> doc.Document:
     options = ", ".join(key for key, value in provenance["options"].items() if value) or "none"
     return doc.Document(
         title=f"{name}: fleet",
-        subject=f"Fleet {name}: {len(fleet.manifest)} recordings of {summary.axes} axes",
+        subject=f"Fleet {name}: {counted(len(fleet.manifest), 'recording')} of {counted(summary.axes, 'axis', 'axes')}",
         verdict=_verdict(summary),
         tone="refused" if summary.changed else "open" if summary.concerns or not summary.compared else "sure",
         answers=_answers(summary, reasons),
@@ -331,7 +331,7 @@ class FleetPages:
         unchanged = "No change" if axis.histories else "Nothing to compare"
         return doc.Document(
             title=f"{short(axis.name, NAME)}: axis",
-            subject=f"Axis {short(axis.name, NAME)}: {len(axis.rows)} recordings",
+            subject=f"Axis {short(axis.name, NAME)}: {counted(len(axis.rows), 'recording')}",
             verdict=sentence(f"{listed(map(news, axis.changed)) or unchanged}."),
             tone="refused" if axis.changed else "open" if axis.concerns or not axis.histories else "sure",
             answers=answers,
@@ -376,12 +376,13 @@ class FleetPages:
         above = {name: "all of it", f"../../{self.axis_place(axis)}": "the axis", f"../../{FLEET}": "the fleet"}
         graphs = (doc.Paragraph(text="With all that was measured, as graphs:"), doc.Code(text=self.commands[row]))
         good, digest = found["status"] == "done" and not found["checks"], found.get("trace_sha256")
+        noted = found["reason"] or f"{counted(len(found['checks']), 'check')} did not pass."
         return doc.Document(
             title=f"{short(file, NAME)}: recording of {short(axis, NAME)}",
             subject=f"Recording {short(file, NAME)} of axis {short(axis, NAME)}{when and f', {when}'}",
             verdict=_recording_verdict(found),
             tone="sure" if good else "open",
-            answers={} if good else {"Noted?": found["reason"] or f"{len(found['checks'])} checks did not pass."},
+            answers={} if good else {"Noted?": noted},
             sections=doc.sections(
                 doc.section("parameters", "Parameters", *([parameters_table("", values)] if values else [])),
                 doc.section("effects", "What was missing", *lacking),

@@ -9,7 +9,7 @@ from typing import Any
 from bench.joints.grade import NEAR, GradedJoint, Stated
 from bench.names import readable, words
 from bench.report import document as doc
-from bench.report.numbers import interval
+from bench.report.numbers import interval, share
 from bench.report.serial import as_json
 
 TABLE, BADGE = "grade.md", "grade.svg"
@@ -24,9 +24,8 @@ def grade_section(grade: Mapping[str, GradedJoint], title: str) -> doc.Section:
     """The table, and both files to take along."""
     headings = ("joint", "armature", "damping", "frictionloss", "lacks~")
     rows = [(name, *map(_number, joint.numbers.values()), _lacks(joint)) for name, joint in grade.items()]
-    caption = (
-        f"Values of {title} in SI; that of the log follows if the two differ by more than its interval and {NEAR:.0%}"
-    )
+    caption = f"Values of {title} in SI; that of the log follows if the two differ by more than its interval and "
+    caption += share(NEAR)
     lines = (headings, ("---",) * len(headings), *rows)
     cells = ([escape(readable(one.removesuffix("~"))).replace("|", "&#124;") for one in line] for line in lines)
     text = "\n".join(f"| {' | '.join(line)} |" for line in cells)

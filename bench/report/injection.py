@@ -106,6 +106,10 @@ def _answers(found: Injections) -> Iterator[tuple[str, str]]:
     if found.unable:
         unable = sentence(", ".join(map(words, found.unable)))
         yield "Not tried?", f"{unable}: it has them, or cannot have them so large."
+    if any(case.fate in (WRONG, PART) for case in found.cases):
+        yield "What next?", "Confirm names of these effects in such a recording with a holdout of another motion."
+    else:
+        yield "What next?", "Effects smaller than these need a longer recording or less noise of the sensors."
 
 
 def _least(found: Injections) -> doc.Table:

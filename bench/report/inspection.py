@@ -12,9 +12,9 @@ import numpy as np
 
 from bench.errors import InputError
 from bench.gate.check import Check
-from bench.names import readable, words
+from bench.names import counted, readable, words
 from bench.report import document as doc
-from bench.report.numbers import number, unit_text
+from bench.report.numbers import number, share, unit_text
 from bench.report.over_time import Grid
 from bench.report.parts import checks_section, origin
 from bench.trace.channel import Channel, Recording
@@ -121,14 +121,14 @@ def _verdict(found: Inspection, checks: Sequence[Check]) -> tuple[str, doc.Tone]
 
 
 def _answers(found: Inspection) -> Iterator[tuple[str, str]]:
-    yield "What is it?", f"{readable(found.origin)}: {found.format}, {len(found.columns)} columns"
+    yield "What is it?", f"{readable(found.origin)}: {found.format}, {counted(len(found.columns), 'column')}"
     if len(found.axes) > 1:
         yield "Which axes?", ", ".join(found.axes)
     if found.samples is not None and found.start is not None and found.duration is not None:
         parts = f"{found.segments} segment{'s' * (found.segments != 1)}"
         times = f"{number(found.start)} to {number(found.start + found.duration, 's')}"
         yield "How long?", f"{found.samples} samples in {parts}, {times}"
-        yield "How regular?", f"jitter {found.jitter:.2%} of a sample period{', resampled' * found.resampled}"
+        yield "How regular?", f"jitter {share(found.jitter or 0.0)} of a sample period{', resampled' * found.resampled}"
         yield "Is anything lost?", _lost(found)
     if found.dropped:
         yield "What is not used?", ", ".join(found.dropped)

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable
 
+from bench.names import LEAST_SHARE, percent
 from bench.parameter import Parameter
 
 #: Keeps a value, its interval and its unit on one line.
@@ -17,8 +18,6 @@ SMALL, LARGE = 1e-2, 1e5
 SMALL_HALF = 1e-4
 #: Digits behind the point, where an interval is next to nothing.
 MOST_DECIMALS = 9
-#: Shares below it are not distinguished.
-LEAST_SHARE = 1e-3
 
 
 def unit_text(unit: str) -> str:
@@ -73,10 +72,7 @@ def brief(found: Parameter) -> str:
 
 def share(value: float) -> str:
     """A share in per cent."""
-    if 0.0 < value < LEAST_SHARE:
-        return f"< {100.0 * LEAST_SHARE:g}{SPACE}%"
-    text = f"{100.0 * value:z.0f}" if not 0.0 < value < 0.1 else f"{100.0 * value:.2g}"
-    return f"{text}{SPACE}%".replace("-", "−")
+    return percent(value).replace(" %", f"{SPACE}%")
 
 
 def chance(value: float) -> str:

@@ -36,8 +36,8 @@ TITLES = {
 }
 NOTE = (
     "known: runs that give the quantity, of all. Over the true value: bias with its interval, RMS error, median half "
-    "width of the interval of 95 %; ±/RMS by root mean squares, 1.96 of a normal distribution's. 50%, 80%, 95%: share "
-    "of the intervals of that level that contain the true value; bounds: 95 % of the last, Clopper-Pearson."
+    "width of the interval of 95 %; ±/RMS by root mean squares, 1.96 of a normal distribution's. 50 %, 80 %, 95 %: "
+    "share of the intervals of that level that contain the true value; bounds: 95 % of the last, Clopper-Pearson."
 )
 #: The level that the page's chart shows; the table has the others.
 LEVEL = LEVELS[-1]
@@ -160,6 +160,20 @@ def _answers(found: Validation, first: list[Coverage]) -> Iterator[tuple[str, st
     status = Counter(run.status for run in found.runs)
     counts = ", ".join(f"{count} {words(name)}" for name, count in status.most_common())
     yield "Runs?", f"{len(found.runs)}: {counts}."
+    yield "What next?", _next(found, first)
+
+
+def _next(found: Validation, first: list[Coverage]) -> str:
+    """What to do about the worst of the answers, or to try in addition."""
+    if not first:
+        return 'A longer or faster motion: "All runs" gives the reason of each run without a result.'
+    if (naming := found.naming) is not None and naming.false.count > 0:
+        return 'Confirm such names with a holdout: "Whether names are right" shows which effects are confused.'
+    if any(one.inside[-1].bounds[1] < LEVEL for one in first):
+        return 'Do not rely on these intervals: "The same, by parts of these runs" shows where they are too narrow.'
+    if not _enough(first):
+        return f"More runs, which narrow the bounds: bench validate --rigs {4 * len(found.runs)}."
+    return "The same for one of your recordings: bench validate --into RECORDING --rig RIG."
 
 
 def _chart(found: Validation, quantity: str, place: int) -> doc.Intervals:
@@ -200,7 +214,7 @@ def _pictures(found: Validation) -> Iterator[doc.Picture]:
 
 def _numbers(found: Validation, whole: bool) -> list[doc.Table]:
     """Bias, spread, width and coverage, of whole groups of runs or of parts of them."""
-    levels = (f"{level:.0%}>" for level in LEVELS)
+    levels = (f"{share(level)}>" for level in LEVELS)
     headings = ("runs", "of", "known>", "bias %>", "RMS %>", "± %>", "±/RMS>", *levels, "bounds>")
     rows = {by: [] for by in TITLES}
     for each in found.coverage:

@@ -37,6 +37,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.fit.hypothesis import Hypothesis, lay_out
 from bench.fit.rows import Rows, known_of
 from bench.fit.solution import NormalEquations, block_edges, equations, estimated, solved
+from bench.names import percent
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
 from bench.trace.filter import LEAST_WIDTH, Column, GaussianFilter
@@ -219,15 +220,16 @@ def balance(trace: Trace, rig: Rig, gains: Gains) -> JointBalance:
     whole = replace(best, rows=first)  # a wide filter may keep only the slow parts, in which no limit is reached
     explained = _explained(whole if math.isinf(gains.limit) else replace(whole, rows=_within(whole, gains.limit)))
     if explained < EXPLAINS:
-        reason = f"goal, position and gains explain {max(explained, 0.0):.0%} of the torque only: "
+        reason = f"goal, position and gains explain {percent(max(explained, 0.0))} of the torque only: "
         reason += "the controller has other gains or is at a force limit"
         raise UndeterminedError("the joint's inertia", reason, "smaller and slower goals, which the joint follows")
     if not best.found.reach * best.found.errors[0] < DETERMINED * best.found.theta[0]:
         reason = "the goal and the position do not show how it accelerates"
         record = "goals of 0.1 to 2 Hz, 20 s or more"
         if (share := float(np.mean(np.abs(best.request(trace)) >= gains.limit))) > 0.0:
-            reason = f"the controller is at its force limit of {gains.limit:.3g} {trace.axis_kind.effort_unit} "
-            reason, record = f"{reason}for {share:.0%} of the log", "smaller and slower goals, which the joint follows"
+            limit = f"{gains.limit:.3g} {trace.axis_kind.effort_unit}"
+            reason = f"the controller is at its force limit of {limit} for {percent(share)} of the log"
+            record = "smaller and slower goals, which the joint follows"
         raise UndeterminedError("the joint's inertia", reason, record)
     return best
 

@@ -22,7 +22,7 @@ from bench.axis_kind import AxisKind
 from bench.errors import InputError, UndeterminedError
 from bench.gate.check import Check
 from bench.gate.gate import gate, joined
-from bench.names import with_known_arguments
+from bench.names import percent, with_known_arguments
 from bench.parameter import Parameter
 from bench.plant.robot import Robot
 from bench.presented import Presented
@@ -249,7 +249,7 @@ def _require_answered(of: ServoLog, fit: ServoFit) -> None:
     what = "gains of the servo"
     wide = gain.half_width > DETERMINED * gain.value
     if wide and "limit" in fit.names and _limited_share(of, fit) > 0.5:
-        reason = f"the controller is at its limit for {_limited_share(of, fit):.0%} of the log"
+        reason = f"the controller is at its limit for {percent(_limited_share(of, fit))} of the log"
         raise UndeterminedError(what, reason, "motions with smaller steps, so that the servo follows without its limit")
     if wide and rate * period > SLOW:
         reason = f"the servo follows within a sample of the log ({period * 1e3:.3g} ms)"

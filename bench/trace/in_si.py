@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, all_finite
 from bench.errors import InputError
-from bench.names import short
+from bench.names import counted, percent, short
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import ENOUGH, ReadingOptions, SignalColumn, missing
 from bench.trace.signals import SI_UNITS, scale_in
@@ -168,7 +168,9 @@ def _unwrapped(
     values, wraps = unwrapping(sampled.values, sampled.clock.time, speeds, count, place)
     if wraps is None:
         return sampled
-    notes.append(f"{name} wraps {wraps.count} times by {wraps.period:.6g} {choice.scale.unit}; made continuous")
+    notes.append(
+        f"{name} wraps {counted(wraps.count, 'time')} by {wraps.period:.6g} {choice.scale.unit}; made continuous"
+    )
     return replace(sampled, values=values, wraps=wraps)
 
 
@@ -196,8 +198,8 @@ def _filled(time: Channel, notes: list[str]) -> Array:
     unknown = np.isnan(time.values)
     count, first = int(unknown.sum()), time.place(int(np.argmax(unknown)))
     if count > FEW * unknown.size:
-        raise InputError(first, f"found {count} of {unknown.size} times empty", f"allowed: {FEW:.0%} of them")
-    notes.append(f"{count} times empty, the first at {first}; taken from their neighbours")
+        raise InputError(first, f"found {count} of {unknown.size} times empty", f"allowed: {percent(FEW)} of them")
+    notes.append(f"{counted(count, 'time')} empty, the first at {first}; taken from their neighbours")
     return _between_known(time.values)
 
 

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array
 from bench.errors import InputError
+from bench.names import counted, percent
 from bench.trace.in_si import Clock, SampledSignal
 
 #: A step this many sample periods long is a hole, not jitter: no signal of a servo is known inside it.
@@ -190,7 +191,7 @@ def _on_foreign_base(
 def _notes(base: _RegularTimes, clock: Clock) -> list[str]:
     found, notes = base.found, []
     if found.resampled:
-        jitter = f"times jitter by up to {found.jitter:.0%} of a sample period"
+        jitter = f"times jitter by up to {percent(found.jitter)} of a sample period"
         notes.append(f"{jitter}; signals interpolated onto regular times")
     elif base.time is not clock.time and clock.quantum > 2.0 * STEADY * found.sample_period:
         notes.append(f"times are rounded to {clock.quantum:g} s; replaced by the line through them")
@@ -206,11 +207,6 @@ def _notes(base: _RegularTimes, clock: Clock) -> list[str]:
     if clock.time.size < 10:
         notes.append(f"only {clock.time.size} samples")
     return notes
-
-
-def counted(count: int, what: str) -> str:
-    """`1 hole`, `2 holes`."""
-    return f"{count} {what}{'s' * (count != 1)}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -121,7 +121,7 @@ def test_what_was_not_done_or_has_no_error_is_not_compared():
     ("more", "kind", "reason"),
     [
         ({"status": "refused", "reason": "too short"}, "refused", "too short"),
-        ({"explained": 0.5}, "unexplained", "inertia and friction explain only 50% of the effort"),
+        ({"explained": 0.5}, "unexplained", "inertia and friction explain only 50 % of the effort"),
         ({"verdict": "unexplained_remainder", "effects": []}, "unexplained", "no effect of the catalogue"),
         ({"checks": [{"name": "lost_samples", "found": "7"}]}, "checks", "lost_samples: 7"),
     ],

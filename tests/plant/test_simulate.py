@@ -162,4 +162,4 @@ def test_an_axis_that_does_not_follow_its_profile_is_reported(rig_of):
     """A torque above the motor's largest drags the axis away."""
     sound, dragged = (simulate(rig_of(), "multisine", effects=[f"torque_offset:torque={load}"]) for load in (0.1, 9.0))
     assert sound.warnings == ()
-    assert any("does not follow its profile" in warning and "100%" in warning for warning in dragged.warnings)
+    assert any("does not follow its profile" in warning and "100 %" in warning for warning in dragged.warnings)

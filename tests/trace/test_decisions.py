@@ -111,7 +111,7 @@ def test_times_may_be_empty_in_one_of_twenty_rows(lost, refused):
     time[5 : 5 + lost] = np.nan
     columns = recording(time__s=time, velocity__rad_s=COUNT)
     if refused:
-        with pytest.raises(InputError, match="found 3 of 40 times empty; allowed: 5% of them"):
+        with pytest.raises(InputError, match="found 3 of 40 times empty; allowed: 5 % of them"):
             assemble(columns)
     else:
         np.testing.assert_allclose(assemble(columns).time, COUNT, rtol=1e-12)
