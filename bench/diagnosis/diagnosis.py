@@ -284,17 +284,18 @@ def _named(names: Collection[str], argument: str) -> frozenset[str]:
 def decided(recordings: Recordings, excluded: frozenset[str], policy: Policy) -> tuple[Recordings, Fit, Suspects]:
     """Names at the highest cut-off at which they are decided, with the fit without them.
 
-    Noise of the acceleration grows with the cut-off, and may hide an effect that a lower one shows. If none shows one,
-    the highest counts.
+    Noise of the acceleration grows with the cut-off, and may hide an effect that a lower one shows. A lower one at
+    which no more than noise remains is not searched where no effect was likely above it. If none shows an effect, the
+    highest counts: low ones have too few rows to know the colour of the noise.
     """
-    tried = []
+    tried = list[tuple[Recordings, Fit, Suspects]]()
     for each in chain([recordings], recordings.lower()):
         bare = fit_bare(each.rows)
-        suspects = name(each, bare, excluded, policy)
-        tried.append((each, bare, suspects))
-        if suspects.probabilities.chosen:
-            return tried[-1]
-        if suspects.probabilities.nothing > 0.5 or not policy.noise_hides(bare):
+        if not tried or tried[-1][2].probabilities.nothing <= 0.5 or policy.remains(bare):
+            tried.append((each, bare, name(each, bare, excluded, policy)))
+            if tried[-1][2].probabilities.chosen:
+                return tried[-1]
+        if not policy.noise_hides(bare):
             break
     return tried[0]
 
