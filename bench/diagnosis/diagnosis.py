@@ -265,7 +265,7 @@ def diagnose(
         require_diagnosable(each.trace, rig)
     recordings = Recordings.of([each.trace for each in gated], rig, unseen, policy)
     recordings, bare, suspects = decided(recordings, left_out, policy)
-    recordings, moves = recordings.steady(suspects.fitted)
+    recordings, moves = recordings.steady(suspects.fitted, policy)
     if recordings.rows is not bare.rows:
         bare = fit_bare(recordings.rows)
         suspects = replace(suspects, fitted=fit(recordings.rows, suspects.fitted.hypothesis, suspects.fitted))

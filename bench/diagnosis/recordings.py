@@ -115,13 +115,14 @@ class Recordings:
         lower = islice(_suited(self.rows, self.rig), 1, None)
         return (self.like(found.rows) for found in lower)
 
-    def steady(self, found: Fit) -> tuple[Recordings, tuple[str, ...]]:
+    def steady(self, found: Fit, policy: Policy) -> tuple[Recordings, tuple[str, ...]]:
         """The same at the cut-off at which J, K_w and K_0 no longer change with the effects of a fit, and what moved.
 
         Among the links of a robot: the noise and lags of other joints' speeds enter at high frequency, and the rotor's
-        inertia is a small difference.
+        inertia is a small difference. On a lone axis where most of the residual is noise of the motion: its power, which
+        biases J, is known to some per cent.
         """
-        if not found.rows.stretches[0].signals.known:
+        if not found.rows.stretches[0].signals.known and not policy.noise_hides(found):
             return self, ()
         highest = solution_of(found.rows, found.hypothesis, self.rig.offset)
         calm, (moved, warnings) = for_inertia(highest, self.rig)
