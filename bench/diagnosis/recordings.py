@@ -119,7 +119,7 @@ class Recordings:
         """The same at the cut-off at which J, K_w and K_0 no longer change with the effects of a fit, and what moved.
 
         Among the links of a robot: the noise and lags of other joints' speeds enter at high frequency, and the rotor's
-        inertia is a small difference. On a lone axis where most of the residual is noise of the motion: its power, which
+        inertia is a small difference. On a lone axis where the residual is mostly noise of the motion: its power, which
         biases J, is known to some per cent.
         """
         if not found.rows.stretches[0].signals.known and not policy.noise_hides(found):
