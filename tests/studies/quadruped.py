@@ -7,7 +7,8 @@ have noise of 0.2 mrad and 14 bit.
 
     python -m tests.studies.quadruped --logs 4 --seed 1
 
-prints how often intervals of 95 % contain the truth, the errors, and the CPU time of a log.
+prints how often intervals of 95 % contain the truth, the errors, and the CPU time of a log. With `--cma SECONDS` also
+what CMA-ES (the package `cma`) finds of the same log in so much CPU time, by simulations of the whole robot in MuJoCo.
 """
 
 from __future__ import annotations
@@ -15,10 +16,14 @@ from __future__ import annotations
 import argparse
 import math
 import tempfile
+import time
+from contextlib import suppress
+from importlib import import_module
 from itertools import chain
 from pathlib import Path
 
 import mujoco
+import mujoco.rollout
 import numpy as np
 
 import bench
@@ -31,6 +36,15 @@ LEGS = ("FL", "FR", "RL", "RR")
 PARTS = ("hip", "thigh", "calf")
 #: Centres of the motion - rad.
 HOME = (0.0, 0.8, -1.5)
+#: What CMA-ES fits, with its bounds - SI -, all but the bias by logarithms; and its timestep - s.
+FITTED = {
+    "armature": (1e-3, 0.1),
+    "viscous_friction_coefficient": (0.01, 1.0),
+    "coulomb_friction_torque": (0.02, 1.0),
+    "dead_time": (1e-4, 0.02),
+    "joint_bias": (-0.1, 0.1),
+}
+COARSE = 1e-3
 #: Speed below which a joint is at rest - rad/s: above the creep of MuJoCo's friction, far below that of any motion.
 RESTS = 3e-5
 BODIES = """<body name="{leg}_hip" pos="{x} {y} 0"><joint name="{leg}_hip_joint" axis="1 0 0"/>
@@ -117,15 +131,60 @@ def write_log(path: Path, recorded: tuple[np.ndarray, ...], legs: tuple[str, ...
     return path
 
 
-def judged(seed: int, number: int) -> list[tuple[str, float, float, bool]]:
+class SpentError(Exception):
+    """The CPU time of a search is over."""
+
+
+def by_cma(recorded: tuple[np.ndarray, ...], seconds: float) -> dict[str, np.ndarray]:
+    """What CMA-ES finds in so much CPU time: FITTED of each joint (joints,), one dead time of all."""
+    times, goal, position = recorded
+    model = mujoco.MjModel.from_xml_string(mjcf())
+    model.opt.timestep, model.opt.integrator = COARSE, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    model.dof_solimp[:], model.dof_solref[:] = [0.9999, 0.9999, 0.001, 0.5, 2.0], [2.0 * COARSE, 1.0]
+    data, joints = mujoco.MjData(model), model.nv
+    steps = COARSE * np.arange(round(float(times[-1]) / COARSE) + 1)
+    start = np.zeros(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
+    start[1 : 1 + joints] = position[0]
+    best, end = (math.inf, np.empty(0)), time.process_time() + seconds
+
+    def values(point: np.ndarray) -> dict[str, np.ndarray]:
+        shares = np.split(point[1:], len(FITTED) - 1)
+        shares.insert([*FITTED].index("dead_time"), np.full(joints, point[0]))
+        return {
+            name: low + share * (high - low) if low < 0.0 else low * (high / low) ** share
+            for (name, (low, high)), share in zip(FITTED.items(), shares, strict=True)
+        }
+
+    def misfit(point: np.ndarray) -> float:
+        nonlocal best
+        if time.process_time() > end:
+            raise SpentError
+        of = values(point)
+        model.dof_armature[:], model.dof_damping[:] = of["armature"], of["viscous_friction_coefficient"]
+        model.dof_frictionloss[:] = of["coulomb_friction_torque"]
+        known = np.clip(((steps - of["dead_time"][0]) * RATE + 1e-9).astype(int), 0, times.size - 1)
+        state, _ = mujoco.rollout.rollout(model, data, start, goal[known] + of["joint_bias"])
+        at = np.rint(times[1:] / COARSE).astype(int) - 1
+        error = float(np.mean((np.asarray(state)[0, at, 1 : 1 + joints] - position[1:]) ** 2))
+        best = min(best, (error, point), key=lambda one: one[0])
+        return math.log(error)
+
+    options = {"bounds": [0.0, 1.0], "seed": 1, "verbose": -9}
+    with suppress(SpentError):  # the best so far is the answer
+        import_module("cma").fmin2(misfit, np.full(1 + (len(FITTED) - 1) * joints, 0.5), 0.2, options)
+    return values(best[1])
+
+
+def judged(seed: int, number: int, cma: float = 0.0) -> list[tuple[str, float, float, bool]]:
     """Of every parameter of a log: name, truth, error, whether its interval contains the truth; and of its CPU time.
 
     The dead time counts once, as all joints have the same.
     """
     rng = np.random.default_rng([seed, number])
     of = hidden(len(joints_of(LEGS)), rng)
+    recorded = moved(of, rng)
     with tempfile.TemporaryDirectory() as folder:
-        log, robot = write_log(Path(folder) / "log.csv", moved(of, rng)), Path(folder) / "robot.xml"
+        log, robot = write_log(Path(folder) / "log.csv", recorded), Path(folder) / "robot.xml"
         robot.write_text(mjcf(), encoding="utf-8")
         before = cpu()
         found = bench.robot(log, robot)
@@ -142,6 +201,13 @@ def judged(seed: int, number: int) -> list[tuple[str, float, float, bool]]:
             rows.append((name, float(truth[k]), float(one.value - truth[k]), bool(low <= truth[k] <= high)))
         if joint.diagnosis is None or joint.diagnosis.effects or joint.diagnosis.verdict != "nothing_missing":
             rows.append(("effects found that are not there", 0.0, math.nan, False))
+    if cma:
+        for name, found in by_cma(recorded, cma).items():
+            away = (found - of[name])[: 1 if name == "dead_time" else None]
+            rows += [
+                (f"{name} by CMA-ES", float(truth), float(off), False)
+                for truth, off in zip(of[name], away, strict=False)
+            ]
     return rows
 
 
@@ -150,16 +216,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--logs", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--cma", type=float, default=0.0, help="CPU time of CMA-ES on the same log - s")
     options = parser.parse_args()
     with running(1) as run:
-        rows = [*chain.from_iterable(run.each("log", judged, [(options.seed, k) for k in range(options.logs)]))]
+        asked = [(options.seed, k, options.cma) for k in range(options.logs)]
+        rows = [*chain.from_iterable(run.each("log", judged, asked))]
     lines, whole = [], [row for row in rows if row[0] != "cpu"]
-    answered = [row for row in whole if math.isfinite(row[2])]
+    answered = [row for row in whole if math.isfinite(row[2]) and not row[0].endswith(" by CMA-ES")]
     for name in (*dict.fromkeys(row[0] for row in whole), "all"):
         own = answered if name == "all" else [row for row in whole if row[0] == name]
         shares = [abs(row[2] / row[1]) for row in own if row[1]]
+        inside = f"{sum(row[3] for row in own)} of {len(own)}" if not name.endswith(" by CMA-ES") else "no interval"
         error = f"{100.0 * float(np.median(shares)):.2g} %" if name != "all" and shares else ""
-        lines.append((name, f"{sum(row[3] for row in own)} of {len(own)}", error, f"{max(abs(r[2]) for r in own):.3g}"))
+        lines.append((name, inside, error, f"{max(abs(r[2]) for r in own):.3g}"))
     print(table(("parameter", "in the interval of 95 %", "median error", "largest error, SI"), lines))
     cpu = [row[2] for row in rows if row[0] == "cpu"]
     print(f"CPU time of a log: median {np.median(cpu):.3g} s, largest {max(cpu):.3g} s")
