@@ -11,7 +11,7 @@ import pytest
 
 import bench
 from bench.errors import InputError
-from bench.joints.friction_models import friction_models
+from bench.joints.friction_models import MODELS, LoadedMotion, friction_models, predicted
 from bench.plant.robot import Robot, joint_rig, read_log
 from tests.command import bench as command
 
@@ -131,3 +131,27 @@ def test_the_friction_model_of_a_servo_is_the_simplest_that_predicts_its_torque(
         assert chosen.error < 0.2 * models[0].error
         factor = chosen.parameters["load_friction_motor"], chosen.parameters["load_friction_external"]
         assert factor == pytest.approx((0.25, 0.05), abs=0.01)
+
+
+def test_the_torque_of_the_fullest_friction_model_solves_its_equation():
+    """Of BAM's M6 (Duclusaud et al., 2024) at drawn motions and loads, of either sign against the torque."""
+    rng, sizes = np.random.default_rng(0), ("acceleration", "speed", "load", "momentum_rate")
+    drawn = {name: rng.normal(size=400) for name in sizes}
+    sign = np.sign(drawn["speed"])
+    motion = LoadedMotion(**drawn, sign=sign, torque=np.zeros(400), log=np.zeros(400, dtype=np.intp))
+    names = [*MODELS["M6"][3:]]
+    values = {"armature": 0.5, "friction_viscous": 0.3, "friction_base": 0.2, "dtheta_stribeck": 0.7, "alpha": 1.3}
+    values |= {name: 0.02 * (k + 1) for k, name in enumerate(names) if name not in values}
+    m, load = predicted(motion, values), drawn["load"]
+    constant = values["friction_base"] + np.abs(
+        values["load_friction_motor"] * m + values["load_friction_external"] * load
+    )
+    rise = values["friction_stribeck"] + np.abs(
+        values["load_friction_motor_stribeck"] * m + values["load_friction_external_stribeck"] * load
+    )
+    driven, holding = values["load_friction_external_quad"] * load**2, values["load_friction_motor_quad"] * m**2
+    rise = rise + np.where(load * m > 0.0, np.where(np.abs(load) < np.abs(m), driven, holding), 0.0)
+    friction = constant + rise * np.exp(-((np.abs(drawn["speed"]) / 0.7) ** 1.3))
+    known = 0.5 * drawn["acceleration"] + 0.3 * drawn["speed"] + drawn["momentum_rate"] + load
+    solved = np.isclose(m, known + sign * friction, rtol=1e-6, atol=1e-6)
+    assert solved.mean() > 0.97  # at a border of the cases the equation has no solution
