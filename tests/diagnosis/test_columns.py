@@ -45,26 +45,27 @@ def test_a_load_within_the_gap_feels_nothing():
     assert np.abs(found - found[0]).max() < 1e-6
 
 
-def test_a_load_thrown_across_the_gap_is_the_contacts_equation_integrated():
+@pytest.mark.parametrize("spring", [0.0, 900.0])
+def test_a_load_thrown_across_the_gap_is_the_contacts_equation_integrated(spring):
+    """With a spring of its own, too, and without."""
     time, gap, frequency, damping = np.arange(3000) * PERIOD, 0.05, 300.0, 0.4
     position = 0.8 * np.sin(6.0 * time) ** 3
     twenty = 20
-    fine = CubicSpline(time, position)
+    fine, halves = CubicSpline(time, position), np.arange(3000 * 2 * twenty) * PERIOD / (2 * twenty)
+    motor, rate = fine(halves).tolist(), fine(halves, 1).tolist()
     x, v, expected, step = position[0], 0.0, np.empty(3000), PERIOD / twenty
 
-    def slopes(t, x, v):
-        twist = fine(t) - x
-        penetration = twist - np.clip(twist, -0.5 * gap, 0.5 * gap)
-        rate = (fine(t, 1) - v) * (penetration != 0.0)
-        return v, frequency**2 * penetration + 2.0 * damping * frequency * rate
+    def force(k, x, v):
+        penetration = motor[k] - x - max(-0.5 * gap, min(motor[k] - x, 0.5 * gap))
+        closing = (rate[k] - v) * (penetration != 0.0)
+        return frequency**2 * penetration + 2.0 * damping * frequency * closing - spring * x
 
     for k in range(3000 * twenty):
         if k % twenty == 0:
             expected[k // twenty] = x
-        a = slopes(k * step, x, v)
-        b = slopes((k + 0.5) * step, x + 0.5 * step * a[0], v + 0.5 * step * a[1])
-        x, v = x + step * b[0], v + step * b[1]
-    found = load_positions([position], PERIOD, np.array([[gap, frequency, damping, 0.0]]))[0][:, 0]
+        middle = v + 0.5 * step * force(2 * k, x, v)
+        x, v = x + step * middle, v + step * force(2 * k + 1, x + 0.5 * step * v, middle)
+    found = load_positions([position], PERIOD, np.array([[gap, frequency, damping, spring]]))[0][:, 0]
     assert found == pytest.approx(expected, abs=0.01 * gap)
 
 
