@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import Bristles, Columns, Coupling, Effect
+from bench.effects.effect import Bristles, Columns, Coupling, Effect, Stage
 from bench.effects.mjcf import AXIS as AXIS_JOINT
 from bench.effects.present import Present
 from bench.effects.signals import AxisState, Signals
@@ -185,3 +185,9 @@ def test_axes_with_and_without_effects_are_moved_side_by_side_as_alone():
 
 def test_the_joint_is_called_as_in_the_mjcf():
     assert build_spec(PARAMETERS, PERIOD).joint(AXIS_JOINT) is not None
+
+
+def test_every_stage_of_the_signal_chain_has_its_own_place():
+    """Two of one number would be one."""
+    assert len(Stage.__members__) == len([*Stage])
+    assert [*Stage] == sorted(Stage)

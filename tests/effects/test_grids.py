@@ -8,6 +8,7 @@ import pytest
 from bench.axis_kind import LINEAR, ROTARY
 from bench.effects.catalogue import catalogue
 from bench.effects.impacts import CONTACTS, contacts_of
+from bench.effects.rivals import RIVALS
 from bench.effects.shape import extended, places
 from tests.effects.recording import scopes
 
@@ -58,3 +59,14 @@ def test_no_contact_is_sought_that_swings_faster_than_samples_follow():
     np.testing.assert_allclose(contacts_of(USUAL), CONTACTS)
     slow = contacts_of(replace(USUAL, sample_period=0.02, width=0.03))
     assert max(slow) == np.pi / 0.02 and min(slow) == pytest.approx(min(CONTACTS) / 20.0)
+
+
+def test_an_angle_is_sought_all_around_a_turn():
+    """Of what is at one angle, no two places that are tried are the same one a turn on, and no gap is wider."""
+    shapes = [shape for effect in (*catalogue().values(), *RIVALS) for shape in getattr(effect, "shapes", ())]
+    grids = [shape.grid for shape in shapes if shape.additive and shape.quantity.unit == "rad"]
+    angles = [np.sort(np.mod(grid, 2.0 * np.pi)) for grid in grids if grid]
+    assert angles
+    for places_tried in angles:
+        around = np.diff(np.append(places_tried, places_tried[0] + 2.0 * np.pi))
+        np.testing.assert_allclose(around, 2.0 * np.pi / places_tried.size, rtol=1e-9)

@@ -89,3 +89,12 @@ def test_a_joint_that_creeps_is_not_at_rest_whichever_way(way):
         resting[first : last + 1] = True
     assert not resting[130:170].any()
     assert resting[:90].mean() > 0.5 and resting[-90:].mean() > 0.5
+
+
+@pytest.mark.parametrize("held", [8, 64, 512])
+def test_noise_alone_is_rest_however_long_a_rest_lasts(held):
+    """The mean of a half errs by s/sqrt(n): what two halves may differ by falls with the length, and no faster."""
+    noise = np.random.default_rng(1).uniform(-np.sqrt(3.0), np.sqrt(3.0), 6000)
+    found = [*_standing(1e-4 * noise, held, 1e-4)]
+    windows = sum(last - first - held + 2 for first, last in found)
+    assert windows > 0.95 * (noise.size - held)
