@@ -52,6 +52,7 @@ INSTEAD = {
     "plot": ".plot() of a trace or a result",
     "plot_forest": "bench.check(recording, rig, baseline).plot()",
     "predict": "bench.replay(found, recording, rig)",
+    "rigs": "bench.load_rig(name), with a name that the command bench list prints",
     "replay": "bench.replay(found, recording, rig)",
     "simulate": "bench.replay(found, recording, rig)",
     "color=": "the axes that plot() returns: axes.lines[0].set_color(...)",

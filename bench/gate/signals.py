@@ -210,7 +210,8 @@ def resolution(seen: Seen) -> Check:
             steps[what] = max(float(np.std(values)) / resolution_of(values) for values in changing)
     if not steps:
         return absent(RESOLUTION, "nothing moves", ALLOWED_STEPS)
-    found = ", ".join(f"{count:.3g} steps within the spread of the {what}" for what, count in steps.items())
+    counts = ((what, f"{count:.0f}" if 100.0 <= count < 1e6 else f"{count:.3g}") for what, count in steps.items())
+    found = ", ".join(f"{count} steps within the spread of the {what}" for what, count in counts)
     worst = min(steps.values())
     advice = "record in finer steps, or a larger motion"
     if worst < COARSE:

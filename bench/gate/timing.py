@@ -45,7 +45,7 @@ def regular(seen: Seen) -> Check:
     trace = seen.trace
     base = trace.time_base or _base_of(trace)
     holes = counted(len(base.holes), "hole") if base.holes else "no hole"
-    found = f"steps of {base.sample_period:.4g} s within {percent(base.jitter)}, {holes}"
+    found = f"steps of {base.sample_period:.4g} s, jitter {percent(base.jitter)}, {holes}"
     advice = "record with the drive's own clock"
     if base.steps is not None and base.steps[1] > UNEVEN * base.steps[0]:
         found = f"steps of {base.steps[0]:.3g} to {base.steps[1]:.3g} s, four of five: no sample period"

@@ -207,9 +207,9 @@ def _answers(estimate: Estimate, refinement: Refinement | None, kind: AxisKind) 
         for name in map(kind.parameter, (COULOMB, VISCOUS))
         if name in estimate.parameters
     ]
-    sure = "Half widths are those of 95 % intervals that count correlated residuals."
+    sure = "± is half of the 95 % interval, which allows for correlated residuals."
     if estimate.between:
-        sure += " They count how the recordings differ, too."
+        sure += " It includes how the recordings differ."
     of = f"{share(residual.relative)} of the {effort_word(residual.unit)}"
     left = f"{number(residual.rms, residual.unit, 3)} RMS, {of}"
     if math.isfinite(residual.noise_floor):

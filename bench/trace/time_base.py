@@ -120,7 +120,7 @@ def _without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Cloc
     """The clock and its signals without samples at a time already taken, and how many those were."""
     time = clock.time
     if time.size < 2:
-        raise InputError(clock.place(None), f"found {time.size} samples", "allowed: at least two")
+        raise InputError(clock.place(None), f"found {counted(time.size, 'sample')}", "allowed: at least two")
     if (time[1:] > time[:-1]).all():
         return clock, values, 0
     step = np.diff(time)

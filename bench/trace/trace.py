@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array, all_finite
 from bench.axis_kind import LINEAR, ROTARY, AxisKind
 from bench.errors import InputError
+from bench.names import counted
 from bench.presented import Shown
 from bench.trace.channel import Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, assumed_note, choose, reading_options
@@ -98,7 +99,7 @@ class Trace(Shown):
         for name in ("signals", "units", "metadata"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         if self.time.size < 2:
-            raise InputError(self.origin, f"found {self.time.size} samples", "allowed: at least two")
+            raise InputError(self.origin, f"found {counted(self.time.size, 'sample')}", "allowed: at least two")
         for name, values in {"time": self.time, **self.signals}.items():
             where = f"{self.origin}: {name}"
             if values.shape != self.time.shape:
