@@ -25,7 +25,7 @@ def servo(
     json: common.JsonOption = None,
     axis_name: common.AxisOption = None,
 ) -> None:
-    """Identify gains, dead time, limit and friction of a position servo from goal and position, without current."""
+    """Identify gains, dead time, limit and friction of a position servo from goal and position; torque is optional."""
     from bench.report.parts import provenance
     from bench.report.servo import SCHEMA, servo_json
     from bench.report.servo import servo as document_of

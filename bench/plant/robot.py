@@ -460,7 +460,8 @@ def read_goals(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) 
     """
     trace, position, velocity, _ = _moved(path, rig, robot, stated)
     ratio, unit = (rig.of_joint(robot.joint).load or Load()).gear_ratio, UNITS_OF_EFFORT[robot.unit(robot.joint)]
-    own = {name: trace[name] / ratio for name in ("position", "velocity", "position_reference") if name in trace}
+    moved = "position", "velocity", "position_reference", "velocity_reference"
+    own = {name: trace[name] / ratio for name in moved if name in trace}
     known, slope = robot.rest(position, velocity), robot.slope(position, velocity)
     return with_known(trace.with_signals(own, {}), *known, unit, slope=slope)
 

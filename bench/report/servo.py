@@ -1,7 +1,7 @@
 """A servo: its parameters with intervals, what cannot be separated and by which motion it would be.
 
-As the contract's JSON (`bench.servo/1`) and as a document, with the free-running motion before and after, and the
-MuJoCo actuator to take along.
+As the contract's JSON (`bench.servo/1`) and as a document, with the free-running motion before and after, or a drive's
+torque, and the MuJoCo actuator to take along.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from bench.servos.servo import Servo
 
 SCHEMA = "bench.servo/1"
 ACTUATOR, JSON = "actuator.xml", "servo.json"
+#: What a stated value is next to an interval.
+SAYS = {True: "agrees", False: "differs"}
 #: Times of the glance - s.
 GLANCE = 4.0
 
@@ -36,6 +38,8 @@ def servo_content(found: Servo) -> dict[str, Any]:
     """What the JSON has of the servo itself."""
     of = found.found
     gaps = {name: {"before": gap.before, "after": gap.after} for name, gap in found.gaps.items()}
+    signal, unit = found.compared
+    stated = {name: {"value": one.value, "agrees": one.agrees} for name, one in of.stated.items()}
     return {
         "verdict": found.verdict,
         "effects": [{"name": name, "parameters": values} for name, values in of.effects.items()],
@@ -43,10 +47,11 @@ def servo_content(found: Servo) -> dict[str, Any]:
         "inseparable": [{"combination": name, **as_json(value)} for name, value in of.inseparable.items()],
         "separated_by": of.advice,
         "refused": of.refused,
-        "gap": {"position": {"unit": found.kind.length_unit, "noise_floor": found.noise_floor, **gaps}},
+        "gap": {signal: {"unit": unit, "noise_floor": found.noise_floor, **gaps}},
         "checks": found.checks,
         "warnings": found.warnings,
         "actuator": of.actuator or None,
+        **({"stated": stated} if stated else {}),
     }
 
 
@@ -60,6 +65,19 @@ def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None)
         )
         caption = "Cannot be separated: only these combinations are determined"
         tables.append(doc.table(caption, ("combination", "value ± half interval (95 %)>", "unit"), rows))
+    if of.stated:
+        rows = (
+            (
+                words(name),
+                number(one.value, digits=5),
+                interval(one.found, unit=False),
+                unit_text(one.found.unit),
+                SAYS[one.agrees],
+            )
+            for name, one in of.stated.items()
+        )
+        heads = "quantity", "stated>", "found ± half interval (95 %)>", "unit", "result"
+        tables.append(doc.table("Compared with [drive] of the rig", heads, rows))
     if of.refused:
         rows = ((words(name), sentence(why)) for name, why in of.refused.items())
         tables.append(doc.table("Not determined", ("quantity", "why~"), rows))
@@ -69,7 +87,7 @@ def servo(found: Servo, title: str, provenance: Mapping[str, Any] | None = None)
         files = [of_mujoco, *of_trainers({found.joint: of.actuator}), *files]
     return doc.Document(
         title=title,
-        subject=f"Position servo of {title}",
+        subject=f"{'Position servo' if found.law is None else 'Drive'} of {title}",
         verdict=_verdict(found),
         tone="open" if found.verdict == "unexplained_remainder" else "sure",
         answers=servo_answers(found),
@@ -100,8 +118,13 @@ def _flat(effects: Mapping[str, Mapping[str, Parameter]]) -> dict[str, Parameter
 
 
 def _verdict(found: Servo) -> str:
-    gap, unit = found.gaps["identify"], found.kind.length_unit
+    gap, unit = found.gaps["identify"], found.compared[1]
     change = f"{number(gap.before, unit, 3)} before, {number(gap.after, unit, 3)} after"
+    if found.law is not None:
+        part = "part of " * (found.verdict == "unexplained_remainder")
+        return (
+            f"The fitted cascade explains {part}the drive's torque: along the measured motion it differs by {change}."
+        )
     if found.verdict == "unexplained_remainder":
         return f"The fitted servo explains part of the motion: its free-running position differs by {change}."
     return f"The fitted servo moves like the measured one: its free-running position differs by {change}."
@@ -109,9 +132,10 @@ def _verdict(found: Servo) -> str:
 
 def servo_answers(found: Servo) -> dict[str, str]:
     """Gains, dead time, what else the servo has, and how well it moves."""
-    of, unit = found.found, found.kind.length_unit
+    of, (signal, unit) = found.found, found.compared
     named = {**of.parameters, **of.inseparable}
-    gains = [f"{words(name)} {brief(value)}" for name, value in named.items() if name[:2] in ("kp", "kv", "(k")]
+    own = ("kp", "kv", "(k") if found.law is None else ("po", "ve", "in")
+    gains = [f"{words(name)} {brief(value)}" for name, value in named.items() if name[:2] in own]
     late = of.parameters.get("dead_time")
     if late is None:
         dead = f"Not determined: {of.refused['dead_time']}."
@@ -123,12 +147,17 @@ def servo_answers(found: Servo) -> dict[str, str]:
     more = ", ".join(words(name) for name in of.effects) or "nothing beyond gains, dead time, limit and friction"
     partly = found.verdict == "unexplained_remainder"
     record = "Record the current too: with it, diagnose finds the missing effect." if partly else NO_FURTHER
+    how = (
+        f"free-running {where}, the position"
+        if found.law is None
+        else f"{where}, along the measured motion, the {signal}"
+    )
     return {
         "Gains?": f"{'; '.join(gains)}.",
         "Dead time?": dead,
         "What was missing?": f"{sentence(more)}.",
         "How sure?": f"Half widths are those of 95 % intervals{', which do not cover the residual' * partly}.",
-        MOVES: f"{'Partly' if partly else 'Yes'}: free-running {where}, the position differs "
+        MOVES: f"{'Partly' if partly else 'Yes'}: {how} differs "
         f"by {number(gap.after, unit, 3)} RMS, {number(gap.after / found.noise_floor, digits=2)} × the sensor noise; "
         f"with {found.before} by {number(gap.before, unit, 3)} ({share(gap.after / gap.before)} remains).",
         "What next?": f"For {of.advice[0]}" if of.advice else record,
@@ -137,28 +166,32 @@ def servo_answers(found: Servo) -> dict[str, str]:
 
 def _glance(found: Servo) -> doc.Chart:
     """The part of the log in which most of the motion is."""
-    motion = found.motion
+    motion, (signal, unit) = found.motion, found.compared
+    most = motion.measured if motion.goal is None else motion.goal
     size = max(2, int(GLANCE / max(float(motion.time[1] - motion.time[0]), 1e-9)))
     step = max(1, size // 4)
     starts = range(0, max(1, motion.time.size - size), step)
-    start = max(starts, key=lambda at: float(np.ptp(motion.goal[at : at + size])))
+    start = max(starts, key=lambda at: float(np.ptp(most[at : at + size])))
     part = slice(start, start + size)
     drawn = [
-        doc.series("goal", "dotted", "first", motion.time[part], motion.goal[part]),
         doc.series("measured", "wide", "ink", motion.time[part], motion.measured[part]),
         doc.series("before", "dashes", "residual", motion.time[part], motion.before[part]),
         doc.series("after", "line", "model", motion.time[part], motion.after[part]),
     ]
+    if motion.goal is not None:
+        drawn.insert(0, doc.series("goal", "dotted", "first", motion.time[part], motion.goal[part]))
     alternative = f"Goal, measured position, and free-running simulations: {found.before}, and the fitted servo."
-    return one_panel("Position.", alternative, ("time", "s"), ("position", found.kind.length_unit), drawn)
+    if found.law is not None:
+        alternative = f"Measured {signal}, and that along the measured motion: {found.before}, and the fitted cascade."
+    return one_panel(f"{signal.capitalize()}.", alternative, ("time", "s"), (signal, unit), drawn)
 
 
 def _graph(found: Servo) -> doc.TimeGraph:
-    motion, unit = found.motion, found.kind.length_unit
+    motion, (signal, unit) = found.motion, found.compared
     left = (motion.measured - motion.before, motion.measured - motion.after)
-    signals = (
-        Plotted("position", unit, motion.time, motion.measured, left),
-        Plotted("goal", unit, motion.time, motion.goal, name="goal"),
-    )
-    alternative = "Measured position and free-running simulations over time, with the residual of each."
-    return time_graph("Motion.", alternative, motion.time, signals, (found.before, "the fitted servo"))
+    signals = [Plotted(signal, unit, motion.time, motion.measured, left)]
+    if motion.goal is not None:
+        signals.append(Plotted("goal", unit, motion.time, motion.goal, name="goal"))
+    alternative = f"Measured {signal} and simulations over time, with the residual of each."
+    fitted = "the fitted servo" if found.law is None else "the fitted cascade"
+    return time_graph("Motion.", alternative, motion.time, signals, (found.before, fitted))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,10 +12,22 @@ from bench.names import words
 from bench.parameter import Parameter
 from bench.servos.fit import LONGEST_DEAD_TIME, ServoFit
 from bench.servos.joint import JointModel
+from bench.servos.law import ERROR, RATE, Law
 
 Values = Mapping[str, float]
+#: Gains that a law gives, its coefficients, and their unit of time.
+GAINS = ("kp", ERROR, ""), ("kv", RATE, "*s")
 #: Which of two dampings is kv is determined where the interval of kv is at most this share of both together.
 SEPARATED = 0.35
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """A value that a rig states, next to what was found of it, and whether both agree."""
+
+    value: float
+    found: Parameter
+    agrees: bool
 
 
 @dataclass
@@ -29,6 +41,7 @@ class Quantities:
         refused: parameters that are not determined, and why.
         effects: what the servo has in addition, with its size.
         actuator: attributes of MuJoCo's `<position>` and of its joint; empty where torques have no scale.
+        stated: what a rig states of a drive.
     """
 
     parameters: dict[str, Parameter] = field(default_factory=dict)
@@ -37,6 +50,7 @@ class Quantities:
     refused: dict[str, str] = field(default_factory=dict)
     effects: dict[str, dict[str, Parameter]] = field(default_factory=dict)
     actuator: dict[str, float] = field(default_factory=dict)
+    stated: dict[str, Agreement] = field(default_factory=dict)
 
 
 def quantities(
@@ -76,8 +90,8 @@ def quantities(
         found.advice.append("force_limit: larger or quicker steps of the goal, until the motion no longer speeds up.")
     if "speed_limit" in fit.names:
         found.parameters["speed_limit"] = fit.parameter(lambda values: values["speed_limit"], f"{length}/s")
-    if scaled and "mobility" in fit.names:
-        measured = fit.parameter(scale, kind.inertia_unit)
+    measured = fit.parameter(scale, kind.inertia_unit)
+    if scaled and measured.half_width > 0.0:  # a stated one has none
         less = 0.0 if model is None else model.link_inertia
         low, high = (end - less for end in measured.ci95)
         found.parameters[of_inertia] = Parameter(measured.value - less, measured.unit, measured.std_error, (low, high))
@@ -87,6 +101,33 @@ def quantities(
     _effects(found, fit, scale, scaled, kind)
     _actuator(found, fit, scale, scaled, model)
     return found
+
+
+def with_law(found: Quantities, law: Law, kind: AxisKind, link: float) -> None:
+    """Gains of a servo whose torque is recorded: by its law, which also gives the scale; the other damping is K_w.
+
+    `link`: inertia that is not in the armature - kg*m**2 (kg).
+    """
+    viscous, per = kind.parameter(VISCOUS), f"{kind.effort_unit}{{}}/{kind.length_unit}"
+    gains = {name: law.parameter(lambda v, of=of: v[of], per.format(unit)) for name, of, unit in GAINS}
+    kp, kv = gains.values()
+    share = kp.half_width / kp.value
+    both = found.inseparable.pop(f"kv + {viscous}", None)
+    for name, one in found.parameters.items():
+        if name not in ("dead_time", "speed_limit"):
+            found.parameters[name] = one.widened(share * (one.value + link * (name == ARMATURE)))
+    if both is not None:
+        passive = both.at(both.value - kv.value, positive=False)
+        found.parameters[viscous] = passive.widened(kv.half_width, share * both.value)
+        found.refused.pop(viscous, None)
+        found.advice = [one for one in found.advice if not one.startswith("kv and ")]
+    found.parameters |= gains
+    if law.limit is not None:
+        found.parameters["force_limit"] = replace(law.limit, unit=kind.effort_unit)
+        found.refused.pop("force_limit", None)
+    if found.actuator:
+        damping = max(found.parameters[viscous].value, 0.0)
+        found.actuator |= {"kp": kp.value, "kv": kv.value, "damping": damping}
 
 
 def _unknown_scale(model: JointModel | None, kind: AxisKind) -> str:

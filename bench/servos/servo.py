@@ -6,6 +6,9 @@ The motion scales with nothing: all torques, times any factor, move any inertia 
 goal and position therefore determines kp/J, (kv + K_w)/J, K_0/J, limit/J and d. The scale comes from a known torque
 (gravity on links of an MJCF, or on an eccentric mass of the rig) or a known inertia. kv and K_w act alike until
 the controller reaches its limit: only then K_w brakes and kv does not.
+
+Where the torque is recorded, its law gives kp and kv, and with them the scale (`bench.servos.law`). A drive with a
+cascade is found by its law alone, and judged by its torque along the measured motion.
 """
 
 from __future__ import annotations
@@ -27,10 +30,12 @@ from bench.parameter import Parameter
 from bench.plant.robot import Robot
 from bench.presented import Presented
 from bench.rig.rig import Rig
+from bench.servos.drive import by_stated, drive_quantities
 from bench.servos.fit import FORGETS, ServoFit, ServoLog, around, fitted, recorded
 from bench.servos.joint import JointModel
+from bench.servos.law import LATE, Law, law_of
 from bench.servos.model import Stretches, simulated
-from bench.servos.quantities import Quantities, quantities, warnings_of
+from bench.servos.quantities import Quantities, quantities, warnings_of, with_law
 from bench.trace.noise import resolution, white_noise
 from bench.trace.read import read
 from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_SLOPE, KNOWN_TORQUE
@@ -57,7 +62,8 @@ MOVES = 4.0
 
 @dataclass(frozen=True)
 class PositionGap:
-    """RMS of measured less simulated position - rad (m) -, free-running from the goal, before and after the fit."""
+    """RMS of measured less simulated position - rad (m) -, free-running from the goal, before and after the fit; of a
+    drive, of measured torque less that of its law along the measured motion - N*m (N)."""
 
     before: float
     after: float
@@ -65,10 +71,10 @@ class PositionGap:
 
 @dataclass(frozen=True)
 class ServoMotion:
-    """A recording with the servo's free-running simulation - s, rad (m) - (n,) each."""
+    """A recording with the servo's free-running simulation - s, rad (m) - (n,) each; of a drive, torques - N*m (N)."""
 
     time: Array
-    goal: Array
+    goal: Array | None
     measured: Array
     before: Array
     after: Array
@@ -82,7 +88,7 @@ class Servo(Presented):
         kind: rotary or linear.
         found: its parameters, and what only appears together.
         verdict: whether the residual is noise.
-        noise_floor: of the measured position - rad (m).
+        noise_floor: of the measured position - rad (m) -, or of a drive's torque - N*m (N).
         gaps: of the log (`identify`), and of a holdout.
         before: what is simulated before the fit, in words.
         motion: of the first log.
@@ -90,6 +96,7 @@ class Servo(Presented):
         warnings: what a user should know before relying on it.
         joint: name of the joint.
         values: of the simulated servo, parameters of `bench.servos.model.NULL`.
+        law: of a drive with a cascade, which is not simulated.
     """
 
     kind: AxisKind
@@ -103,6 +110,13 @@ class Servo(Presented):
     warnings: tuple[str, ...]
     joint: str
     values: Mapping[str, float]
+    law: Law | None = None
+
+    @property
+    def compared(self) -> tuple[str, str]:
+        """The signal that gaps are of, and its unit."""
+        kind = self.kind
+        return ("position", kind.length_unit) if self.law is None else (kind.effort, kind.effort_unit)
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
@@ -157,12 +171,23 @@ def by_logs(
         return one if isinstance(one, Trace) else read(one, None if rig is None else rig.trace)
 
     traces = [require_goal(opened(one)) for one in logs]
+    other = None if holdout is None else require_goal(opened(holdout))
     trace = join(traces)
+    effort = _effort(trace, rig, model)
+    law = None if effort is None else law_of(trace, effort)
+    if law is not None and law.reading.integral:
+        return _drive(traces, law, rig, model, other)
     known = _known(trace, rig)
     of = _recorded(trace, known)
-    fit, inertia = _scaled(of, rig, model, bool(known[0].any()), progress)
+    fit, inertia = _scaled(of, rig, model, bool(known[0].any()), progress, law)
     _require_answered(of, fit)
-    return _result(traces, fit, inertia, rig, model, None if holdout is None else require_goal(opened(holdout)))
+    found = _result(traces, fit, inertia, rig, model, other)
+    if law is not None:
+        with_law(found.found, law, found.kind, 0.0 if model is None else model.link_inertia)
+    elif effort is not None:
+        note = "the recorded torque follows no law of goal and motion that is known: gains are from the motion alone"
+        found = replace(found, warnings=(*found.warnings, note))
+    return found
 
 
 def require_goal(trace: Trace) -> Trace:
@@ -199,6 +224,17 @@ def require_goal(trace: Trace) -> Trace:
     return trace
 
 
+def _effort(trace: Trace, rig: Rig | None, model: JointModel | None) -> Array | None:
+    """The recorded torque at the position that the trace has - N*m (N) - (n,); None without one in this unit."""
+    kind, own = trace.axis_kind, rig if model is None else model.rig
+    if not {kind.effort, "current"} & set(trace.signals):
+        return None
+    if own is None:
+        return trace.signals.get(kind.effort)
+    effort, unit = own.effort(trace)
+    return effort * (1.0 if model is None else own.gear_ratio) if unit == kind.effort_unit else None
+
+
 def _known(trace: Trace, rig: Rig | None) -> tuple[Array, Array]:
     """Torque known to act against the motion - N*m (N) - and its slope over position - N*m/rad (N/m) - (n,).
 
@@ -221,12 +257,19 @@ def _recorded(trace: Trace, known: tuple[Array, Array]) -> ServoLog:
 
 
 def _scaled(
-    of: ServoLog, rig: Rig | None, model: JointModel | None, known: bool, progress: Callable[[float], None]
+    of: ServoLog,
+    rig: Rig | None,
+    model: JointModel | None,
+    known: bool,
+    progress: Callable[[float], None],
+    law: Law | None,
 ) -> tuple[ServoFit, Callable[[Mapping[str, float]], float] | None]:
     """The fit, and how its values give the inertia - kg*m**2 (kg); None where nothing gives the scale of torques.
 
     A joint without armature in its MJCF is one whose motor and gear nobody stated, and weight may contradict what is.
     """
+    if law is not None:
+        return fitted(of, {}, progress), lambda values: law.stiffness / values["stiffness"]
     fit, stated = None, rig.stated_inertia if rig is not None else None
     if model is not None:
         stated = model.inertia if model.armature else None
@@ -318,6 +361,47 @@ def _gap(
     return PositionGap(rms((measured - before)[counted]), rms((measured - after)[counted])), motion
 
 
+def _drive(
+    traces: Sequence[Trace], law: Law, rig: Rig | None, model: JointModel | None, holdout: Trace | None
+) -> Servo:
+    """A drive with a cascade, by the law that its torque follows."""
+    kind, stated = traces[0].axis_kind, None if rig is None else rig.drive
+    first = None if stated is None else {**by_stated(stated), LATE: law.values[LATE]}
+
+    def motion(trace: Trace) -> ServoMotion:
+        effort = _effort(trace, rig, model)
+        assert effort is not None
+        time, (measured, after) = law.torque(trace, effort)
+        before = np.zeros_like(after) if first is None else law.torque(trace, effort, first)[1][1]
+        return ServoMotion(time, None, measured, before, after)
+
+    motions = {"identify": motion(join(traces)), **({} if holdout is None else {"holdout": motion(holdout)})}
+    noise = law.residual <= NOISE * law.floor
+    above = f"the residual is {law.residual / law.floor:.2g} times the noise: the drive's law has more than a cascade"
+    return Servo(
+        kind=kind,
+        found=drive_quantities(law, kind, stated),
+        verdict="nothing_missing" if noise else "unexplained_remainder",
+        noise_floor=law.floor,
+        gaps={
+            k: PositionGap(rms(one.measured - one.before), rms(one.measured - one.after)) for k, one in motions.items()
+        },
+        before="no torque" if stated is None else "the rig's [drive]",
+        motion=motions["identify"],
+        checks=_checks(traces),
+        warnings=(*(note for trace in traces for note in trace.notes), *([] if noise else [above])),
+        joint="axis" if model is None else model.name,
+        values={},
+        law=law,
+    )
+
+
+def _checks(traces: Sequence[Trace]) -> tuple[Check, ...]:
+    """Of goal and position."""
+    used = ({name: trace[name] for name in ("position", "position_reference")} for trace in traces)
+    return joined([gate(replace(trace, signals=each)).checks for trace, each in zip(traces, used, strict=True)])
+
+
 def _result(
     traces: Sequence[Trace],
     fit: ServoFit,
@@ -343,8 +427,6 @@ def _result(
     found = quantities(fit, inertia, kind, model)
     refuse_unresolved(found, traces[0].sample_period)
     notes = [note for trace in traces for note in trace.notes]
-    used = ({name: trace[name] for name in ("position", "position_reference")} for trace in traces)
-    checks = joined([gate(replace(trace, signals=each)).checks for trace, each in zip(traces, used, strict=True)])
     return Servo(
         kind=kind,
         found=found,
@@ -353,7 +435,7 @@ def _result(
         gaps=gaps,
         before="the MJCF's actuator" if first is not None else "a servo that is always at its goal",
         motion=pairs[0][1],
-        checks=checks,
+        checks=_checks(traces),
         warnings=(*notes, *warnings_of(fit, floor, noise, traces[0].sample_period)),
         joint="axis" if model is None else model.name,
         values=dict(fit.values),
