@@ -33,6 +33,7 @@ from bench.errors import InputError
 from bench.fit.dead_time import DeadTime, dead_time_of
 from bench.fit.estimate import Alone
 from bench.fit.fit import Fit, fit
+from bench.fit.hypothesis import LINKS
 from bench.fit.identify import require_diagnosable
 from bench.fit.rows import Rows
 from bench.fit.stored import Balance
@@ -340,6 +341,7 @@ def show(bare: Fit, added: Added) -> Diagnosis:
         warnings=[
             *suspicions(recordings.trace, recordings.rig, added.parameters),
             *delayed(late, whole),
+            *off_their_encoder(whole),
             *left_open(recordings.rows, kind),
             *impacts(whole, unit),
             *out_of_phase(added),
@@ -480,6 +482,16 @@ def delayed(late: DeadTime | None, fitted: Fit) -> Iterator[str]:
         yield f"{late}; the model contains it"
     elif late is not None and late.kind != "first_order_lag":
         yield f"the model contains a lag, but {late}"
+
+
+def off_their_encoder(fitted: Fit) -> Iterator[str]:
+    """That links of a robot are elsewhere than their encoder, which a small constant torque looks like."""
+    if fitted.hypothesis.misplaced:
+        angle = f"{fitted.value(LINKS):.3g} {fitted.scope.kind.length_unit}"
+        yield (
+            f"links that are {angle} ahead of their encoder explain a part of the torque: its zero or that of a joint "
+            "before it, or a loose gear on one flank. An effect as small as their weight makes then is not sought"
+        )
 
 
 def left_open(rows: Rows, kind: AxisKind) -> list[str]:

@@ -111,7 +111,7 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
     """The likeliest names of those that a search finds and their neighbours, and what the signals show directly.
 
     An effect whose size the recording does not determine is not found: the search is repeated without it. It is
-    repeated where torque and speed differ by a delay, too, which is then undone.
+    repeated where torque and speed differ by a delay, too, which is then undone, and where links are off their encoder.
     """
     kept = {effect: found for effect, found in recordings.detected.items() if effect.name not in excluded}
     direct, unsized = frozenset(effect.name for effect in kept), dict[str, Reason]()
@@ -124,12 +124,13 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
         likely = probabilities(weighed(visited, recordings.holdout_rows, policy), direct, policy)
         chosen = likely.fits[likely.chosen]
         last = with_events(chosen, effects, policy)
-        more, shift = without_size(last, recordings), delay(last, policy)
-        if not more and not shift:
+        more, shift, off = without_size(last, recordings), delay(last, policy), misplaced(last, policy)
+        if not more and not shift and not off:
             break
         unsized |= more
-        if shift:
-            bare, visited = fit(bare.rows, replace(bare.hypothesis, shift=bare.hypothesis.shift + shift)), ()
+        if shift or off:
+            shift, off = bare.hypothesis.shift + shift, bare.hypothesis.misplaced or off
+            bare, visited = fit(bare.rows, replace(bare.hypothesis, shift=shift, misplaced=off)), ()
     events = frozenset(term.effect.name for term in last.terms[len(chosen.terms) :])
     return Suspects(
         fitted=last,
@@ -181,6 +182,14 @@ def delay(fitted: Fit, policy: Policy) -> float:
         return 0.0
     moved = replace(fitted.hypothesis, shift=fitted.hypothesis.shift + free.shift[0])
     return 0.0 if policy.remains(fit(fitted.rows, moved, fitted)) else free.shift[0]
+
+
+def misplaced(fitted: Fit, policy: Policy) -> bool:
+    """Whether links that are a little off their encoder surely explain a part of what remains."""
+    if fitted.hypothesis.misplaced or not fitted.rows.stretches[0].signals.known:
+        return False
+    off = fit(fitted.rows, replace(fitted.hypothesis, misplaced=True), fitted)
+    return not off.held and fitted.squares - off.squares > policy.by_chance(fitted)
 
 
 def without_size(fitted: Fit, recordings: Recordings) -> dict[str, Reason]:

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bench.effects.effect import Contact, Effect, Occasional
-from bench.fit.fit import Fit
+from bench.fit.fit import Fit, least_squares
+from bench.fit.hypothesis import LINKS, MISPLACED
+from bench.fit.rows import slope_of
 from bench.fit.solution import NOISE_ALONE
 from bench.parameter import Parameter
 
@@ -105,6 +107,20 @@ class Policy:
     def only_damps(self, before: Fit, after: Fit) -> bool:
         """Whether the squares that `after` saves may be noise of the motion that it damps, as a coupling does."""
         return over_noise(before) < self.large and over_noise(before) <= over_noise(after)
+
+    def misplaced(self, fitted: Fit) -> bool:
+        """Whether an effect takes no more than the weight of links that are a little off their encoder."""
+        if not fitted.rows.stretches[0].signals.known:
+            return False
+        slope, least = fitted.rows.kept(slope_of), self.chance * fitted.rows.correlation * fitted.noise.white**2
+        for index in range(len(fitted.terms)):
+            own = fitted.owners == index
+            others = np.hstack([fitted.columns[:, ~own & (fitted.owners != LINKS)], slope])
+            torque = fitted.columns[:, own] @ fitted.theta[own]
+            moved = least_squares(others, torque, np.zeros((others.shape[1],) * 2))
+            if abs(moved[-1]) < MISPLACED and float(np.sum((torque - others @ moved) ** 2)) < least:
+                return True
+        return False
 
     def physical(self, fitted: Fit) -> bool:
         """Whether every effect keeps within what physics allows: friction resists, masses are positive."""

@@ -120,7 +120,8 @@ class Search:
     def add(self, fitted: Fit) -> Fit:
         """Keep a fit that is physical; returns the best one of its effects."""
         key = key_of(fitted)
-        if self.policy.physical(fitted) and (key not in self.fits or fitted.squares < self.fits[key].squares):
+        possible = self.policy.physical(fitted) and not self.policy.misplaced(fitted)
+        if possible and (key not in self.fits or fitted.squares < self.fits[key].squares):
             self.fits[key] = fitted
             self.tried.pop(key, None)
             self.weighed = {}
@@ -237,6 +238,8 @@ class Search:
             self.refused[effect] = "damps"
         elif worth(fitted, after) < effect.needed * fitted.excess:
             self.refused[effect] = "small"
+        elif self.policy.misplaced(after):
+            self.refused[effect] = "misplaced"
         else:
             return self.add(after)
         return None

@@ -32,52 +32,55 @@ def load_positions(
     sample_period: float,
     shapes: Array,
     pulls: Sequence[tuple[Array, Array] | None] = (),
-    heavier: Sequence[float] = (),
+    heavier: Sequence[Array] = (),
 ) -> list[Array]:
     """Positions of the load behind several dead zones in stretches of a recording - rad (m) - (n, k) each.
 
     The motor moves along a cubic spline through its samples. A stretch is cut into windows that are integrated side by
     side, as those of stretches with windows as long are, each from where the one before it ended in the sweep before,
     until starts and ends agree: a contact forgets how it was entered, so few sweeps do. The load starts with the motor,
-    in the middle of the gap.
+    in the middle of the gap or where known torque presses it.
 
     Args:
         angles: of the motor - rad (m) - (n,) each.
         sample_period: s.
         shapes: (k, 4): gap, contact's frequency and damping, spring's rate.
         pulls: of the load by what else acts on it, as `Signals.pull`; () of none.
-        heavier: loads over that of the shapes; () where all are of it.
+        heavier: loads over that of the shapes (n,), of which a window takes the mean; () where all are of it.
     """
-    inertias = np.array(heavier or [1.0] * len(angles))
+    inertias = heavier or [np.ones_like(angle) for angle in angles]
     lengths = np.array([max(SHORTEST, -(-(angle.size - 1) // WINDOWS)) for angle in angles])
     found: dict[int, Array] = {}
     for length in np.unique(lengths).tolist():
         alike = np.flatnonzero(lengths == length).tolist()
-        pulled = [pulls[k] if pulls else None for k in alike]
-        twists = _twists([angles[k] for k in alike], pulled, inertias[alike], length, sample_period, shapes)
+        own = [(angles[k], pulls[k] if pulls else None, inertias[k]) for k in alike]
+        twists = _twists(own, length, sample_period, shapes)
         found |= {k: angles[k][:, None] - twist for k, twist in zip(alike, twists, strict=True)}
     return [found[k] for k in range(len(angles))]
 
 
 def _twists(
-    angles: Sequence[Array],
-    pulls: Sequence[tuple[Array, Array] | None],
-    heavier: Array,
-    length: int,
-    sample_period: float,
-    shapes: Array,
+    own: Sequence[tuple[Array, tuple[Array, Array] | None, Array]], length: int, sample_period: float, shapes: Array
 ) -> list[Array]:
-    """Angles of the motor (n,) less the load's (n, k) in windows of so many samples; see `load_positions`."""
+    """Angles of the motor (n,) less the load's (n, k) in windows of so many samples.
+
+    By the angles of each stretch, the pull and how heavy the load is; see `load_positions`.
+    """
+    angles, pulls, heavier = zip(*own, strict=True)
     substeps = max(2, int(np.ceil(sample_period * shapes[:, 1].max() * STEPS_PER_RADIAN)))
     cut = [_windows(angle, length, substeps) for angle in angles]
     windows = np.concatenate([between for between, _ in cut], axis=1)
     slowed = [_slowed(pull, length, substeps, sample_period) for pull in pulls if pull is not None]
     pulling = np.concatenate(slowed, axis=2) if slowed else None
     sizes, size = [starts.size for _, starts in cut], len(shapes)
-    ends, inertia = np.cumsum(sizes), np.repeat(heavier, sizes)
+    ends, inertia = np.cumsum(sizes), np.concatenate([_means(each, length) for each in heavier])
     slower = np.stack([np.ones_like(inertia), inertia**-0.5, inertia**-0.5, 1.0 / inertia], axis=1)
     goes_on = ~np.isin(np.arange(ends[-1]), ends - 1)
     twist = np.zeros((ends[-1], size))
+    firsts = ends - sizes
+    for first, angle, pull, more in zip(firsts, angles, pulls, heavier, strict=True):
+        if pull is not None:
+            twist[first] = _pressed(angle, pull[0] * more, sample_period, shapes)
     travel = np.repeat(np.concatenate([starts for _, starts in cut])[:, None], size, axis=1)
     found = np.empty((length, ends[-1], size))
     window, shape = (pairs.ravel() for pairs in np.indices(twist.shape))
@@ -94,8 +97,16 @@ def _twists(
         apart = away > CLOSED * shapes[shape, 0]
         window, shape = window[apart], shape[apart]
     samples = [part.transpose(1, 0, 2).reshape(-1, size) for part in np.split(found, ends[:-1], axis=1)]
-    first = np.zeros((1, size))
-    return [np.concatenate([first, part[: angle.size - 1]]) for angle, part in zip(angles, samples, strict=True)]
+    begun = np.split(twist[firsts], len(firsts))
+    each = zip(angles, begun, samples, strict=True)
+    return [np.concatenate([start, part[: angle.size - 1]]) for angle, start, part in each]
+
+
+def _pressed(angle: Array, pull: Array, sample_period: float, shapes: Array) -> Array:
+    """How far the motor is ahead of a load (k,) that goes along from the start, on the flank that has to drive it."""
+    time = sample_period * np.arange(min(SHORTEST, angle.size))
+    driving = 2.0 * np.polyfit(time, angle[: time.size], 2)[0] + np.mean(pull[: time.size])
+    return np.sign(driving) * 0.5 * shapes[:, 0] + driving / shapes[:, 1] ** 2
 
 
 def _windows(angle: Array, length: int, substeps: int) -> tuple[Array, Array]:
@@ -105,6 +116,12 @@ def _windows(angle: Array, length: int, substeps: int) -> tuple[Array, Array]:
     fine = np.pad(between, (0, count * step + 1 - between.size), mode="edge")
     starts = step * np.arange(count)
     return fine[np.arange(step + 1)[:, None] + starts], slopes[starts] / substeps
+
+
+def _means(values: Array, length: int) -> Array:
+    """Of values (n,) in windows of so many (w,)."""
+    starts = np.arange(0, values.size - 1, length)
+    return np.add.reduceat(values, starts) / np.diff(starts, append=values.size)
 
 
 def _slowed(pull: tuple[Array, Array], length: int, substeps: int, sample_period: float) -> Array:
@@ -187,12 +204,13 @@ def dead_zone_columns(stretches: Sequence[Signals], shapes: Shapes) -> list[list
         for s in stretches
     ]
     table = np.asarray(shapes)
-    pulls = [s.pull for s in stretches] if stretches[0].pull is not None else ()
     heavier = [s.heavier for s in stretches]
+    pulled = [s.pull(more) for s, more in zip(stretches, heavier, strict=True)]
+    pulls = [pull for pull in pulled if pull is not None]
     positions = load_positions(angles, stretches[0].sample_period, table, pulls, heavier)
     twists = [(position - angle[:, None]).T for position, angle in zip(positions, angles, strict=True)]
-    slopes = [0.0 if s.pull is None else s.heavier * s.pull[1] for s in stretches]
+    slopes = [0.0 if pull is None else more * pull[1] for pull, more in zip(pulled, heavier, strict=True)]
     return [
-        [[(more * load, 2), ((rate + slope) * load, 0)] for load, rate in zip(twist, table[:, 3], strict=True)]
-        for twist, more, slope in zip(twists, heavier, slopes, strict=True)
+        [[*s.reaction(load), ((rate + slope) * load, 0)] for load, rate in zip(twist, table[:, 3], strict=True)]
+        for s, twist, slope in zip(stretches, twists, slopes, strict=True)
     ]

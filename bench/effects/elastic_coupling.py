@@ -104,7 +104,8 @@ def _column(signals: Signals, antiresonance: float, damping: float, loads: Seque
     What acts on the load is brought in line with its motion turn by turn. Half of its steepest damping is counted to
     the coupling's, so that a turn reduces the error. Links that are heavier than `link_inertia` swing slower.
     """
-    heavier = signals.heavier
+    heavier = float(np.mean(signals.heavier))
+    pulled = signals.pull(heavier)
     antiresonance, damping = antiresonance / heavier**0.5, damping / heavier**0.5
     loss, spring, step = 2.0 * damping * antiresonance, antiresonance**2, signals.sample_period
     damped = 0.5 * _steepest(signals, loads) / heavier if loads else 0.0
@@ -115,8 +116,8 @@ def _column(signals: Signals, antiresonance: float, damping: float, loads: Seque
     twist = free = recursive_filter([1.0], denominator, driven[0])
     grown: list[tuple[Array, int]] = []
     drift = 0.0
-    if signals.pull is not None:
-        (pull, slope), (level, rate) = signals.pull, _first_pull(signals, antiresonance)
+    if pulled is not None:
+        (pull, slope), (level, rate) = pulled, _first_pull(signals, pulled[0], antiresonance)
         line, drift = level + rate * step * np.arange(free.size), -rate / spring
         bent, twist = drift * loss / -spring - line / spring, np.zeros_like(free)
         forced = np.zeros_like(driven)
@@ -126,7 +127,7 @@ def _column(signals: Signals, antiresonance: float, damping: float, loads: Seque
             twist = recursive_filter([1.0], denominator, driven[0] + forced[0]) + bent
         driven, free, grown = driven + forced, twist, [(heavier * slope * twist, 0)]
     if not loads:
-        return [(heavier * free, 2), *grown]
+        return [*signals.reaction(free), *grown]
     load_speed = free_speed = recursive_filter([1.0], denominator, driven[1]) + drift
     torque = np.zeros_like(free)
     for _ in range(TURNS):
@@ -139,11 +140,11 @@ def _column(signals: Signals, antiresonance: float, damping: float, loads: Seque
         if change < SETTLED * np.abs(free).max():
             break
         if change > ASTRAY * np.abs(free).max():
-            return [(heavier * free, 2), *grown]
-    return [(heavier * twist, 2), (torque - _torque(signals, loads), 0), *grown]
+            return [*signals.reaction(free), *grown]
+    return [*signals.reaction(twist), (torque - _torque(signals, loads), 0), *grown]
 
 
-def _first_pull(signals: Signals, antiresonance: float) -> tuple[float, float]:
+def _first_pull(signals: Signals, pull: Array, antiresonance: float) -> tuple[float, float]:
     """Deceleration of links at the start by inertia and known torque - rad/s**2 (m/s**2) -, and its rate.
 
     By parabola and line through the speed and the known torque of the first oscillation.
@@ -151,7 +152,7 @@ def _first_pull(signals: Signals, antiresonance: float) -> tuple[float, float]:
     count = max(4, min(round(2.0 * np.pi / (antiresonance * signals.sample_period)), signals.time.size - 1))
     time = signals.sample_period * np.arange(count)
     curvature, rise, _ = np.polyfit(time, signals.course[0, :count], 2)
-    slope, level = np.polyfit(time, signals.pull[0][:count], 1) if signals.pull is not None else (0.0, 0.0)
+    slope, level = np.polyfit(time, pull[:count], 1)
     return float(level + rise), float(slope + 2.0 * curvature)
 
 

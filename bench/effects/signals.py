@@ -89,23 +89,30 @@ class Signals:
         return np.sum(parts, axis=0) if parts else np.zeros_like(self.time)
 
     @cached_property
-    def heavier(self) -> float:
-        """Inertia of the links on average, as a payload and where they are make it, over `link_inertia`; 1 without."""
+    def heavier(self) -> Array:
+        """Inertia of the links, as a payload and where they are make it, over `link_inertia` (n,); 1 without."""
         if not self.known or not self.link_inertia > 0.0:
-            return 1.0
-        return max(1.0 + float(np.mean(self.known_inertia)) / self.link_inertia, LEAST_LINK)
+            return np.ones_like(self.time)
+        known = np.broadcast_to(self.known_inertia, self.time.shape)
+        return np.maximum(1.0 + known / self.link_inertia, LEAST_LINK)
 
-    @cached_property
-    def pull(self) -> tuple[Array, Array] | None:
+    def pull(self, heavier: Array | float) -> tuple[Array, Array] | None:
         """Deceleration of links by known torque on them - rad/s**2 (m/s**2) -, and its slope - 1/s**2 -; None of none.
 
-        That of links where the motor is, and by how much it grows as they are ahead: (n,) each.
+        That of links as heavy as given, as `heavier`, where the motor is, and by how much it grows as they are ahead:
+        (n,) each. Where they are heavier still, they are so along the motor's motion.
         """
         if not self.known or not self.link_inertia > 0.0:
             return None
-        own = (self.heavier - 1.0) * self.link_inertia * np.gradient(self.velocity, self.sample_period)
-        slope, inertia = np.broadcast_to(self.known_slope, self.time.shape), self.heavier * self.link_inertia
-        return (self.carried - own) / inertia, slope / inertia
+        inertia = heavier * self.link_inertia
+        own = (inertia - self.link_inertia) * np.gradient(self.velocity, self.sample_period)
+        return (self.carried - own) / inertia, np.broadcast_to(self.known_slope, self.time.shape) / inertia
+
+    def reaction(self, twist: Array) -> Column:
+        """Torque of links that are ahead by a twist p - rad (m) (n,) -, d(m*dp/dt)/dt, m as `heavier` has it."""
+        if not self.known:
+            return [(twist, 2)]
+        return [(self.heavier * twist, 2), (-np.gradient(self.heavier, self.sample_period) * twist, 1)]
 
     @cached_property
     def course(self) -> Array:

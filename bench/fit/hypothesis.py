@@ -41,7 +41,7 @@ from bench.effects.effect import (
 from bench.effects.shape import is_pitch
 from bench.effects.signals import Scope, Signals
 from bench.effects.torque import Friction
-from bench.fit.rows import Rows, effort_of, known_of
+from bench.fit.rows import Rows, effort_of, known_of, slope_of
 from bench.trace.filter import Column
 from bench.trace.motion import SIGN_REACH, Conditioning
 
@@ -55,13 +55,16 @@ Strengths = dict[int, tuple[float, ...]]
 NOTHING: Mapping[Any, Any] = MappingProxyType({})
 #: Names of columns that belong to no effect: of the axis and the shift of torque against speed, and what else a
 #: recording has - sines and cosines of the mains, what the last digit of the effort cuts off, what varies slowly around
-#: a short event. Those of an effect are named by the index of its term.
+#: a short event, links of a robot off their encoder. Those of an effect are named by the index of its term.
 BASE = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT)
-HUM, DIGIT, AROUND = "hum", "last digit", "around"
+HUM, DIGIT, AROUND, LINKS = "hum", "last digit", "around", "links"
 #: Frequencies at which noise is summed, up to REACH over the filter's width, where it passes 1e-7 of the power.
 FREQUENCIES, REACH = 400, 4.0
 #: Frequencies to each unit of asinh of the distance from a resonance in its half widths.
 CLOSER = 20
+#: Angle - rad (m) - by which links of a robot may be off their encoder: a degree of its zero and of the play of gears,
+#: on one flank of which their weight may keep them.
+MISPLACED = np.pi / 180.0
 #: Terms of the series of a shift.
 SERIES = 4
 #: Share of the filtered white noise below which half a step is not seen.
@@ -125,12 +128,14 @@ class Hypothesis:
         hum: frequencies of the mains in this recording's sensors - Hz.
         step: between the values of the effort, if its last digit matters; else 0 - N*m (N).
         shift: by which the torque is taken late, in addition to the small one that is fitted - s.
+        misplaced: whether links of a robot may be off where their encoder is.
     """
 
     terms: tuple[Term, ...] = ()
     hum: tuple[float, ...] = ()
     step: float = 0.0
     shift: float = 0.0
+    misplaced: bool = False
 
     def plus(self, term: Term) -> Hypothesis:
         """This hypothesis and one term more."""
@@ -193,7 +198,7 @@ class Layout:
     Attributes:
         columns: (m, p): J, K_w, K_0, misalignment, the effort's last digit where it matters, waves of the mains,
             then the effects' in order, each followed by what varies around it.
-        owners: (p,) index of the term a column belongs to, or one of the names of BASE, DIGIT, "hum" or AROUND.
+        owners: (p,) index of the term a column belongs to, or one of the names of BASE, DIGIT, HUM, LINKS or AROUND.
         effort: (m,) what they are to explain - N*m (N).
         noise: (p, p) covariance of the columns due to the sensors' noise in a row.
         bounds: lowest and highest value of strengths that are not free, by their places.
@@ -244,11 +249,16 @@ def lay_out(
     moving, resting = delays(rows, hypothesis)
     parts = [seen.kept(_axis, lag=(moving, moving, resting, resting + late))]
     owners: list[Name] = [*BASE]
+    links = seen.stretches[0].signals
     bounds = {BASE.index(MISALIGNMENT): (-rows.scope.latched, rows.scope.latched)}
     if hypothesis.step:
         parts.append(seen.kept(_cut_off, lag=resting))
         bounds[len(owners)] = (0.0, 0.5 * hypothesis.step)
         owners.append(DIGIT)
+    if hypothesis.misplaced:
+        parts.append(seen.kept(slope_of, lag=moving))
+        bounds[len(owners)] = (-MISPLACED, MISPLACED)
+        owners.append(LINKS)
     if hypothesis.hum:
         parts.append(seen.kept(_of_hum, hypothesis.hum, rows.starts, lag=resting))
         owners += [HUM] * parts[-1].shape[1]
@@ -257,6 +267,8 @@ def lay_out(
         parts.append(_of_term(seen, hypothesis, index, lag, found, missing.get(index)))
         if isinstance(term.effect, Columns):
             bounds |= {len(owners) + place: most for place, most in term.effect.bounded.items()}
+        if isinstance(term.effect, Coupling) and links.known and links.link_inertia > 0.0:
+            bounds[len(owners)] = links.link_inertia, links.link_inertia  # what is behind it is the links
         owners += [index] * parts[-1].shape[1]
         if term.around:
             parts.append(_around(seen, term.around))
@@ -264,7 +276,7 @@ def lay_out(
     columns = np.concatenate(parts, axis=1) if len(parts) > 1 else parts[0]
     held_by = np.array(owners, dtype=object)
     effort = seen.kept(effort_of, lag=late)[:, 0] if late else seen.effort
-    if (moving or late) and seen.stretches[0].signals.known:
+    if (moving or late) and links.known:
         # as the motion shows it, whose lag is undone; all of it of an effort that was computed again
         known = seen.kept(known_of, lag=moving)[:, 0]
         effort = effort - (known if late else known - seen.kept(known_of)[:, 0])

@@ -405,6 +405,11 @@ def known_of(signals: Signals) -> list[Column]:
     return [signals.known]
 
 
+def slope_of(signals: Signals) -> list[Column]:
+    """By how much that is another one where the links are ahead of their encoder, as the one column of a table."""
+    return [[(np.broadcast_to(signals.known_slope, signals.time.shape), 0)]]
+
+
 def _signals(
     trace: Trace,
     rig: Rig,

@@ -298,7 +298,8 @@ def _twists(found: Diagnosis, traces: Mapping[Path, Trace], rig: Rig) -> dict[Pa
         for part in seen_by(Rows.of(trace, rig), hypothesis).stretches:
             (column, *_) = coupling.columns(part.signals, shape)
             samples = slice(part.start, part.start + part.signals.time.size)
-            angle[samples] = next(values for values, order in column if order == 2) / ratio
+            twist = next(values for values, order in column if order == 2) / part.signals.heavier
+            angle[samples] = twist / ratio
             rate[samples] = np.gradient(angle[samples], trace.sample_period)
         twists[log] = trace.time, angle, rate
     return twists

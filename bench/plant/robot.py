@@ -511,13 +511,19 @@ def _known(
         where = f"{trace.origin}: joint '{robot.joint}'"
         raise InputError(where, f"found an effort in {unit}, with links in kg", allowed)
     torque, momentum = robot.rest(position, velocity)
+    slope = robot.slope(position, velocity)
+    if robot.joint in robot.twists:  # as the motor has it, by what links ask where they are
+        angle, rate = _twisted(robot, robot.joint, trace)
+        ahead = rate[:, None] * (np.array(robot.names) == robot.joint)
+        torque, momentum = torque - slope * angle, robot.rest(position, velocity - ahead)[1]
     more = robot.asked(changes, position, velocity)
     every = [(torque, momentum), *((torque + asked, momentum + moving) for asked, moving in more)]
     ratio = (own.load or Load()).gear_ratio
     grown = robot.grown(position) / ratio**2
-    # of a twist that is known it is the torque already
-    slope = None if robot.joint in robot.twists else robot.slope(position, velocity) / ratio**2
-    known = [with_known(trace, asked / ratio, moving / ratio, own.effort_unit, grown, slope) for asked, moving in every]
+    known = [
+        with_known(trace, asked / ratio, moving / ratio, own.effort_unit, grown, slope / ratio**2)
+        for asked, moving in every
+    ]
     standing = _standing(position, velocity, torque, robot, stand, ratio)
     return [replace(one, notes=(*robot.notes, *one.notes), metadata={**one.metadata, **standing}) for one in known]
 
@@ -569,12 +575,18 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
         motion[name] = found
         if name in robot.twists:
-            time, *twist = robot.twists[name]
-            angle, rate = (np.interp(trace.time, time, more) for more in twist)
+            angle, rate = _twisted(robot, name, trace)
             motion[name] = found[0] + angle, found[1] + rate
         _require_within(found[0], name, robot, path)
     position, velocity = (np.column_stack([motion[name][k] for name in robot.names]) for k in (0, 1))
     return trace, position, velocity, stand
+
+
+def _twisted(robot: Robot, joint: str, trace: Trace) -> tuple[Array, Array]:
+    """By how much the links of a joint are ahead of their motor along a log, and faster (n,) each."""
+    time, *twist = robot.twists[joint]
+    angle, rate = (np.interp(trace.time, time, more) for more in twist)
+    return angle, rate
 
 
 def poses_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Poses:

@@ -19,6 +19,7 @@ PLAIN = {
     "chance": "no more than chance",
     "impossible": "it fits only with values that are physically impossible",
     "damps": "it takes no more than noise that it damps",
+    "misplaced": "links a degree off their encoder explain it, too",
     "small": "it explains too small a part of what remains",
     "others": "others explain more",
     "same_as_added": "the recording does not distinguish it from an added effect",

@@ -46,7 +46,7 @@ def test_an_elastic_link_is_bent_by_its_weight():
     signals, frequency, damping = moving(), 2.0 * np.pi * 9.0, 0.1
     stiffness, loss = LINK * frequency**2, 2.0 * damping * LINK * frequency
     expected = link([0.0, 0.6 * TURNING], lambda twist, rate: stiffness * twist + loss * rate) - signals.position
-    ((bent, _), (more, order)) = ELASTIC.columns(signals, (frequency, damping))[0]
+    ((bent, _), *_, (more, order)) = ELASTIC.columns(signals, (frequency, damping))[0]
     later = TIME > 1.0  # what the start rings has died away
     assert bent[later] == pytest.approx(expected[later], abs=2e-3 * np.abs(expected).max())
     assert order == 0
@@ -94,8 +94,65 @@ def test_a_loose_link_falls_from_one_side_of_its_gap_to_the_other():
         return LINK * (frequency**2 * deep + 2.0 * damping * frequency * rate * (deep != 0.0))
 
     expected = link([0.0, 0.6 * TURNING], pushed) - signals.position
-    (((loose, _), _),) = dead_zone_columns([signals], [(gap, frequency, damping, 0.0)])[0]
+    (((loose, _), *_),) = dead_zone_columns([signals], [(gap, frequency, damping, 0.0)])[0]
     assert np.abs(loose - expected)[TIME > 0.3].max() < 0.02 * gap
+
+
+def swelling(share):
+    """The same link, whose inertia other joints change along the log, by a share, as its known momentum has it."""
+    still, more = moving(), share * LINK * np.sin(2.0 * np.pi * 0.3 * TIME)
+    return replace(still, known=(still.known[0], (more * still.velocity, 1)), known_inertia=more), LINK + more
+
+
+def swinging(inertia, start, pushed):
+    """Angle of that link (n,), whose momentum the gear's torque changes, by SciPy."""
+    rate = np.gradient(inertia, PERIOD)
+
+    def slopes(t, state):
+        twist = 0.6 * np.sin(TURNING * t) - state[0]
+        faster = 0.6 * TURNING * np.cos(TURNING * t) - state[1]
+        heavy, growing = np.interp(t, TIME, inertia), np.interp(t, TIME, rate)
+        return state[1], (pushed(twist, faster) - WEIGHT * np.sin(state[0]) - growing * state[1]) / heavy
+
+    return solve_ivp(slopes, (0.0, TIME[-1]), start, "LSODA", TIME, rtol=1e-9, atol=1e-11, max_step=2e-4).y[0]
+
+
+def test_a_loose_link_falls_as_slowly_as_it_is_heavy():
+    (signals, inertia), gap, frequency, damping = swelling(0.3), 0.04, 300.0, 0.4
+
+    def pushed(twist, rate):
+        deep = twist - np.clip(twist, -0.5 * gap, 0.5 * gap)
+        return LINK * (frequency**2 * deep + 2.0 * damping * frequency * rate * (deep != 0.0))
+
+    expected = swinging(inertia, [0.0, 0.6 * TURNING], pushed) - signals.position
+    (((loose, _), *_),) = dead_zone_columns([signals], [(gap, frequency, damping, 0.0)])[0]
+    assert np.abs(loose * LINK / inertia - expected)[TIME > 0.3].max() < 0.05 * gap
+
+
+def test_the_motor_feels_the_inertia_that_the_link_has():
+    signals, inertia = swelling(0.05)
+    stiffness, loss = LINK * (2.0 * np.pi * 9.0) ** 2, 0.3
+
+    def pushed(twist, rate):
+        return stiffness * twist + loss * rate
+
+    expected = swinging(inertia, [0.0, 0.6 * TURNING], pushed) - signals.position
+    torque = pushed(-expected, -np.gradient(expected, PERIOD))
+    column = ELASTIC.columns(signals, (2.0 * np.pi * 9.0, loss / (2.0 * LINK * 2.0 * np.pi * 9.0)))[0]
+    felt = LINK * np.gradient(signals.velocity, PERIOD) + signals.carried
+    for values, order in column:
+        for _ in range(order):
+            values = np.gradient(values, PERIOD)
+        felt = felt + LINK * values
+    assert np.abs(felt - torque)[1000:-10].max() < 0.02 * np.abs(torque).max()
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.04])
+def test_a_link_starts_on_the_flank_on_which_it_lies(gap):
+    signals, frequency = replace(moving(), position=np.full(TIME.size, 0.5), velocity=np.zeros(TIME.size)), 300.0
+    known = ((np.full(TIME.size, 0.7), 0), (np.zeros(TIME.size), 1))
+    (((loose, _), *_),) = dead_zone_columns([replace(signals, known=known)], [(gap, frequency, 0.4, 0.0)])[0]
+    assert loose == pytest.approx(-0.5 * gap - 0.7 / (LINK * frequency**2), abs=0.01 * (gap + 1e-3))
 
 
 @pytest.mark.parametrize("drag", [0.0, 1e-4])

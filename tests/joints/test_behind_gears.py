@@ -8,8 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.diagnosis.policy import POLICY
+from bench.effects.catalogue import catalogue
+from bench.fit.fit import fit
+from bench.fit.hypothesis import Term, plain
+from bench.fit.rows import Rows
 from bench.plant.robot import Robot, joint_rig, read_along
-from bench.trace.signals import KNOWN_MOMENTUM, KNOWN_TORQUE
+from bench.trace.signals import KNOWN_INERTIA, KNOWN_MOMENTUM, KNOWN_SLOPE, KNOWN_TORQUE
 from tests.export.two_links import write_log
 from tests.joints import ur5e
 
@@ -52,6 +57,36 @@ def test_neighbours_feel_the_link_where_it_is(log, joint):
         return np.abs(known - true)[5:-5].max() / np.abs(true).max()
 
     assert wrong({own: (time, *twist)}) < 2e-3 < 5e-3 < wrong({})
+
+
+def test_a_soft_joint_feels_its_own_link_where_it_is(log):
+    """Known torque as its motor has it, and what the coupling's column has of the twist."""
+    folder, (time, q, w, a), (angle, rate) = log
+    true, omega = ur5e.asked(q, w, a)[:, SOFT], 2.0 * np.pi * 8.0
+    robot, trace = read(folder, ur5e.NAMES[SOFT], {ur5e.NAMES[SOFT]: (time, angle, rate)})
+    known = trace[KNOWN_TORQUE] + np.gradient(trace[KNOWN_MOMENTUM], time) + trace[KNOWN_SLOPE] * angle
+    own = robot.inertia * a[:, SOFT] + np.gradient(trace[KNOWN_INERTIA] * rate, time)
+    assert np.abs(known + own - true)[5:-5].max() < 2e-3 * np.abs(true).max()
+    assert np.abs(robot.inertia * omega**2 * angle).max() > 0.1 * np.abs(true).max()
+
+
+def test_what_is_behind_a_soft_gear_is_the_links(log):
+    folder, _, _ = log
+    robot, trace = read(folder, ur5e.NAMES[SOFT], {})
+    rows = Rows.of(trace, joint_rig(None, robot))
+    found = fit(rows, plain(rows).plus(Term(catalogue()["elastic_coupling"], (50.0, 0.1))))
+    assert found.strengths(0) == pytest.approx([robot.inertia])
+
+
+@pytest.mark.parametrize(("offset", "known"), [(0.01, False), (0.3, True)])
+def test_a_weak_offset_is_not_told_from_links_off_their_encoder(log, offset, known):
+    """One degree of links that weigh 1.4 N*m at the first wrist is 0.02 N*m."""
+    folder, (_, q, w, a), _ = log
+    robot, trace = read(folder, ur5e.NAMES[SOFT], {})
+    torque = ur5e.asked(q, w, a)[:, SOFT] + 0.1 * a[:, SOFT] + w[:, SOFT] + np.sign(w[:, SOFT]) + offset
+    rows = Rows.of(trace.with_signals({"torque": torque}, {}), joint_rig(None, robot))
+    named = fit(rows, plain(rows).plus(Term(catalogue()["torque_offset"])))
+    assert POLICY.misplaced(named) is not known
 
 
 @pytest.mark.parametrize("joint", range(6))

@@ -68,7 +68,8 @@ def drawn(seed: int) -> tuple[dict, list[dict]]:
             middle = float(np.median(angle)) + rng.uniform(-0.3, 0.3)
             torque = torque + rng.uniform(0.8, 2.0) * coulomb * (angle - middle)
         elif kind == "delay":
-            torque = np.interp(time + DELAY, time, torque)
+            smooth = make_interp_spline(time, torque - coulomb * sign)(time + DELAY)
+            torque = smooth + coulomb * np.sign(np.interp(time + DELAY, time, speed))
         hidden.append({"kind": kind, "armature": armature, "viscous": viscous, "coulomb": coulomb})
         motor[name] = angle, speed, torque
     kept = time < DURATION
