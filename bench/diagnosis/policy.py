@@ -113,7 +113,7 @@ class Policy:
         if not fitted.rows.stretches[0].signals.known:
             return False
         slope, least = fitted.rows.kept(slope_of), self.chance * fitted.rows.correlation * fitted.noise.white**2
-        for index in range(len(fitted.terms)):
+        for index in {*range(len(fitted.terms))} & {*fitted.owners.tolist()}:  # with columns
             own = fitted.owners == index
             others = np.hstack([fitted.columns[:, ~own & (fitted.owners != LINKS)], slope])
             torque = fitted.columns[:, own] @ fitted.theta[own]
