@@ -60,24 +60,27 @@ def load_positions(
 
 
 def _twists(
-    own: Sequence[tuple[Array, tuple[Array, Array] | None, Array]], length: int, sample_period: float, shapes: Array
+    stretches: Sequence[tuple[Array, tuple[Array, Array] | None, Array]],
+    length: int,
+    sample_period: float,
+    shapes: Array,
 ) -> list[Array]:
     """Angles of the motor (n,) less the load's (n, k) in windows of so many samples.
 
     By the angles of each stretch, the pull and how heavy the load is; see `load_positions`.
     """
-    angles, pulls, heavier = zip(*own, strict=True)
+    angles, pulls, heavier = zip(*stretches, strict=True)
     substeps = max(2, int(np.ceil(sample_period * shapes[:, 1].max() * STEPS_PER_RADIAN)))
     cut = [_windows(angle, length, substeps) for angle in angles]
     windows = np.concatenate([between for between, _ in cut], axis=1)
     slowed = [_slowed(pull, length, substeps, sample_period) for pull in pulls if pull is not None]
     pulling = np.concatenate(slowed, axis=2) if slowed else None
-    sizes, size = [starts.size for _, starts in cut], len(shapes)
+    sizes, size = np.array([starts.size for _, starts in cut], dtype=np.intp), len(shapes)
     ends, inertia = np.cumsum(sizes), np.concatenate([_means(each, length) for each in heavier])
     slower = np.stack([np.ones_like(inertia), inertia**-0.5, inertia**-0.5, 1.0 / inertia], axis=1)
     goes_on = ~np.isin(np.arange(ends[-1]), ends - 1)
     twist = np.zeros((ends[-1], size))
-    firsts = ends - sizes
+    firsts: NDArray[np.intp] = ends - sizes
     for first, angle, pull, more in zip(firsts, angles, pulls, heavier, strict=True):
         if pull is not None:
             twist[first] = _pressed(angle, pull[0] * more, sample_period, shapes)
