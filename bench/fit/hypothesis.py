@@ -245,8 +245,7 @@ def lay_out(
         found: coefficients of a fit before, on some of which columns depend: see `depended_on`.
         missing: what each term that copies torque does not use, see `not_reaching`.
     """
-    seen, late = seen_by(rows, hypothesis), effort_lag(hypothesis)
-    moving, resting = delays(rows, hypothesis)
+    seen, late, (moving, resting) = seen_by(rows, hypothesis), effort_lag(hypothesis), delays(rows, hypothesis)
     parts = [seen.kept(_axis, lag=(moving, moving, resting, resting + late))]
     owners: list[Name] = [*BASE]
     links = seen.stretches[0].signals
