@@ -166,8 +166,10 @@ def lab_document(results: Sequence[TaskResult], recordings: LabRecordings, cover
 
 
 def _first_answers(results: Mapping[str, TaskResult]) -> dict[str, str]:
-    """What task 9 and the simulation of tracking come to."""
-    fitted = results["9"]
+    """What task 9 and the simulation of tracking come to; nothing of a report without task 9."""
+    fitted = results.get("9")
+    if fitted is None:
+        return {}
     if fitted.reason is not None:
         return {"Inertia and friction?": "Not determined: see task 9."}
     left, tracked = fitted[REMAINING], results.get("tracking")

@@ -15,7 +15,7 @@ from bench.diagnosis.policy import POLICY, Policy
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Detected, Effect, Lag
 from bench.errors import InputError, UndeterminedError
-from bench.fit.cutoffs import INDEPENDENT, NOISY, TELLS, TERMS, for_effects, for_inertia
+from bench.fit.cutoffs import INDEPENDENT, NOISY, TELLS, TERMS, Tried, for_effects, for_inertia
 from bench.fit.determined import RECORD, require_friction, require_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.hum import with_hum
@@ -119,13 +119,17 @@ class Recordings:
         """The same at the cut-off at which J, K_w and K_0 no longer change with the effects of a fit, and what moved.
 
         Among the links of a robot: the noise and lags of other joints' speeds enter at high frequency, and the rotor's
-        inertia is a small difference. On a lone axis where the residual is mostly noise of the motion: its power, which
-        biases J, is known to some per cent.
+        inertia is a small difference. On a lone axis whose residual is mostly noise of the motion, what moves from here
+        to there is in their intervals: that noise, which biases J, is known to some per cent.
         """
-        if not found.rows.stretches[0].signals.known and not policy.noise_hides(found):
+        known = found.rows.stretches[0].signals.known
+        if not known and not policy.noise_hides(found):
             return self, ()
         highest = solution_of(found.rows, found.hypothesis, self.rig.offset)
         calm, (moved, warnings) = for_inertia(highest, self.rig)
+        if not known:
+            here, there = (Tried.of(one, self.rig.axis_kind).theta for one in (highest, calm))
+            moved, warnings, calm = np.nan_to_num(np.abs(there - here)), (), highest
         doubt = dict(zip(TERMS, moved.tolist(), strict=True))
         moves = tuple(warning.removesuffix(f"; {TELLS}") for warning in warnings)
         return replace(self if calm.rows is found.rows else self.like(calm.rows), doubt=doubt), moves

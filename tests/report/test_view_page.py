@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from bench.axis_kind import LINEAR, ROTARY
+from bench.report.document import Samples
 from bench.report.over_time import unpacked
 from bench.report.publish import write_html
 from bench.report.simulation import MOST, motion_of, view
@@ -14,8 +15,11 @@ from tests.report.test_page import HOSTILE
 from tests.view.motions import AHEAD, SPEED, shown
 
 
-def floats(text):
-    return np.frombuffer(base64.b64decode(text), dtype="<f4").astype(float)
+def floats(packed):
+    """Values of a motion in a page, whole or in 16 bits."""
+    if isinstance(packed, dict):
+        return unpacked(Samples.model_validate(packed))[0]
+    return np.frombuffer(base64.b64decode(packed), dtype="<f4").astype(float)
 
 
 def instants(motion):

@@ -53,7 +53,7 @@ TEXT = {
     "header without newline": (HEAD.strip(), r"found a header and no samples"),
     "no header": ("0,1,2\n1,2,3\n", r"position or velocity: not in the file; found: column 1, column 2, column 3"),
     "one column": ("velocity [deg/s]\n1\n2\n", r"line 1: found one column"),
-    "one sample": (HEAD + ROWS[0], r"found 1 samples; allowed: at least two"),
+    "one sample": (HEAD + ROWS[0], r"found 1 sample; allowed: at least two"),
     "text in a number": (
         _rows(l8="6,6O,6\n"),
         r"run.csv: line 8, column 'velocity \[deg/s\]': found '6O'; allowed: a number",
