@@ -83,6 +83,7 @@ class Balance:
             "mains": list(self.hypothesis.hum),
             "effort_step": self.hypothesis.step,
             "shift": self.hypothesis.shift,
+            "misplaced": self.hypothesis.misplaced,
             "coefficients": self.theta.tolist(),
             "effects": effects,
         }
@@ -104,8 +105,9 @@ class Balance:
             )
             for entry in table.get("effects", [])
         )
-        numbers = (float(table.get(name, 0.0)) for name in ("effort_step", "shift"))
-        hypothesis = Hypothesis(terms, _floats(table.get("mains", [])), *numbers)
+        step, shift = (float(table.get(name, 0.0)) for name in ("effort_step", "shift"))
+        misplaced = bool(table.get("misplaced", False))
+        hypothesis = Hypothesis(terms, _floats(table.get("mains", [])), step, shift, misplaced)
         theta = np.array(_floats(table["coefficients"]))
         return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
 
