@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from bench import __version__
-from bench.arrays import Array
+from bench.arrays import NORMAL95, Array
 from bench.assets import asset
 from bench.course import methods
 from bench.course.course import TASKS, course
@@ -23,8 +22,10 @@ from bench.course.recordings import LabRecordings
 from bench.course.result import Number, TaskResult, thinned
 from bench.errors import InputError
 from bench.files import held, whole, write_text
+from bench.parameter import Parameter
 from bench.report.document import AnyPart, Chart, Document, Paragraph, Section, Table, section, table
 from bench.report.html import html
+from bench.report.numbers import interval
 from bench.report.serial import known
 from bench.rig.motor import DATASHEET
 from bench.structured import json_text, read_toml
@@ -200,11 +201,9 @@ def summary(results: Sequence[TaskResult]) -> Section:
 
 
 def _short(number: Number) -> str:
-    value = f"{number.value:.5g}"
-    if number.half:
-        digits = max(0, 1 - math.floor(math.log10(number.half)))
-        value = f"{number.value:.{digits}f} ± {number.half:.{digits}f}"
-    return f"{number.name} = {value}{'' if number.unit == '1' else f' {number.unit}'}"
+    half, unit = number.half or 0.0, "" if number.unit == "1" else number.unit
+    ends = number.value - half, number.value + half
+    return f"{number.name} = {interval(Parameter(number.value, unit, half / NORMAL95, ends))}"
 
 
 def numbered(sections: Iterable[Section]) -> Iterator[Section]:

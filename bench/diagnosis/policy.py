@@ -105,20 +105,29 @@ class Policy:
         return (over_noise(fitted) if isinstance(effect, Contact) else fitted.chi) > self.remainder
 
     def only_damps(self, before: Fit, after: Fit) -> bool:
-        """Whether the squares that `after` saves may be noise of the motion that it damps, as a coupling does."""
-        return over_noise(before) < self.large and over_noise(before) <= over_noise(after)
+        """Whether the squares that `after` saves may be noise of the motion that it damps, as a coupling does.
 
-    def misplaced(self, fitted: Fit) -> bool:
-        """Whether an effect takes no more than the weight of links that are a little off their encoder."""
-        if not fitted.rows.stretches[0].signals.known:
+        They may where the residual is as large relative to that noise, or what is saved beyond it may be chance.
+        """
+        if over_noise(before) >= self.large:
             return False
-        slope, least = fitted.rows.kept(slope_of), self.chance * fitted.rows.correlation * fitted.noise.white**2
-        for index in {*range(len(fitted.terms))} & {*fitted.owners.tolist()}:  # with columns
+        damped = before.count * (before.noise.white**2 - after.noise.white**2)
+        chance = self.by_chance(before, max(freedom(after) - freedom(before), 1))
+        return over_noise(before) <= over_noise(after) or worth(before, after) - damped < chance
+
+    def only_misplaces(self, fitted: Fit) -> bool:
+        """Whether an effect takes no more than the weight of links that are a little off their encoder."""
+        slope = fitted.rows.kept(slope_of) if fitted.rows.stretches[0].signals.known else np.empty(0)
+        if not slope.any():  # no links, or none whose torque depends on where they are
+            return False
+        least = self.chance * fitted.rows.correlation * fitted.noise.white**2
+        for index in range(len(fitted.terms)):
             own = fitted.owners == index
             others = np.hstack([fitted.columns[:, ~own & (fitted.owners != LINKS)], slope])
             torque = fitted.columns[:, own] @ fitted.theta[own]
             moved = least_squares(others, torque, np.zeros((others.shape[1],) * 2))
-            if abs(moved[-1]) < MISPLACED and float(np.sum((torque - others @ moved) ** 2)) < least:
+            alike = abs(moved[-1]) < MISPLACED and float(np.sum((torque - others @ moved) ** 2)) < least
+            if own.any() and alike:
                 return True
         return False
 

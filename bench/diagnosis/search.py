@@ -120,7 +120,7 @@ class Search:
     def add(self, fitted: Fit) -> Fit:
         """Keep a fit that is physical; returns the best one of its effects."""
         key = key_of(fitted)
-        possible = self.policy.physical(fitted) and not self.policy.misplaced(fitted)
+        possible = self.policy.physical(fitted) and not self.policy.only_misplaces(fitted)
         if possible and (key not in self.fits or fitted.squares < self.fits[key].squares):
             self.fits[key] = fitted
             self.tried.pop(key, None)
@@ -238,7 +238,7 @@ class Search:
             self.refused[effect] = "damps"
         elif worth(fitted, after) < effect.needed * fitted.excess:
             self.refused[effect] = "small"
-        elif self.policy.misplaced(after):
+        elif self.policy.only_misplaces(after):
             self.refused[effect] = "misplaced"
         else:
             return self.add(after)

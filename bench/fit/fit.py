@@ -6,7 +6,7 @@ The shape of an effect - a Stribeck speed, a lag, a pitch - is searched for the 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
 
 import numpy as np
@@ -450,15 +450,14 @@ def by_hint(rows: Rows, hypothesis: Hypothesis, offset: bool) -> tuple[str, dict
     how much it would move J, K_w and K_0; empty without one. With `offset` a constant is fitted anyway.
     """
     effects = catalogue().values()
-    for effect in effects if offset else ():
-        hypothesis = hypothesis.plus(Term(effect)) if effect.constant else hypothesis
-    fitted = fit(rows, hypothesis)
-    beside = hint(fitted, effects)
-    if beside is None:
+    constants = [Term(effect) for effect in effects if effect.constant] if offset else []
+    fitted = fit(rows, replace(hypothesis, terms=(*hypothesis.terms, *constants)))
+    hinted = hint(fitted, effects)
+    if hinted is None:
         return "", {}
-    moves = {term: beside.value(term) - fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB)}
-    share = max(1.0 - beside.squares / max(fitted.squares, 1e-300), 0.0)
-    return f"{words(beside.terms[-1].effect.name)} would explain {percent(share)} of it" * (share > SUGGESTED), moves
+    moves = {term: hinted.value(term) - fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB)}
+    share = max(1.0 - hinted.squares / max(fitted.squares, 1e-300), 0.0)
+    return f"{words(hinted.terms[-1].effect.name)} would explain {percent(share)} of it" * (share > SUGGESTED), moves
 
 
 def shaped(start: Fit, hypothesis: Hypothesis, index: int, over_noise: bool = False) -> Fit:

@@ -46,13 +46,13 @@ def robot_drawing(robot: RobotAlong) -> doc.RobotDrawing:
     """The robot as a page has it, its joints numbered as their poses are."""
     model = read_spec(str(robot.mjcf))[0].compile()
     even = np.linspace(robot.times[0], robot.times[-1], min(robot.times.size, INSTANTS))
-    beside = {name: values for name, values in robot.poses.items() if name != robot.joint}
+    others = {name: values for name, values in robot.poses.items() if name != robot.joint}
     return doc.RobotDrawing(
-        bodies=_bodies(model, [robot.joint, *beside]),
+        bodies=_bodies(model, [robot.joint, *others]),
         ratio=robot.ratio,
         start=float(even[0]),
         step=float(even[1] - even[0]),
-        poses=tuple(in_steps(np.interp(even, robot.times, values)) for values in beside.values()),
+        poses=tuple(in_steps(np.interp(even, robot.times, values)) for values in others.values()),
     )
 
 

@@ -19,6 +19,7 @@ from bench.report.numbers import brief, interval, number, sentence, share, unit_
 from bench.report.over_time import Plotted, time_graph
 from bench.report.parts import MOVES, NO_FURTHER, checks_section, one_panel, origin, parameters_table
 from bench.report.serial import as_json, serialised
+from bench.servos.drive import COMBINED, GAINS
 from bench.servos.servo import Servo
 
 SCHEMA = "bench.servo/1"
@@ -134,8 +135,8 @@ def servo_answers(found: Servo) -> dict[str, str]:
     """Gains, dead time, what else the servo has, and how well it moves."""
     of, (signal, unit) = found.found, found.compared
     named = {**of.parameters, **of.inseparable}
-    own = ("kp", "kv", "(k") if found.law is None else ("po", "ve", "in")
-    gains = [f"{words(name)} {brief(value)}" for name, value in named.items() if name[:2] in own]
+    own = (*GAINS, *COMBINED) if found.law else [name for name in named if name.startswith(("kp", "kv", "(k"))]
+    gains = [f"{words(name)} {brief(value)}" for name, value in named.items() if name in own]
     late = of.parameters.get("dead_time")
     if late is None:
         dead = f"Not determined: {of.refused['dead_time']}."

@@ -16,7 +16,7 @@ from bench.servos.law import ERROR, RATE, Law
 
 Values = Mapping[str, float]
 #: Gains that a law gives, its coefficients, and their unit of time.
-GAINS = ("kp", ERROR, ""), ("kv", RATE, "*s")
+BY_LAW = ("kp", ERROR, ""), ("kv", RATE, "*s")
 #: Which of two dampings is kv is determined where the interval of kv is at most this share of both together.
 SEPARATED = 0.35
 
@@ -109,7 +109,7 @@ def with_law(found: Quantities, law: Law, kind: AxisKind, link: float) -> None:
     `link`: inertia that is not in the armature - kg*m**2 (kg).
     """
     viscous, per = kind.parameter(VISCOUS), f"{kind.effort_unit}{{}}/{kind.length_unit}"
-    gains = {name: law.parameter(lambda v, of=of: v[of], per.format(unit)) for name, of, unit in GAINS}
+    gains = {name: law.parameter(lambda v, of=of: v[of], per.format(unit)) for name, of, unit in BY_LAW}
     kp, kv = gains.values()
     share = kp.half_width / kp.value
     both = found.inseparable.pop(f"kv + {viscous}", None)

@@ -312,8 +312,11 @@ def test_the_pdf_has_every_cell_number_and_caption(typeset, done):
     assert [row[0] for row in answers["rows"]] == [str(k) for k in range(1, 12)]
     for key, words, numbers in answers["rows"]:
         assert words == pdf.plain(done[key].findings[0])
-        first = re.search(r"= ([-\d.]+)", numbers)
-        assert first and float(first[1]) == pytest.approx(done[key].numbers[0].value, rel=5e-3)
+        first = re.search(r"= \(?(−?[\d.]+)([^;]*·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?", numbers)
+        assert first
+        power = (first[3] or "0").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+        shown = float(f"{first[1]}e{power}".replace("−", "-"))
+        assert shown == pytest.approx(done[key].numbers[0].value, rel=5e-3)
     said = " ".join(str(part) for section in content["sections"] for part in section["blocks"])
     assert not re.search(r"(?i)\bbench|estimator|gearbox", said)
 

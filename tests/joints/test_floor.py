@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -13,6 +14,8 @@ from bench.fit.rows import Rows
 from bench.fit.solution import Floor
 from bench.plant.robot import Robot, joint_rig, read_log
 from tests.export.two_links import HIDDEN, MJCF, log, motion, sensed, write_log
+from tests.studies.whole_robots import ROBOTS, hidden
+from tests.studies.whole_robots import write_log as write_robot_log
 
 
 @pytest.mark.parametrize("joint", ["shoulder", "elbow"])
@@ -52,3 +55,14 @@ def test_noise_of_the_known_torque_that_changes_with_the_pose_is_in_the_floor(tm
     rig = joint_rig(None, robot)
     left = bench.identify(read_log(logged, rig, robot, {}), rig).residual
     assert left.rms / left.noise_floor == pytest.approx(1.0, abs=0.03)
+
+
+def test_a_coupling_that_damps_noise_of_a_coarse_encoder_is_not_named(tmp_path):
+    """12 bit at 200 Hz: half of the elbow's noise is that of its link's acceleration, which a soft gear filters."""
+    robot, rng = ROBOTS["desktop_arm"], np.random.default_rng([2, 6])
+    of = hidden(robot, rng, 6)
+    (tmp_path / "arm.xml").write_text(robot.mjcf(6))
+    write_robot_log(tmp_path / "log.csv", robot, mujoco.MjModel.from_xml_path(str(tmp_path / "arm.xml")), of, rng, 6000)
+    (joint,) = bench.robot(tmp_path / "log.csv", tmp_path / "arm.xml", joints="joint_2").joints.values()
+    assert joint.diagnosis is not None
+    assert joint.diagnosis.names == ["cogging_torque"]
