@@ -22,8 +22,7 @@ MOST_DECIMALS = 9
 
 def unit_text(unit: str) -> str:
     """A unit as it is printed: `kg·m²` of `kg*m**2`; empty where there is none."""
-    if unit == "dimensionless":
-        return ""
+    unit = re.sub(r"^dimensionless\*?", "", unit)  # of a torque that is a share of the rated one
     raised = re.sub(r"\*\*(-?\d+)", lambda found: found[1].translate(_RAISED), unit)
     return raised.replace("*", "·").replace("ohm", "Ω")
 

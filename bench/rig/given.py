@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 from bench.errors import InputError
 from bench.names import short
 from bench.rig.motor import catalogue_motor
-from bench.rig.rig import Rig, load_rig, without_constant
+from bench.rig.rig import Rig, load_rig, without_constant, without_rated
 from bench.structured import parse_toml
 from bench.trace.channel import ARRAYS, Recording
 from bench.trace.choose import GivenOptions
@@ -137,14 +137,15 @@ def drafted(recording: Recording, axis: str | None = None) -> tuple[Rig, str, st
     text = draft(found, axis=axis)
     rig = Rig.of(parse_toml(text, name), f"rig drafted from {name}")
     try:
-        signals = assemble(recording, rig.trace).signals
+        trace = assemble(recording, rig.trace)
     except InputError as error:
         if recording.format == ARRAYS:
             raise
         how = f"`bench inspect {shlex.quote(recording.origin)} --draft rig.toml` writes a rig to complete, for --rig"
         raise InputError(error.where, error.found, f"{error.allowed}; {how}") from error
     mapped = [f"{signal} = {column}" for signal, column in rig.trace.columns.items()]
-    remark = None if {"torque", "force"} & signals.keys() else without_constant(rig)
+    direct = {"torque", "force"} & trace.signals.keys()
+    remark = without_rated(rig, trace) if direct else without_constant(rig)
     assumed = "; ".join(filter(None, (f"a {rig.kind} axis", ", ".join(mapped), remark)))
     return rig, text, f"no rig was given, so one was drafted from {name}: {assumed}"
 

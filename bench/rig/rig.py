@@ -20,6 +20,7 @@ from bench.rig.motor import Motor, catalogue_motor
 from bench.rig.values import RigTable, tolerance_of
 from bench.structured import read_toml
 from bench.trace.motion import measured_velocity
+from bench.trace.signals import RELATIVE
 from bench.trace.trace import Trace, less_known, require_plausible
 from bench.validated import input_error
 
@@ -239,9 +240,9 @@ class Rig(RigTable):
     def __init__(self, /, **table: Any) -> None:  # noqa: ANN401 - any content of a rig file
         """Checked from the keys of a rig file, values with units, or numbers in SI; InputError where they are none."""
         source, motor = str(table.get("source", "rig")), table.get("motor")
-        if "source" not in table:  # of a program and not of a file, which states both
-            linear = isinstance(motor, Mapping) and any(key in motor for key in LINEAR_MOTOR)
-            table = {"name": "axis", "kind": (LINEAR if linear else ROTARY).name, **table}
+        linear = isinstance(motor, Mapping) and any(key in motor for key in LINEAR_MOTOR)
+        name = Path(source).stem if "source" in table else "axis"
+        table = {"name": name, "kind": (LINEAR if linear else ROTARY).name, **table}
         if isinstance(motor, dict) and "model" in motor:
             table["motor"] = {**catalogue_motor(motor["model"], f"{source}: motor.model"), **motor}
         kind = LINEAR if table.get("kind") == LINEAR.name else ROTARY
@@ -318,11 +319,12 @@ class Rig(RigTable):
         require_plausible(trace)
         if trace.axis_kind != self.axis_kind and ("velocity" in trace or "position" in trace):
             found = f"found a {trace.axis_kind.name} axis"
-            raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as in {self.source}")
+            other = f'`kind = "{trace.axis_kind.name}"` there if it is one'
+            raise InputError(trace.origin, found, f"allowed: a {self.kind} one, as in {self.source}; {other}")
         direct = self.axis_kind.effort
         if direct in trace:
             rated = self.motor.rated_torque or self.motor.rated_force  # what 100 % of a relative torque means
-            if trace.units[direct] == "dimensionless" and rated is not None:
+            if trace.units[direct] == RELATIVE and rated is not None:
                 return trace[direct] * rated, self.effort_unit
             return trace[direct], trace.units[direct]
         if "current" in trace:
@@ -483,6 +485,14 @@ def without_constant(rig: Rig) -> str | None:
     if rig.motor.torque_per_ampere is not None or {"torque", "force"} & rig.trace.columns.keys():
         return None
     return f"no {effort} constant is given, so {effort}s are in A; set motor.{effort}_constant in the rig"
+
+
+def without_rated(rig: Rig, trace: Trace) -> str | None:
+    """What a rig without a rated torque means where the recorded torque is a share of it; None where it is not."""
+    effort, motor = rig.axis_kind.effort, rig.motor
+    if trace.units.get(effort) != RELATIVE or motor.rated_torque is not None or motor.rated_force is not None:
+        return None
+    return f"the {effort} is a share of the rated one; set motor.rated_{effort} in the rig for one in {rig.effort_unit}"
 
 
 def require(rig: Rig, command: str) -> None:

@@ -54,7 +54,7 @@ def drive_quantities(law: Law, kind: AxisKind, stated: Drive | None) -> Quantiti
         found.refused["position_gain"] = "the integral is of the position alone, as in a PID controller: see kp, kv, ki"
     else:
         found.inseparable = {name: found.parameters[of] for name, of in COMBINED.items()}
-        found.refused["position_gain"] = "position_gain and integral_gain/velocity_gain may be exchanged for each other"
+        found.refused["position_gain"] = "it and integral_gain/velocity_gain may be exchanged for each other"
         found.advice.append(ADVICE)
     found.parameters["kv"] = found.parameters["velocity_gain"]
     if law.limit is None:

@@ -8,7 +8,7 @@ only taken from physics: the position's derivative is the velocity.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -29,8 +29,8 @@ _USUAL = {
 _PLAUSIBLE = {"velocity": 700.0, "current": 1e3, "torque": 1e4, "force": 1e6, "voltage": 2e3}
 #: Names of a voltage as a share of the supply's, and the largest share without a unit, which rounding may exceed.
 _DUTY, _FULL = re.compile(r"duty|pwm|tastgrad", re.IGNORECASE), 1.01
-#: Whole numbers beyond this are counts, or thousandths; sample periods of recorders - s.
-_COUNTS, _PERIODS = 30.0, (2e-4, 2e-2)
+#: Whole numbers beyond this are counts, or thousandths; an example of an encoder's; sample periods of recorders - s.
+_COUNTS, _COUNTED, _PERIODS = 30.0, "turn/4096", (2e-4, 2e-2)
 #: Samples that are looked at, stretches they are cut into, and correlation below which motion determines no unit.
 _ENOUGH, _STRETCHES, _ALIKE = 200_000, 1024, 0.9
 
@@ -60,13 +60,15 @@ def assumed_units(channels: Mapping[str, Channel], units: Mapping[str, str | Non
         if units[name] is None and name != "time" and name != "temperature":
             duty = name == "voltage" and _DUTY.search(channel.name) is not None
             si = RELATIVE if duty else SI_UNITS[name][min(linear, len(SI_UNITS[name]) - 1)]
+            top, counted = _largest(channel.values[:_ENOUGH])
             if duty:
-                reason = "and exceeds 1" if np.nanmax(np.abs(channel.values[:_ENOUGH])) > _FULL else ""
+                reason, instead = "and exceeds 1" if top > _FULL else None, "%"
+            elif bare:
+                reason = _implausible(name, top, counted, si)
+                instead = _instead(name, top, counted, usual.get(name, (si,)))
             else:
-                reason = _implausible(name, channel.values[:_ENOUGH], si) if bare else "where other columns have theirs"
-            found.refused |= (
-                {name: (reason, "%" if duty else usual.get(name, (si,))[-1] if bare else si)} if reason else {}
-            )
+                reason, instead = "where other columns have theirs", si
+            found.refused |= {name: (reason, instead)} if reason else {}
             found.units |= {} if reason else {name: si}
     known = {name: units[name] or found.units.get(name) or usual[name][0] for name in usual}
     moved = _moved(channels, known)
@@ -122,16 +124,32 @@ def _factor(name: str, unit: str) -> float:
     return scale.factor if scale is not None else np.nan
 
 
-def _implausible(name: str, values: Array, si: str) -> str | None:
-    """Why values without a unit are hardly SI; None where they may be."""
+def _largest(values: Array) -> tuple[float, bool]:
+    """Largest magnitude, NaN without two numbers, and whether all are whole numbers."""
     known = values[np.isfinite(values)]
-    top = float(np.abs(known).max(initial=0.0))
-    if known.size < 2:
+    top = float(np.abs(known).max()) if known.size > 1 else np.nan
+    return top, top > _COUNTS and bool((known == np.rint(known)).all())
+
+
+def _implausible(name: str, top: float, counted: bool, si: str) -> str | None:
+    """Why values without a unit are hardly SI; None where they may be."""
+    if np.isnan(top):
         return "and contains no numbers"
-    if top > _COUNTS and (known == np.rint(known)).all():
+    if counted:
         return f"and whole numbers up to {top:.6g} may be counts"
-    largest = _PLAUSIBLE.get(name.removesuffix("_reference"), np.inf)
-    return f"and {top:.3g} {si} is hardly reached" if top > largest else None
+    return f"and {top:.3g} {si} is hardly reached" if top > _reached(name) else None
+
+
+def _instead(name: str, top: float, counted: bool, usual: Sequence[str]) -> str:
+    """A unit to state: of an encoder's counts, or the first usual one in which the largest value is reached."""
+    if counted and usual[-1] in _USUAL["position"][0]:
+        return _COUNTED
+    reached = (unit for unit in usual[1:] if top * _factor(name, unit) <= _reached(name))
+    return next(reached, usual[-1])
+
+
+def _reached(name: str) -> float:
+    return _PLAUSIBLE.get(name.removesuffix("_reference"), np.inf)
 
 
 def _time_unit(ticks: Array, moved: tuple[Array, Array, Array] | None) -> tuple[str, str | None]:

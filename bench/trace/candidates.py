@@ -66,7 +66,7 @@ COLUMNS: dict[str, tuple[str, str | None, str]] = {
     "effort0": ("torque", "N*m", _ROS),
     "ms_today": ("time", "ms", _VESC),
     "q_axis_current": ("current", "A", _VESC),
-    "erpm": ("velocity", None, "electrical revolutions: write rpm/P with the motor's P pairs of poles"),
+    "erpm": ("velocity", "erpm", _VESC),
     "r62": ("velocity_reference", "rpm", _SINAMICS),
     "r63": ("velocity", "rpm", _SINAMICS),
     "r80": ("torque", "N*m", _SINAMICS),
@@ -109,7 +109,7 @@ def candidates(channels: Sequence[Channel]) -> dict[Channel, LikelySignal]:
     names = {channel: read_name(_bare(channel)) for channel in channels}
     bare = all(_written_unit(channel) is None or _fits("time", _written_unit(channel)) for channel in channels)
     reasons = {channel: _reasons(channel, name, bare) for channel, name in names.items()}
-    for signal, channel, reason in _derivative(names, reasons):
+    for signal, channel, reason in _by_motion(names, reasons):
         reasons[channel][signal].append((DERIVED, reason))
     found = {channel: _candidate(channel, names[channel], reasons[channel]) for channel in channels}
     kept = {channel: one for channel, one in found.items() if one is not None and one.weight >= DERIVED}
@@ -167,11 +167,12 @@ def _reasons(channel: Channel, name: ColumnName, bare: bool) -> Reasons:
         rises = signal == "time" and _rises(channel.values)
         if signal == "time" and not (rises or told or channel.moments):
             continue
-        found[signal] = [*_of_name(signal, channel, name, told, fits or bare), *_of_unit(signal, unit, fits)]
+        plain = bool(fits or bare or (fits is None and unit is not None))
+        found[signal] = [*_of_name(signal, channel, name, told, plain), *_of_unit(signal, unit, fits)]
         if signal == "time" and channel.moments:
             found[signal].append((4.0, "contains moments"))
-        if rises and found[signal]:
-            found[signal].append((1.0, "rises steadily"))
+        if rises and (found[signal] or _is_nameless(name)):
+            found[signal].append((1.0 if found[signal] else DERIVED, "rises steadily"))
     return found
 
 
@@ -233,10 +234,15 @@ def _rises(values: Array) -> bool:
     return steps.size > 0 and bool((steps >= 0).all()) and float(np.median(steps)) > 0.0
 
 
-def _derivative(
+def _is_nameless(name: ColumnName) -> bool:
+    return not name.told and name.letter is None
+
+
+def _by_motion(
     names: Mapping[Channel, ColumnName], reasons: Mapping[Channel, Reasons]
 ) -> list[tuple[str, Channel, str]]:
-    """Of the columns of each axis the two of which one is most plainly the other's derivative, with that reason."""
+    """Of the columns of each axis the two of which one is most plainly the other's derivative, and one without a name
+    that inertia and friction of that motion explain; with the reason."""
     groups: dict[tuple[str | None, int], list[Channel]] = {}
     for channel, of in reasons.items():
         if not {"position", "velocity"}.isdisjoint(of) and not names[channel].setpoint and channel.values.size >= 64:
@@ -250,9 +256,27 @@ def _derivative(
                 possible = other is not one and "position" in reasons[one] and "velocity" in reasons[other]
                 if possible and (alike := float(rate @ level)) > best:
                     best, pair = alike, (one, other)
-        if pair is not None:
-            found.append(("position", pair[0], f"its derivative is '{pair[1].name}'"))
-            found.append(("velocity", pair[1], f"is the derivative of '{pair[0].name}'"))
+        if pair is None:
+            continue
+        found.append(("position", pair[0], f"its derivative is '{pair[1].name}'"))
+        found.append(("velocity", pair[1], f"is the derivative of '{pair[0].name}'"))
+        others = {one: level for one, level in levels.items() if one not in pair and _is_nameless(names[one])}
+        effort = _explained_by(rates[pair[1]], levels[pair[1]], others)
+        if effort is not None:
+            found.append(("torque", effort, f"accelerates '{pair[1].name}', so it is a torque, or a current"))
+    return found
+
+
+def _explained_by(rate: Array, level: Array, others: Mapping[Channel, Array]) -> Channel | None:
+    """The column that a speed's slope and friction explain best; None where the speed alone explains it, too."""
+    best, found = DERIVATIVE, None
+    design = np.stack([level, np.sign(level), rate], axis=1)
+    for one, values in others.items():
+        shares = [
+            float(values @ part @ np.linalg.lstsq(part, values, rcond=None)[0]) for part in (design[:, :2], design)
+        ]
+        if shares[0] < DERIVATIVE and shares[1] > best:
+            best, found = shares[1], one
     return found
 
 

@@ -17,7 +17,8 @@ from bench.trace.assumed import Assumption, assumed_units
 from bench.trace.candidates import MAYBE, SURE, LikelySignal, candidates
 from bench.trace.channel import Channel, Recording, split_label
 from bench.trace.signals import SI_UNITS, is_index, plain_name, scale_in, signal_of, unit_of, wanted_units
-from bench.units.conversion import UnitScale, scale_or_none
+from bench.units.conversion import UnitScale, scale_of, scale_or_none
+from bench.units.grammar import UnitError
 
 #: Signals of which one that can be read is enough: the others are then left out where they cannot.
 ENOUGH = (("velocity", "position"), ("torque", "force", "current"))
@@ -212,9 +213,10 @@ class _Chosen:
             found = channel.open_unit or f"has no unit{f', {reason}' if reason else ''}"
             raise InputError(channel.place(), found, f"allowed: a unit in the file, or e.g. {line}")
         try:
-            scale = scale_in(signal, unit, channel.place())
-        except InputError as error:
-            raise InputError(error.where, error.found, f"{error.allowed}; {line} selects it") from error
+            scale = scale_of(unit, wanted_units(signal))
+        except UnitError as error:
+            line = recording.stating(signal, channel, error.example or example)
+            raise InputError(channel.place(), error.found, f"{error.allowed}; {line} selects it") from error
         return SignalColumn(channel, scale, self.sign, None if self.unit else usual)
 
 

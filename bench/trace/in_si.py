@@ -24,6 +24,8 @@ from bench.trace.wraps import Unwrapping, Wraps
 FEW = 0.05
 #: Share by which the sample period of a rig may differ from the mean step of the times in the file.
 PERIOD = 0.01
+#: Samples between two starts of a clock, at least, and sample periods that are taken to be between them.
+SHORTEST_PART, HOLE_OF_START = 50, 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +96,9 @@ def in_si(
     for name in units:
         channel = chosen[name].channel
         if channel.time not in clocks:
-            clocks[channel.time] = _clock_of(channel, chosen.get("time"), how, notes)
+            clock = _clock_of(channel, chosen.get("time"), how, notes)
+            several = len({chosen[name].channel.time for name in units}) > 1
+            clocks[channel.time] = clock if several else _running_on(clock, notes)
         clock, values = clocks[channel.time], _values(chosen[name])
         if values.size != clock.time.size:
             if not any(name in group for group in ENOUGH):
@@ -191,6 +195,23 @@ def _clock_of(channel: Channel, time: SignalColumn | None, how: ReadingOptions, 
         return Clock(count * period, count, period, own.place)
     clock = Clock(raw * scale.factor if scale.factor != 1.0 else raw, raw, scale.factor, own.place)
     return clock if period is None else _agreeing(clock, period, own, notes)
+
+
+def _running_on(clock: Clock, notes: list[str]) -> Clock:
+    """The clock of a log whose tool was started again, with what follows each start placed behind a hole."""
+    time = clock.time
+    back = np.flatnonzero(np.diff(time) < 0) + 1
+    parts = np.split(time, back)
+    if not back.size or min(part.size for part in parts) <= SHORTEST_PART:
+        return clock
+    hole = HOLE_OF_START * float(np.median(np.diff(parts[0])))
+    if any(part[0] > parts[0][SHORTEST_PART] or part[1] - part[0] > hole for part in parts):
+        return clock  # single times that are wrong
+    starts = np.cumsum([0.0, *(float(np.ptp(part)) + hole for part in parts[:-1])])
+    moved = np.concatenate([part - part[0] + time[0] + start for part, start in zip(parts, starts, strict=True)])
+    more = f", and {counted(back.size - 1, 'time')} more" if back.size > 1 else ""
+    notes.append(f"{clock.place(int(back[0]))}: the times start again{more}; what follows is placed behind a hole")
+    return replace(clock, time=moved)
 
 
 def _filled(time: Channel, notes: list[str]) -> Array:

@@ -17,8 +17,9 @@ from bench.trace.candidates import candidates
 from bench.trace.channel import Channel, Recording
 from bench.trace.choose import ReadingOptions, SignalColumn, axes_of, choose, of_axis
 from bench.trace.in_si import in_si
-from bench.trace.signals import scale_in
+from bench.trace.signals import scale_in, wanted_units
 from bench.trace.trace import on_time_base, unused
+from bench.units.conversion import scale_or_none
 
 SCHEMA = "bench.inspect/1"
 
@@ -193,6 +194,7 @@ def _columns(recording: Recording, chosen: Mapping[str, SignalColumn], how: Read
         suggested.add(key)
         if channel not in read or not one.known or one.usual is not None:
             unit = one.unit or one.usual or ("" if channel.moments or channel in read else "?")
+            unit = "?" if unit and scale_or_none(unit, wanted_units(one.signal)) is None else unit
             text = recording.column(channel) + (f" [{unit}]" if unit else "")
             lines[channel] = f"{one.signal} = {json.dumps(text, ensure_ascii=False)}"
     for channel in channels:

@@ -113,7 +113,8 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
         )
     recorded = [name for name in ("velocity", "position") if name in trace]
     if not recorded:
-        raise InputError(trace.origin, "contains neither velocity nor position", "identification needs one of them")
+        wanted = "identification needs one of them; `bench inspect` lists which column it may be: map that in the rig's"
+        raise InputError(trace.origin, "contains neither velocity nor position", f"{wanted} [trace.columns]")
     parts = moving(trace, recorded[0], 2 * least.margin)
     noise = {name: white_noise(*(trace[name][part] for part in parts)) for name in recorded}
     rank = {name: noise[name] * least.noise_gain(2 if name == "position" else 1) for name in noise}

@@ -65,8 +65,8 @@ WORDS: dict[str, str] = {
     "temperature": r"temp\w*",
     "acceleration": r"acc|accel\w*|beschl\w*",
 }
-#: What is a signal where no word determines one: an encoder, `q`, and letters of the field where no word is with them.
-LETTERS: dict[str, str] = {"q": "position", "enc": "position", "encoder": "position"}
+#: What is a signal where no word determines one: an encoder, `q`, `eff` of a joint, and letters without a word.
+LETTERS: dict[str, str] = {"q": "position", "enc": "position", "encoder": "position", "eff": "torque"}
 _WITH_WORDS = frozenset(LETTERS)
 LETTERS |= {"x": "position", "w": "velocity", "i": "current", "u": "voltage", "t": "time"}
 #: Letters that mean something else as often: signals where their unit agrees.

@@ -1,7 +1,8 @@
 """Signals with their own sample times, jitter and holes, brought to one regular time base on purpose.
 
 The rules, in order:
-1. Time never runs backwards; a repeated time keeps its first sample.
+1. Samples that come in another order are sorted, where that makes the times regular; otherwise time never runs
+   backwards. A repeated time keeps its first sample.
 2. A step beyond `LONGEST_STEP` sample periods is a hole. Nothing is placed inside it; the segments on both sides stand
    alone.
 3. Within a segment sample k is at t0 + k*T. Times that follow this line exactly stay as they are, bit for bit, and
@@ -87,11 +88,12 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
     of_clock: dict[Clock, dict[str, Array]] = {}
     for name, signal in signals.items():
         of_clock.setdefault(signal.clock, {})[name] = signal.values
-    cleaned = {recorded: _without_duplicates(recorded, values) for recorded, values in of_clock.items()}
+    ordered = {recorded: _in_order(recorded, values) for recorded, values in of_clock.items()}
+    cleaned = {recorded: _without_duplicates(*one[:2]) for recorded, one in ordered.items()}
     clock, values, duplicates = cleaned.pop(signals[leader].clock)
     base = _find(clock, duplicates)
     placed = {name: _on_own_base(base, clock.time, array) for name, array in values.items()}
-    notes = _notes(base, clock)
+    notes = [*dict.fromkeys(note for *_, note in ordered.values() if note), *_notes(base, clock)]
     time, valid = base.time, np.ones(base.time.size, dtype=bool)
     for other, others, _ in cleaned.values():
         for name, array in others.items():
@@ -116,6 +118,31 @@ def regular(signals: Mapping[str, SampledSignal]) -> Regular:
     return Regular(time, {name: placed[name] for name in signals}, found, tuple(notes))
 
 
+def _in_order(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock, Mapping[str, Array], str]:
+    """The clock and its signals by increasing times, and a note on what was done.
+
+    InputError where times run backwards and sorting does not make them regular.
+    """
+    time = clock.time
+    back = np.flatnonzero(np.diff(time) < 0) + 1
+    if not back.size:
+        return clock, values, ""
+    order = np.argsort(time, kind="stable")
+    steps = np.diff(time[order])
+    if steps.min() <= 0.5 * float(np.median(steps)):
+        first = int(back[0])
+        found = f"time runs backwards ({time[first - 1]:g} s, then {time[first]:g} s)"
+        raise InputError(clock.place(first), found, "allowed: increasing times")
+    by_time = Clock(time[order], clock.recorded[order], clock.tick, lambda k: clock.place(_from(order, k)))
+    note = f"{counted(back.size, 'sample')} earlier than the one before; sorted by time"
+    return by_time, {name: array[order] for name, array in values.items()}, note
+
+
+def _from(order: Array, place: int | None) -> int | None:
+    """Where a sample was before it was sorted."""
+    return None if place is None else int(order[place])
+
+
 def _without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock, Mapping[str, Array], int]:
     """The clock and its signals without samples at a time already taken, and how many those were."""
     time = clock.time
@@ -124,10 +151,6 @@ def _without_duplicates(clock: Clock, values: Mapping[str, Array]) -> tuple[Cloc
     if (time[1:] > time[:-1]).all():
         return clock, values, 0
     step = np.diff(time)
-    if (step < 0).any():
-        first = int(np.argmax(step < 0)) + 1
-        found = f"time runs backwards ({time[first - 1]:g} s, then {time[first]:g} s)"
-        raise InputError(clock.place(first), found, "allowed: increasing times")
     again = np.concatenate([[False], step == 0])
     other = again & np.logical_or.reduce([np.concatenate([[False], np.diff(v) != 0]) for v in values.values()])
     if other.sum() > MOST_DUPLICATES * time.size:

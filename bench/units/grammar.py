@@ -131,10 +131,10 @@ _COMMENT = re.compile(r"(?<=[^\s*/])\s*\((?!.*(?:eff|rms|peak|pk|el))[^()\d]{3,}
 
 
 class UnitError(ValueError):
-    """A text that is no unit, or not plainly one: `found` is what it is, `allowed` what would be."""
+    """A text that is no unit, or not plainly one: `found` is what it is, `allowed` what would be; `example`: one."""
 
-    def __init__(self, found: str, allowed: str) -> None:
-        self.found, self.allowed = found, allowed
+    def __init__(self, found: str, allowed: str, example: str | None = None) -> None:
+        self.found, self.allowed, self.example = found, allowed, example
         super().__init__(f"{found}; {allowed}")
 
 
@@ -253,13 +253,15 @@ def _add(match: re.Match[str], groups: list[UnitProduct], text: str, wanted: tup
 def _named(name: str, text: str, wanted: tuple[str, ...]) -> UnitProduct:
     """The meaning of one name."""
     if name in COUNTS or name.lower() in COUNTS:
-        example = "turn/4096/s" if any("/s" in si for si in wanted) else "turn/4096"
+        of_turn = {"rad": "turn/4096", "rad/s": "turn/4096/s"}
+        turned = next((of_turn[si] for si in wanted or ("rad",) if si in of_turn), None)
+        example = turned or ("2.69 mA" if "A" in wanted else f"0.001 {wanted[0]}")
         found = f"found unit '{text}', counts without a scale in the file"
-        wanted_text = f"{allowed(wanted)}, e.g. '{example}' for an encoder of 4096 counts a turn, or '2.69 mA'"
-        raise UnitError(found, wanted_text)
+        known = " for an encoder of 4096 counts a turn" if turned else ""
+        raise UnitError(found, f"{allowed(wanted)}, e.g. '{example}'{known}", example)
     if name.lower() in ELECTRICAL:
         mechanical = "allowed: the mechanical one, e.g. 'rpm/7' for 7 pairs of poles"
-        raise UnitError(f"found '{text}', which is electrical", mechanical)
+        raise UnitError(f"found '{text}', which is electrical", mechanical, "rpm/7")
     capitals = _CAPITALS.get(name.upper()) if name.isupper() or name.startswith("M") else None
     if capitals and name[1:] == capitals[1:] and name[0] == "M":
         if not wanted or {"N*m/rad", "N/m"} & set(wanted):

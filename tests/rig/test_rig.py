@@ -83,9 +83,9 @@ def test_a_wrong_rig_is_refused_naming_file_key_found_and_allowed(rig, text, mes
     assert "\n" not in str(caught.value)
 
 
-def test_kind_is_required_and_known(rig):
-    with pytest.raises(InputError, match=r"kind: missing"):
-        rig("", head='name = "axis"\n')
+def test_name_and_kind_may_be_left_to_the_file_and_its_motor(rig):
+    assert (rig("", head="").name, rig("", head="").kind) == ("rig", "rotary")
+    assert rig('[motor]\nmoving_mass = "2 kg"\n', head="").kind == "linear"
     with pytest.raises(InputError, match=r"kind: found 'round'; allowed: .*'rotary' or 'linear'"):
         rig("", head='name = "axis"\nkind = "round"\n')
 
