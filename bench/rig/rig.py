@@ -19,7 +19,7 @@ from bench.rig import values
 from bench.rig.motor import Motor, catalogue_motor
 from bench.rig.values import RigTable, tolerance_of
 from bench.structured import read_toml
-from bench.trace.motion import measured_velocity
+from bench.trace.motion import MAP_ONE, measured_velocity
 from bench.trace.signals import RELATIVE
 from bench.trace.trace import Trace, less_known, require_plausible
 from bench.validated import input_error
@@ -337,8 +337,7 @@ class Rig(RigTable):
         raise InputError(
             trace.origin,
             "; ".join(["contains no current, torque, force or voltage", *unread]),
-            "identification needs one of them; `bench inspect` lists which column it may be: map that in the rig's "
-            "[trace.columns]",
+            MAP_ONE,
         )
 
     def net_effort(self, trace: Trace) -> tuple[Array, str]:

@@ -34,6 +34,8 @@ ENOUGH, PIECE = 2**17, 2**13
 MOVES = 0.1
 #: A filtered sign further than this from +-1 has seen speeds of the other sign, or of none.
 ONE_SIGN = 1e-3
+#: What to do where a recording lacks all signals of a kind.
+MAP_ONE = "identification needs one of them; `bench inspect` lists which column it may be: map that in the rig's [trace.columns]"
 
 
 @dataclass(frozen=True)
@@ -113,8 +115,7 @@ def condition(trace: Trace, effort: Array, cutoff: float | None = None) -> Condi
         )
     recorded = [name for name in ("velocity", "position") if name in trace]
     if not recorded:
-        wanted = "identification needs one of them; `bench inspect` lists which column it may be: map that in the rig's"
-        raise InputError(trace.origin, "contains neither velocity nor position", f"{wanted} [trace.columns]")
+        raise InputError(trace.origin, "contains neither velocity nor position", MAP_ONE)
     parts = moving(trace, recorded[0], 2 * least.margin)
     noise = {name: white_noise(*(trace[name][part] for part in parts)) for name in recorded}
     rank = {name: noise[name] * least.noise_gain(2 if name == "position" else 1) for name in noise}
