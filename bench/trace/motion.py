@@ -35,7 +35,9 @@ MOVES = 0.1
 #: A filtered sign further than this from +-1 has seen speeds of the other sign, or of none.
 ONE_SIGN = 1e-3
 #: What to do where a recording lacks all signals of a kind.
-MAP_ONE = "identification needs one of them; `bench inspect` lists which column it may be: map that in the rig's [trace.columns]"
+MAP_ONE = (
+    "identification needs one of them; `bench inspect` lists likely columns; map one in [trace.columns] of the rig"
+)
 
 
 @dataclass(frozen=True)
