@@ -129,11 +129,6 @@ def moved(
     return run(Plant(AxisModel(parameters, tuple(effects), winding=WINDING), open_loop, PERIOD), references)
 
 
-def signals(states: States) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time, position and velocity, (n,) each."""
-    return states.time, states.position, states.velocity
-
-
 class Reversals:
     """A motion of both worlds: fast and slow reversals of speed. It starts without speed and acceleration."""
 

@@ -28,27 +28,18 @@ def effect(name):
         ("torque_constant_drift", ([-0.0374], [-0.0376]), ((), ())),
         ("current_gain_asymmetry", ([0.0999], [0.1001]), ((), ())),  # two shunts of 5 %
         ("current_gain_asymmetry", ([-0.0999], [-0.1001]), ((), ())),
-        (
-            "presliding_friction",
-            ([0.05, 0.0], [0.05, 0.0]),
-            ((10.01 / 60.0,), (9.99 / 60.0,)),
-        ),  # ten times the travel
-        (
-            "load_torque_event",
-            ([0.1], [0.1]),
-            ((1.0, 1.00472), (1.0, 1.0047)),
-        ),  # 2.355 widths
-        ("load_torque_event", ([0.1], [0.1]), ((1.0, 5.79), (1.0, 5.81))),  # 0.6 of 8 s
-        (
-            "backlash",
-            ([1e-3], [1e-3]),
-            ((3.01e-5, 1e3, 0.2, 0.0), (2.99e-5, 1e3, 0.2, 0.0)),
-        ),  # 0.005 of what 6 N*m bend 1e3 N*m/rad
+        ("stribeck_friction", ([0.08], [0.08]), ((19.9,), (20.1,))),  # a rise within a fifth of the top speed
+        ("presliding_friction", ([0.05, 0.0],) * 2, ((10.01 / 60.0,), (9.99 / 60.0,))),  # ten times the travel
+        ("load_torque_event", ([0.1],) * 2, ((1.0, 1.00472), (1.0, 1.0047))),  # 2.355 widths
+        ("load_torque_event", ([0.1],) * 2, ((1.0, 5.79), (1.0, 5.81))),  # 0.6 of 8 s
+        # 0.005 of what 6 N*m bend 1e3 N*m/rad
+        ("backlash", ([1e-3],) * 2, ((3.01e-5, 1e3, 0.2, 0.0), (2.99e-5, 1e3, 0.2, 0.0))),
     ],
 )
 def test_plausible(name, strengths, shapes):
     verdicts = [effect(name).plausible([s], [shape], SCOPE) for s, shape in zip(strengths, shapes, strict=True)]
     assert verdicts == [True, False]
+    assert not effect(name).plausible(strengths, shapes, SCOPE)
 
 
 @pytest.mark.parametrize(
@@ -71,6 +62,11 @@ def test_plausible(name, strengths, shapes):
 def test_physical(name, inside, outside, shape):
     assert effect(name).physical(inside, shape, BASE)
     assert not effect(name).physical(outside, shape, BASE)
+
+
+@pytest.mark.parametrize(("rise", "coulomb", "sure"), [(0.08, 0.06, True), (0.08, 0.0, False), (0.0, 0.06, False)])
+def test_a_rise_is_one_of_dry_friction_that_there_is_at_any_speed(rise, coulomb, sure):
+    assert effect("stribeck_friction").physical([rise], [5.0], Axis(1e-3, 0.0, coulomb)) is sure
 
 
 def test_a_coupling_rings_and_one_that_hardly_does_is_passed_through_only():

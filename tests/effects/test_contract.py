@@ -1,11 +1,12 @@
 """What every effect of the catalogue keeps to, whatever it is."""
 
 from dataclasses import replace
-from itertools import product
+from functools import cache
 
 import numpy as np
 import pytest
 
+from bench.arrays import rms
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Bristles, Columns, Coupling, Effect, Stage
 from bench.effects.mjcf import AXIS as AXIS_JOINT
@@ -14,7 +15,7 @@ from bench.effects.signals import AxisState, Signals
 from bench.effects.torque import Friction, Inertia, Torque
 from bench.plant.axis_model import build_spec
 from bench.plant.run import run
-from bench.plant.sensing import reported_states
+from bench.plant.sensing import remaining, reported_states
 from bench.plant.stepped_effects import SteppedEffects
 from tests.effects.axes import AXIS, FREE, PARAMETERS, PERIOD, VALUES, Reversals, model, moved, plant, present
 from tests.plant.open_loop import open_loop
@@ -26,8 +27,8 @@ SHORT = Reversals(0.4).references()
 BALANCED = [
     name for name in EFFECTS if isinstance(catalogue()[name], Columns) and not isinstance(catalogue()[name], Coupling)
 ]
-#: Effects that only take energy from the motion.
-DISSIPATIVE = [n for n in EFFECTS if isinstance(catalogue()[n], Friction | Bristles) or n == "quadratic_drag"]
+#: What only takes energy from the motion and is none of the frictions of `tests/laws/test_energy.py`.
+DISSIPATIVE = [n for n in EFFECTS if isinstance(catalogue()[n], Bristles) or n == "quadratic_drag"]
 
 
 def with_null(name):
@@ -40,10 +41,8 @@ def test_every_effect_of_the_catalogue_is_tried():
 
 
 @pytest.mark.parametrize("name", EFFECTS)
-def test_null_values_leave_the_trajectory_as_it_is(name):
-    bare, null = plant(), replace(plant(), axis=model().with_effects([with_null(name)]))
-    assert null.model.effects == ()
-    np.testing.assert_array_equal(run(null, SHORT).velocity, run(bare, SHORT).velocity)
+def test_null_values_are_no_effect(name):
+    assert replace(plant(), axis=model().with_effects([with_null(name)])).model == plant().model
 
 
 @pytest.mark.parametrize("name", [n for n in EFFECTS if np.isfinite(list(dict(with_null(n).values).values())).all()])
@@ -70,12 +69,11 @@ def test_null_values_do_nothing_where_they_act(name):
 @pytest.mark.parametrize("name", EFFECTS)
 def test_it_does_something(name):
     """To the motion that is reported, or to the torque."""
-    off = reported(name).velocity - reported().velocity
-    torque = reported().torque
-    misread = reported(name).torque - torque
-    assert np.sqrt(np.mean(off**2)) > 0.01 or np.sqrt(np.mean(misread**2)) > 0.01 * np.sqrt(np.mean(torque**2))
+    found, bare = reported(name), reported()
+    assert rms(found.velocity - bare.velocity) > 0.01 or rms(found.torque - bare.torque) > 0.01 * rms(bare.torque)
 
 
+@cache
 def reported(*names):
     return reported_states(model(*names), run(plant(*names), SHORT))
 
@@ -89,22 +87,13 @@ def test_order_does_not_matter():
     assert np.abs(first).max() > 10.0
 
 
-@pytest.fixture(scope="module")
-def coasting():
-    """Speed at every tick of an axis with each friction, left alone at either speed."""
-    friction = replace(FREE, coulomb_friction=AXIS.coulomb, viscous_friction_coefficient=AXIS.viscous)
-    cases = list(product(DISSIPATIVE, (40.0, -40.0)))
-    return {
-        (name, velocity): moved([present(name)], 1.0, velocity=velocity, parameters=friction).velocity
-        for name, velocity in cases
-    }
-
-
 @pytest.mark.parametrize("name", DISSIPATIVE)
 @pytest.mark.parametrize("velocity", [40.0, -40.0])
-def test_friction_only_dissipates(name, velocity, coasting):
+def test_friction_only_dissipates(name, velocity):
     """Coasting, the axis never gains energy, but for what bristles store, and loses it all."""
-    energy = 0.5 * FREE.inertia * coasting[name, velocity] ** 2
+    friction = replace(FREE, coulomb_friction=AXIS.coulomb, viscous_friction_coefficient=AXIS.viscous)
+    states = moved([present(name)], 1.0, velocity=velocity, parameters=friction)
+    energy = 0.5 * FREE.inertia * states.velocity**2
     stored = AXIS.coulomb**2 / (2.0 * VALUES[name]["bristle_stiffness"]) if name == "presliding_friction" else 0.0
     assert (energy <= np.minimum.accumulate(energy) + stored + 1e-9).all()
     assert energy[-1] < 0.01 * energy[0]
@@ -123,7 +112,7 @@ def test_columns_agree_with_the_simulation(name):
     gap, columns, shape = balance(effect, values, states)
     strengths, *_ = np.linalg.lstsq(columns, gap, rcond=None)
     off = gap - columns @ strengths
-    share = np.sqrt(np.mean(off**2) / np.mean(gap**2))
+    share = rms(off) / rms(gap)
     found = effect.report(strengths, shape, AXIS)
     print(f"{name}: {share:.1e} of the gap unexplained; {found} of {values}")
     assert share < 0.006
@@ -154,17 +143,7 @@ def balance(effect: Effect, values, states):
 
 def signals_of(time, position, velocity, effort):
     sign = np.sign(velocity)
-    return Signals(
-        time=time,
-        position=position,
-        velocity=velocity,
-        sign=sign,
-        effort=effort,
-        torque=effort,
-        friction=sign,
-        peak_effort=AXIS.peak_torque,
-        sample_period=PERIOD,
-    )
+    return Signals(time, position, velocity, sign, effort, effort, sign, AXIS.peak_torque, PERIOD)
 
 
 def test_axes_with_and_without_effects_are_moved_side_by_side_as_alone():
@@ -191,3 +170,12 @@ def test_every_stage_of_the_signal_chain_has_its_own_place():
     """Two of one number would be one."""
     assert len(Stage.__members__) == len([*Stage])
     assert [*Stage] == sorted(Stage)
+
+
+def test_effort_that_remains_after_the_stage_follows_the_position():
+    """Along a recording, too, as a held model gets it: M*(1 + A*sin(n*q + phi))."""
+    position, effort = np.linspace(-3.0, 5.0, 50), np.linspace(-1.0, 2.0, 50)
+    at, values = AxisState(0.0, position, 0.0 * position, effort), VALUES["torque_ripple"]
+    factor = 1.0 + values["relative_amplitude"] * np.sin(values["harmonic"] * position + values["phase"])
+    np.testing.assert_allclose(remaining(model("torque_ripple"), Stage.COMMUTATION, at), effort * factor, rtol=1e-12)
+    np.testing.assert_array_equal(remaining(model("torque_ripple"), Stage.CURRENT_SENSOR, at), effort)

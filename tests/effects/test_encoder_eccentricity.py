@@ -7,22 +7,8 @@ from bench.effects.encoder_eccentricity import EFFECT
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Term
 from tests.diagnosis.constructed import bare, moved, recorded
-from tests.effects.axes import PERIOD
 
 VALUES = {"amplitude": 0.05, "phase": 0.9}
-
-
-def test_velocity_is_the_derivative_of_position():
-    time = PERIOD * np.arange(4000)
-    position, velocity = EFFECT.measured(VALUES, 20.0 * time, np.full_like(time, 20.0))
-    np.testing.assert_allclose(np.gradient(position, PERIOD)[1:-1], velocity[1:-1], atol=1e-4)
-    assert np.ptp(velocity) > 1.9
-
-
-def test_undone():
-    position, velocity = np.linspace(-20.0, 20.0, 500), np.linspace(5.0, -5.0, 500)
-    back = EFFECT.actual(VALUES, *EFFECT.measured(VALUES, position, velocity))
-    np.testing.assert_allclose(back, (position, velocity), atol=1e-12)
 
 
 def proposed(stiffness):

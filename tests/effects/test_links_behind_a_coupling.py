@@ -31,21 +31,32 @@ def moving(weight=WEIGHT):
     return replace(one, known=known, known_slope=slope, link_inertia=LINK)
 
 
-def link(start, pushed):
-    """Angle of the link (n,) whose gear pushes it with a torque of twist and its rate, by SciPy."""
+def swelling(share):
+    """The same link, whose inertia other joints change along the log, by a share, as its known momentum has it."""
+    still, more = moving(), share * LINK * np.sin(2.0 * np.pi * 0.3 * TIME)
+    return replace(still, known=(still.known[0], (more * still.velocity, 1)), known_inertia=more), LINK + more
+
+
+def swinging(inertia, pushed):
+    """Angle (n,) of a link of an inertia (n,) whose gear pushes it with a torque of twist and its rate, by SciPy."""
+    rate = np.gradient(inertia, PERIOD)
 
     def slopes(t, state):
         twist = 0.6 * np.sin(TURNING * t) - state[0]
-        rate = 0.6 * TURNING * np.cos(TURNING * t) - state[1]
-        return state[1], (pushed(twist, rate) - WEIGHT * np.sin(state[0])) / LINK
+        faster = 0.6 * TURNING * np.cos(TURNING * t) - state[1]
+        heavy, growing = np.interp(t, TIME, inertia), np.interp(t, TIME, rate)
+        return state[1], (pushed(twist, faster) - WEIGHT * np.sin(state[0]) - growing * state[1]) / heavy
 
+    start = [0.0, 0.6 * TURNING]
     return solve_ivp(slopes, (0.0, TIME[-1]), start, "LSODA", TIME, rtol=1e-9, atol=1e-11, max_step=2e-4).y[0]
 
 
 def test_an_elastic_link_is_bent_by_its_weight():
     signals, frequency, damping = moving(), 2.0 * np.pi * 9.0, 0.1
     stiffness, loss = LINK * frequency**2, 2.0 * damping * LINK * frequency
-    expected = link([0.0, 0.6 * TURNING], lambda twist, rate: stiffness * twist + loss * rate) - signals.position
+    expected = (
+        swinging(np.full(TIME.size, LINK), lambda twist, rate: stiffness * twist + loss * rate) - signals.position
+    )
     ((bent, _), *_, (more, order)) = ELASTIC.columns(signals, (frequency, damping))[0]
     later = TIME > 1.0  # what the start rings has died away
     assert bent[later] == pytest.approx(expected[later], abs=2e-3 * np.abs(expected).max())
@@ -63,18 +74,11 @@ def test_what_a_link_has_more_in_its_known_torque_swings_with_it(stated):
         signals, known=((weight, 0), (more * signals.velocity, 1)), known_inertia=more, link_inertia=stated * LINK
     )
     of_stated = np.sqrt(1.0 / stated)
-    columns = [
-        (
-            ELASTIC.columns(signals, (frequency, damping))[0],
-            ELASTIC.columns(other, (frequency * of_stated, damping * of_stated))[0],
-        ),
-        *zip(
-            dead_zone_columns([signals], [(gap, 300.0, 0.4, 0.0)])[0],
-            dead_zone_columns([other], [(gap, 300.0 * of_stated, 0.4 * of_stated, 0.0)])[0],
-            strict=True,
-        ),
-    ]
-    for expected, found in columns:
+    coupled = frequency * of_stated, damping * of_stated
+    pairs = [(ELASTIC.columns(signals, (frequency, damping))[0], ELASTIC.columns(other, coupled)[0])]
+    one, two = dead_zone_columns([signals], [(gap, 300.0, 0.4, 0.0)])[0], (gap, 300.0 * of_stated, 0.4 * of_stated, 0.0)
+    pairs += zip(one, dead_zone_columns([other], [two])[0], strict=True)
+    for expected, found in pairs:
         for (one, _), (two, _) in zip(expected, found, strict=True):
             assert stated * two[50:-50] == pytest.approx(one[50:-50], abs=1e-3 * np.abs(one).max())
 
@@ -86,47 +90,17 @@ def test_a_standing_elastic_link_starts_where_its_weight_bends_it():
     assert bent == pytest.approx(-0.7 / (LINK * 60.0**2))
 
 
-def test_a_loose_link_falls_from_one_side_of_its_gap_to_the_other():
-    signals, gap, frequency, damping = moving(), 0.04, 300.0, 0.4
+@pytest.mark.parametrize(("share", "near"), [(0.0, 0.02), (0.3, 0.05)])
+def test_a_loose_link_falls_from_one_side_of_its_gap_to_the_other_as_slowly_as_it_is_heavy(share, near):
+    (signals, inertia), gap, frequency, damping = swelling(share), 0.04, 300.0, 0.4
 
     def pushed(twist, rate):
         deep = twist - np.clip(twist, -0.5 * gap, 0.5 * gap)
         return LINK * (frequency**2 * deep + 2.0 * damping * frequency * rate * (deep != 0.0))
 
-    expected = link([0.0, 0.6 * TURNING], pushed) - signals.position
+    expected = swinging(inertia, pushed) - signals.position
     (((loose, _), *_),) = dead_zone_columns([signals], [(gap, frequency, damping, 0.0)])[0]
-    assert np.abs(loose - expected)[TIME > 0.3].max() < 0.02 * gap
-
-
-def swelling(share):
-    """The same link, whose inertia other joints change along the log, by a share, as its known momentum has it."""
-    still, more = moving(), share * LINK * np.sin(2.0 * np.pi * 0.3 * TIME)
-    return replace(still, known=(still.known[0], (more * still.velocity, 1)), known_inertia=more), LINK + more
-
-
-def swinging(inertia, start, pushed):
-    """Angle of that link (n,), whose momentum the gear's torque changes, by SciPy."""
-    rate = np.gradient(inertia, PERIOD)
-
-    def slopes(t, state):
-        twist = 0.6 * np.sin(TURNING * t) - state[0]
-        faster = 0.6 * TURNING * np.cos(TURNING * t) - state[1]
-        heavy, growing = np.interp(t, TIME, inertia), np.interp(t, TIME, rate)
-        return state[1], (pushed(twist, faster) - WEIGHT * np.sin(state[0]) - growing * state[1]) / heavy
-
-    return solve_ivp(slopes, (0.0, TIME[-1]), start, "LSODA", TIME, rtol=1e-9, atol=1e-11, max_step=2e-4).y[0]
-
-
-def test_a_loose_link_falls_as_slowly_as_it_is_heavy():
-    (signals, inertia), gap, frequency, damping = swelling(0.3), 0.04, 300.0, 0.4
-
-    def pushed(twist, rate):
-        deep = twist - np.clip(twist, -0.5 * gap, 0.5 * gap)
-        return LINK * (frequency**2 * deep + 2.0 * damping * frequency * rate * (deep != 0.0))
-
-    expected = swinging(inertia, [0.0, 0.6 * TURNING], pushed) - signals.position
-    (((loose, _), *_),) = dead_zone_columns([signals], [(gap, frequency, damping, 0.0)])[0]
-    assert np.abs(loose * LINK / inertia - expected)[TIME > 0.3].max() < 0.05 * gap
+    assert np.abs(loose * LINK / inertia - expected)[TIME > 0.3].max() < near * gap
 
 
 def test_the_motor_feels_the_inertia_that_the_link_has():
@@ -136,7 +110,7 @@ def test_the_motor_feels_the_inertia_that_the_link_has():
     def pushed(twist, rate):
         return stiffness * twist + loss * rate
 
-    expected = swinging(inertia, [0.0, 0.6 * TURNING], pushed) - signals.position
+    expected = swinging(inertia, pushed) - signals.position
     torque = pushed(-expected, -np.gradient(expected, PERIOD))
     column = ELASTIC.columns(signals, (2.0 * np.pi * 9.0, loss / (2.0 * LINK * 2.0 * np.pi * 9.0)))[0]
     felt = LINK * np.gradient(signals.velocity, PERIOD) + signals.carried

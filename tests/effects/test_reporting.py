@@ -4,11 +4,13 @@ Asked are all effects that there are, those of other packages too where some are
 """
 
 import numpy as np
+import pytest
 
 from bench.effects.catalogue import simpler_forms
 from bench.effects.effect import Columns, Distortion, Effect, Lag
 from bench.effects.present import Present
 from bench.effects.shape import grid_of
+from bench.effects.signals import Axis
 from tests.effects.axes import model
 from tests.effects.recording import BASE, EFFECTS, RECORDED, SCOPES, every, plain, reported, shape_of, with_columns
 
@@ -119,3 +121,33 @@ def test_shapes_that_are_tried_are_of_its_form(effect):
 def test_it_is_found_where_its_name_says(effect):
     assert type(effect).__module__.split(".")[-1] == effect.name
     assert not hasattr(effect, "__dict__") or not vars(effect)
+
+
+@pytest.mark.parametrize(
+    ("name", "strengths", "shape", "expected"),
+    [
+        ("torsion_spring", (15.0, 4.5), (), {"stiffness": 15.0, "reference": 0.3}),
+        ("torsion_spring", (0.0, 4.5), (), {"stiffness": 0.0, "reference": 0.0}),
+        (
+            "directional_load_friction",
+            (0.2,),
+            (3.0,),
+            {"motor_coefficient": 0.2, "load_ratio": 3.0, "load_coefficient": 0.6},
+        ),
+    ],
+)
+def test_quantities_of_a_fit(name, strengths, shape, expected):
+    assert EFFECTS[name].report(strengths, shape, BASE) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_friction_that_a_fit_found_warming_moves_as_it_was_fitted(share):
+    """Strengths of its columns, dry and viscous, as quantities: the torque of the columns is that of the model."""
+    effect, base = EFFECTS["friction_warmup"], Axis(1e-3, 2e-3, 0.06)
+    strengths = [1.5 * base.coulomb, share * 1.5 * base.viscous]
+    values = effect.report(strengths, [0.3], base)
+    assert values == pytest.approx({"relative_amplitude": 1.5, "time_constant": 0.3, "viscous_share": share})
+    columns = [values for ((values, _),) in effect.columns(RECORDED, [0.3])]
+    at = RECORDED.state._replace(friction=base.coulomb * RECORDED.friction)
+    moves = effect.friction(values, base, at) + effect.torque(values, base, at)
+    np.testing.assert_allclose(np.array(strengths) @ columns, moves, atol=1e-12)

@@ -57,21 +57,6 @@ def test_without_position_the_velocity_holds_the_model(recordings):
     assert gap(model("torque_offset"), blind) < LEFT
 
 
-def test_models_side_by_side_move_as_each_alone(recordings):
-    """Ticked ones on one batch, native ones on threads, of recordings that differ in length."""
-    trace = recordings["stribeck_friction",]
-    shorter = trace.between(0.0, 0.7)
-    cases = [
-        ((), trace),
-        (("stribeck_friction",), trace),
-        (("torque_ripple",), trace),
-        (("stribeck_friction",), shorter),
-    ]
-    held = [SoftTracking(model(*names), one, AXIS.torque_constant * one["current"]) for names, one in cases]
-    for one, together in zip(held, track_all(held), strict=True):
-        np.testing.assert_array_equal(together.velocity, track(one).velocity)
-
-
 def test_natively_and_step_by_step_alike(recordings):
     """A friction that varies by next to nothing makes every step tick."""
     trace = recordings["cogging_torque",]

@@ -8,7 +8,7 @@ import pytest
 from bench.effects.voltage_limit import EFFECT
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
-from tests.effects.axes import AXIS, WINDING, Present, model, moved, signals
+from tests.effects.axes import AXIS, WINDING, model
 
 STEP = 1e-3
 
@@ -46,15 +46,6 @@ def test_at_rest_all_of_the_voltage_drives_what_it_can(direction):
 
 def test_enough_voltage_changes_nothing_but_the_rise():
     assert flowing(2.0, 2.0, 10.0) == pytest.approx((2.0, 2.0))
-
-
-def test_top_speed_is_that_of_the_voltage():
-    """Without friction the current ends at zero: U = K_e*omega. What is reported is what flows."""
-    states = moved([Present.of("voltage_limit", {"voltage": 36.0})], 1.0, torque=1.5)
-    _, _, velocity = signals(states)
-    assert velocity[-1] == pytest.approx(36.0 / WINDING.back_emf_constant, rel=1e-3)
-    np.testing.assert_allclose(states.torque, states.motor_torque, atol=1e-12)
-    assert abs(states.torque[-1]) < 0.05
 
 
 def test_a_winding_without_inductance_jumps():

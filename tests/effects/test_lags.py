@@ -1,4 +1,4 @@
-"""A filtered velocity lags a ramp by its time constant."""
+"""Lags: those of a recorder, which the axis does not feel; how one is detected; how one of the torque is stepped."""
 
 import numpy as np
 import pytest
@@ -7,26 +7,44 @@ from scipy.signal import lfilter
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
+from bench.effects.current_loop_lag import EFFECT as TORQUE_LAG
 from bench.effects.velocity_filter_lag import EFFECT
+from bench.plant.run import run
+from bench.plant.sensing import reported_states
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import RIG, bare, moved, recorded, wave
-from tests.effects.axes import PERIOD
+from tests.effects.axes import PERIOD, Reversals, model, plant
 
-VALUES = {"time_constant": 2e-3}
-
-
-def test_lags_a_ramp():
-    time = PERIOD * np.arange(400)
-    found = EFFECT.lagging(VALUES, 100.0 * time, PERIOD)
-    np.testing.assert_allclose(found, 100.0 * (time - 2e-3 * (1.0 - np.exp(-time / 2e-3))), atol=1e-9)
+#: The rig with a drive of 250 us.
+TICKING = RIG.model_copy(update={"drive": load_rig("sh30701p").drive})
 
 
-def test_undone_where_velocity_is_smooth():
-    time = PERIOD * np.arange(4000)
-    velocity = 50.0 * np.sin(2.0 * np.pi * 5.0 * time)
-    back = EFFECT.leading(VALUES, EFFECT.lagging(VALUES, velocity, PERIOD), PERIOD)
-    np.testing.assert_allclose(back[100:-1], velocity[100:-1], atol=0.01)
+def test_the_axis_does_not_feel_the_filter_of_its_recorder():
+    references = Reversals(0.2).references()
+    states = run(plant("current_filter_lag"), references)
+    np.testing.assert_array_equal(states.velocity, run(plant(), references).velocity)
+    assert np.abs(reported_states(model("current_filter_lag"), states).torque - states.torque).max() > 0.01
+
+
+def test_along_a_recording_as_step_by_step():
+    """A sine at the middles of steps: both are second order in the step, and halving it shows that."""
+    time_constant, omega = 3e-3, 120.0
+    off = []
+    for step in (PERIOD, PERIOD / 2.0):
+        time = np.arange(round(0.2 / step)) * step
+        reported = np.sin(omega * time)
+        before, middles = reported[:1], []
+        for value in reported:
+            middle, before = TORQUE_LAG.stepped({"time_constant": time_constant}, np.array([value]), before, step)
+            middles.append(middle[0])
+        along = TORQUE_LAG.lagging({"time_constant": time_constant}, reported, step)
+        settled = time > 30.0 * time_constant
+        phase = np.arctan(omega * time_constant)
+        exact = np.cos(phase) * np.sin(omega * time - phase)
+        off.append([np.abs(found - exact)[settled].max() for found in (np.array(middles), along)])
+    assert (np.array(off[0]) < 2e-4).all()
+    assert (np.array(off[1]) < 0.3 * np.array(off[0])).all()
 
 
 def first_order_of(lag):
@@ -70,16 +88,15 @@ def test_a_lag_of_another_form_is_reported_and_not_mended(first_order):
 
 def test_a_lag_shorter_than_a_sample_is_a_filter_where_the_drive_ticks_faster():
     """Half a sample late is also a difference of recorded positions, whose noise is then in the speed."""
-    ticking = RIG.model_copy(update={"drive": load_rig("sh30701p").drive})  # every 250 us
     trace = two_sines(first_order_of(0.5e-3))
-    found = EFFECT.detect(trace, ticking, 1.5e-3)
+    found = EFFECT.detect(trace, TICKING, 1.5e-3)
     assert found is not None
     assert found.values["time_constant"] == pytest.approx(0.5e-3, rel=0.02)
     assert EFFECT.detect(trace, RIG, 1.5e-3) is None  # nothing is known of what differenced it
-    assert EFFECT.detect(two_sines(first_order_of(0.14e-3)), ticking, 1.5e-3) is None  # of a tick
+    assert EFFECT.detect(two_sines(first_order_of(0.14e-3)), TICKING, 1.5e-3) is None  # of a tick
     position = trace["position"]
     differences = np.diff(position, prepend=2.0 * position[0] - position[1]) / trace.sample_period
-    assert EFFECT.detect(trace.with_signals({"velocity": differences}, {}), ticking, 1.5e-3) is None
+    assert EFFECT.detect(trace.with_signals({"velocity": differences}, {}), TICKING, 1.5e-3) is None
 
 
 def test_a_wave_of_position_beside_it_is_where_the_axis_is():
@@ -95,10 +112,9 @@ def test_a_wave_of_position_beside_it_is_where_the_axis_is():
 
 def test_a_mean_over_the_sample_is_how_a_recorder_averages():
     """Of four ticks of 250 us the middle is 375 us late; a filter of 390 us is none of that."""
-    ticking = RIG.model_copy(update={"drive": load_rig("sh30701p").drive})
 
     def mean(omega):
         return sum(np.exp(-1j * omega * 250e-6 * tick) for tick in range(4)) / 4.0
 
-    assert EFFECT.detect(two_sines(mean), ticking, 1.5e-3) is None
-    assert EFFECT.detect(two_sines(first_order_of(0.39e-3)), ticking, 1.5e-3) is not None
+    assert EFFECT.detect(two_sines(mean), TICKING, 1.5e-3) is None
+    assert EFFECT.detect(two_sines(first_order_of(0.39e-3)), TICKING, 1.5e-3) is not None
