@@ -10,12 +10,13 @@ import numpy as np
 from bench.diagnosis.policy import Policy
 from bench.diagnosis.probability import Probabilities, probabilities, weighed
 from bench.diagnosis.recordings import fit_bare
-from bench.diagnosis.search import search
+from bench.diagnosis.search import Search, search
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import Fit
 from bench.fit.rows import Rows
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
+from tests.sines import sines as sum_of
 
 RIG = Rig.of(
     {
@@ -50,14 +51,9 @@ Torque = Callable[[Motion], np.ndarray]
 def moved(duration: float = 4.0, sines=SINES, drift: float = 0.0, period: float = 1e-3) -> Motion:
     """A sum of sines and a constant speed `drift` - rad/s."""
     time = np.arange(round(duration / period)) * period
-    position, velocity, acceleration = drift * time, np.full_like(time, drift), np.zeros_like(time)
-    for amplitude, frequency, phase in sines:
-        omega = 2.0 * np.pi * frequency
-        angle = omega * time + phase
-        position = position + amplitude * np.sin(angle)
-        velocity = velocity + amplitude * omega * np.cos(angle)
-        acceleration = acceleration - amplitude * omega**2 * np.sin(angle)
-    return Motion(time, position, velocity, acceleration, np.sign(velocity))
+    position, velocity, acceleration = sum_of(time, sines)
+    velocity = velocity + drift
+    return Motion(time, position + drift * time, velocity, acceleration, np.sign(velocity))
 
 
 def base(motion: Motion) -> np.ndarray:
@@ -104,21 +100,33 @@ def offset(torque: float) -> Torque:
     return lambda motion: np.full_like(motion.time, torque)
 
 
+def searched(policy: Policy, trace: Trace, effects: Sequence[str]) -> Search:
+    """A search for effects that a policy may try."""
+    return search(bare(trace), [catalogue()[name] for name in effects], policy)
+
+
+def judged(found: Search, policy: Policy, holdout: Trace | None = None) -> Probabilities:
+    """How likely the sets of names are that a search visited."""
+    width = found.visited[0].rows.conditioning.filter.width
+    other = None if holdout is None else Rows.of(replace(holdout, origin="holdout"), RIG, width=width)
+    return probabilities(weighed(found.visited, other, policy), frozenset(), policy)
+
+
 def likely(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> Probabilities:
     """How likely names are, of effects that a policy may try."""
-    without_effect = bare(trace)
-    searched = search(without_effect, [catalogue()[name] for name in effects], policy)
-    width = without_effect.rows.conditioning.filter.width
-    other = None if holdout is None else Rows.of(replace(holdout, origin="holdout"), RIG, width=width)
-    return probabilities(weighed(searched.visited, other, policy), frozenset(), policy)
+    return judged(searched(policy, trace, effects), policy, holdout)
+
+
+def named(found: Probabilities) -> tuple[str, ...]:
+    """The likeliest names."""
+    return found.fits[found.chosen].hypothesis.names
 
 
 def names(policy: Policy, trace: Trace, effects: Sequence[str], holdout: Trace | None = None) -> tuple[str, ...]:
-    """The likeliest names."""
-    found = likely(policy, trace, effects, holdout)
-    return found.fits[found.chosen].hypothesis.names
+    """The likeliest names of effects that a policy may try."""
+    return named(likely(policy, trace, effects, holdout))
 
 
 def sought(policy: Policy, trace: Trace, effects: Sequence[str]) -> tuple[str, ...]:
     """Names that a search ends with, however likely an unknown effect is."""
-    return search(bare(trace), [catalogue()[name] for name in effects], policy).last.hypothesis.names
+    return searched(policy, trace, effects).last.hypothesis.names

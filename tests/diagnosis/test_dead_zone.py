@@ -10,15 +10,9 @@ from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
 from bench.effects.impacts import likeliest_shape
 from bench.fit.rows import Rows
-from bench.rig.rig import load_rig
 from bench.validation.independent.effects import Backlash, CoggingTorque, LoadTorqueEvent, PositionDependentInertia
 from bench.validation.independent.references import random_motion
-from bench.validation.independent.rig import write_rig
-from tests.cases import record
-from tests.kept import kept
 from tests.recorded import QUIET
-from tests.studies.blind import draw
-from tests.studies.blind import record as recording
 
 SEED = 5
 #: A contact of 80 Hz against the load, of a fifth of critical damping.
@@ -64,16 +58,3 @@ def test_a_gap_is_among_what_is_weighed_with_something_else(wide):
     shapes = {term.effect.name: term.shape for term in found.terms}
     assert shapes["backlash"][0] == pytest.approx(wide, rel=0.04)
     assert found.base.inertia == pytest.approx(QUIET.axis.inertia, rel=0.005)
-
-
-@pytest.mark.slow
-def test_a_gap_that_was_bent_to_what_was_hidden_is_searched_anew(tmp_path):
-    """A contact of 8 N*m/rad was found across 11 % of the gap, and beside the inertia over position it stayed there."""
-    case = draw.one(1, "pair", 33, 8.0)
-    files = [path for module in (draw, recording) if (path := module.__file__)]
-    step = recording.LONGEST_STEP
-    run = kept(lambda: record([case.hidden], 1, numbers=[case.number], longest_step=step)[0][0].trace, __file__, *files)
-    write_rig(case.hidden.axis, tmp_path / "rig.toml")
-    found = search(fit_bare(Rows.of(run, load_rig(tmp_path / "rig.toml"))), list(catalogue().values()), POLICY).last
-    (shape,) = (term.shape for term in found.terms if term.effect.name == "backlash")
-    assert shape[0] == pytest.approx(case.hidden.effects[0].quantities(case.hidden.axis)["gap"], rel=0.03)

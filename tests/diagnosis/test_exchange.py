@@ -11,7 +11,7 @@ from bench.diagnosis.search import search, without_impossible
 from bench.effects.catalogue import catalogue
 from bench.fit.fit import fit
 from bench.fit.hypothesis import Term
-from tests.diagnosis.constructed import COULOMB, bare, likely, moved, recorded, wave
+from tests.diagnosis.constructed import COULOMB, bare, likely, moved, recorded, searched, wave
 
 ECCENTRICITY, PHASE = 0.03, 0.8
 
@@ -35,10 +35,6 @@ def eccentric():
     return bare(replace(trace, signals=signals))
 
 
-def tried(searched):
-    return [sorted(fitted.hypothesis.names) for fitted in searched.visited]
-
-
 def test_what_makes_up_for_a_bent_shape_is_not_kept(eccentric):
     """An inertia over position takes what an eccentric encoder leaves whose shape is bent to it."""
     effects = [catalogue()[name] for name in ("position_dependent_inertia", "encoder_eccentricity", "torque_offset")]
@@ -49,8 +45,8 @@ def test_what_makes_up_for_a_bent_shape_is_not_kept(eccentric):
 
 
 def test_of_several_near_effects_those_are_found_that_leave_noise():
-    effects = [catalogue()[name] for name in ("quadratic_drag", "cogging_torque", "stribeck_friction", "torque_offset")]
-    found = search(bare(recorded(moved(), drag, wave(0.02, 7.0))), effects, Policy()).last
+    effects = "quadratic_drag", "cogging_torque", "stribeck_friction", "torque_offset"
+    found = searched(Policy(), recorded(moved(), drag, wave(0.02, 7.0)), effects).last
     assert sorted(found.hypothesis.names) == ["cogging_torque", "quadratic_drag"]
     assert found.chi < 1.1
 
@@ -67,28 +63,27 @@ def test_each_effect_is_tried_in_the_place_of_another():
 
 def test_a_result_is_weighed_against_itself_without_each_of_its_effects():
     trace = recorded(moved(), wave(0.03, 3.0), drag)
-    searched = search(bare(trace), [catalogue()[name] for name in ("cogging_torque", "quadratic_drag")], Policy())
-    assert sorted(searched.last.hypothesis.names) == ["cogging_torque", "quadratic_drag"]
-    assert [] in tried(searched)
-    assert not next(iter(searched.shares))
+    found = searched(Policy(), trace, ["cogging_torque", "quadratic_drag"])
+    assert sorted(found.last.hypothesis.names) == ["cogging_torque", "quadratic_drag"]
+    assert any(not fitted.terms for fitted in found.visited)
+    assert not next(iter(found.shares))
 
 
 def test_a_pair_of_which_neither_explains_much_alone_is_found():
     """Two waves that cancel each other in most of a short travel: each alone takes little."""
     short = moved(6.0, ((1.2, 0.43, 0.3), (0.4, 1.31, 1.1), (0.1, 2.9, 2.0)))
     trace = recorded(short, lambda motion: 0.06 * motion.position, wave(-0.066, 1.0))
-    effects = [catalogue()[name] for name in ("torsion_spring", "unbalance", "torque_offset", "quadratic_drag")]
-    found = search(bare(trace), effects, Policy()).last
+    found = searched(Policy(), trace, ["torsion_spring", "unbalance", "torque_offset", "quadratic_drag"]).last
     assert sorted(found.hypothesis.names) == ["torsion_spring", "unbalance"]
     assert found.chi < 1.1
 
 
 def test_decoys_are_visited_and_never_the_result():
     trace = recorded(moved(2.0), lambda motion: 0.05 * np.sin(2.0 * np.pi * 3.3 * motion.time))
-    searched = search(bare(trace), [*catalogue().values()], Policy())
-    decoys = [fitted for fitted in searched.visited if any(term.effect.decoy for term in fitted.terms)]
+    found = searched(Policy(), trace, ["torsion_spring", "cogging_torque", "load_torque_event"])
+    decoys = [fitted for fitted in found.visited if any(term.effect.decoy for term in fitted.terms)]
     assert any(fitted.chi < 1.1 for fitted in decoys)
-    assert not any(term.effect.decoy for term in searched.last.terms)
+    assert not any(term.effect.decoy for term in found.last.terms)
 
 
 def test_what_the_last_effect_makes_impossible_leaves():

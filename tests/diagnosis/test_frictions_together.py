@@ -1,7 +1,5 @@
 """Dry frictions of one axis together: bristles slide at the level that all others make."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import scipy.integrate
@@ -64,9 +62,3 @@ def test_bristles_are_named_beside_other_frictions(recorded, name):
     values = fitted.terms[index].effect.report(fitted.strengths(index), fitted.terms[index].shape, fitted.base)
     assert values["bristle_stiffness"] == pytest.approx(BRISTLES.bristle_stiffness, rel=0.05)
     assert fitted.theta[:3] == pytest.approx([QUIET.axis.inertia, QUIET.axis.viscous, QUIET.axis.coulomb], rel=0.03)
-
-
-@pytest.mark.parametrize(("rate", "credible"), [(0.5, False), (50.0, True)])
-def test_bristles_that_bend_over_most_of_the_travel_are_a_spring(recorded, rate, credible):
-    scope = replace(Rows.of(recorded["rise"], QUIET.rig).scope, travel=4.0)
-    assert catalogue()["presliding_friction"].plausible([[0.08, 0.0]], [(rate,)], scope) is credible

@@ -3,13 +3,10 @@
 Every effect, on axes and electronics drawn at random: `tests/studies/blind`.
 """
 
-import json
-
 import numpy as np
 import pytest
 
 from bench.diagnosis.diagnosis import diagnose
-from bench.report.diagnosis import diagnosis_json
 from bench.validation.independent.effects import KINDS
 from bench.validation.independent.references import random_motion
 from tests.outside import OUTSIDE
@@ -61,17 +58,6 @@ def test_where_points_at_the_coordinate(found):
     assert found[("unbalance",)].where[0].coordinate == "position"
     assert found[("vibration",)].where[0].coordinate == "frequency"
     assert {found[("stribeck_friction",)].where[k].coordinate for k in range(2)} & {"velocity", "reversal", "direction"}
-
-
-def test_json_is_the_contracts(found):
-    content = json.loads(diagnosis_json(found[("cogging_torque",)]))
-    assert content["schema"] == "bench.diagnose/1"
-    assert content["effects"][0]["name"] == "cogging_torque"
-    assert {"value", "unit", "ci95"} <= set(content["effects"][0]["parameters"]["amplitude"])
-    assert set(content["gap"]) == {"torque", "velocity"}
-    assert {"before", "after"} == set(content["gap"]["torque"]["holdout"])
-    velocity = content["gap"]["velocity"]["holdout"]
-    assert velocity["after"] < velocity["before"]
 
 
 def test_the_name_left_out_of_the_catalogue_is_not_replaced_by_a_wrong_one(recordings):

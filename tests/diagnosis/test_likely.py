@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from bench.diagnosis.policy import POLICY
@@ -124,3 +125,30 @@ def test_of_two_that_leave_less_than_was_taken_for_noise_the_one_that_leaves_les
     found = probabilities(weighed(every, None, POLICY), frozenset(), POLICY)
     ratio = found.names["torsion_spring"] / found.names["cogging_torque"]
     assert ratio == pytest.approx((94.0 / 54.0) ** POLICY.remaining)
+
+
+@pytest.mark.parametrize(("determined", "nothing"), [(0.3, 0.01), (0.6, 0.01), (1.0, 0.86)])
+def test_what_rings_beside_impacts_is_not_nothing(determined, nothing):
+    """Rows that a gap determines leave noise with it and without, the others ten times as much, which it may excuse.
+
+    Nothing weighs 1 where all is noise, else e**(-over*MUCH); none of the catalogue e**none, the gap e**(-4*number).
+    """
+    sure = np.arange(100) < 100 * determined
+    left = np.where(sure, 1.0, 10.0)
+    gap = made(left, term("backlash", 0.01, 500.0, 0.4, 0.0), determined=list(sure), strengths=(0.5,))
+    found = probabilities(weighed([made(left), gap], None, POLICY), frozenset(), POLICY)
+    assert found.nothing == pytest.approx(nothing, abs=0.05)
+    assert found.names.get("backlash", 0.0) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("sets", "chosen"),
+    [
+        ((("ab", 0.46), ("ac", 0.29), ("", 0.04), ("a", 0.01)), {"a"}),
+        # of names that were never tried by themselves, as many as were
+        ((("abd", 0.46), ("abc", 0.29), ("", 0.04), ("b", 0.0)), {"b"}),
+    ],
+)
+def test_what_is_in_every_likely_set_is_named_without_what_differs_between_them(sets, chosen):
+    """P(a) = 0.46 + 0.29 + 0.01, P(b) = 0.46, P(c) = 0.29; no likely set is of names likelier than not alone."""
+    assert of(sets, 0.2).chosen == chosen

@@ -31,8 +31,6 @@ from tests.diagnosis.off import without
 
 POLICY = Policy()
 MOTION = moved(4.0)
-#: The same motion in less than a revolution each way, twice as fast.
-SHORT_STROKE = moved(4.0, sines=tuple((0.4 * amplitude, 2.0 * f, phase) for amplitude, f, phase in SINES))
 WAVES = ("cogging_torque", "torque_ripple", "unbalance", "quadratic_drag", "stribeck_friction")
 
 
@@ -55,21 +53,6 @@ def test_what_only_damps_noise_of_the_motion_is_no_coupling(seed):
     assert sought(without("only_damps"), trace, ["elastic_coupling"]) == ("elastic_coupling",)
 
 
-def test_a_torque_that_drives_the_axis_is_no_drag():
-    """A torque along the motion, growing with the square of speed: a drag of negative strength fits it."""
-    trace = recorded(MOTION, lambda motion: -5e-5 * motion.velocity * np.abs(motion.velocity))
-    assert names(POLICY, trace, ["quadratic_drag"]) == ()
-    assert sought(without("physical"), trace, ["quadratic_drag"]) == ("quadratic_drag",)
-
-
-def test_a_name_that_later_ones_make_good_goes():
-    """Half a revolution of a spring and a wave of two cycles look like an unbalance until both are there."""
-    trace = recorded(SHORT_STROKE, lambda motion: 0.02 * motion.position, wave(0.04, 2.0))
-    effects = ["torsion_spring", "unbalance", "cogging_torque", "torque_offset"]
-    hidden = {"torsion_spring", "cogging_torque"}
-    assert set(names(POLICY, trace, effects)) == hidden
-
-
 def coupled(share, antiresonance, damping):
     """What a load that is joined by a spring takes more than a rigid one, sine by sine by its transfer function."""
 
@@ -84,13 +67,6 @@ def coupled(share, antiresonance, damping):
         return more
 
     return torque
-
-
-def test_a_jolt_at_the_start_is_no_warmup():
-    """It decays as the friction of a cold axis does, by far more than all friction of the axis."""
-    trace = recorded(MOTION, lambda motion: 3.0 * np.exp(-motion.time / 0.05) * np.sign(motion.velocity))
-    assert names(POLICY, trace, ["friction_warmup"]) == ()
-    assert sought(without("physical"), trace, ["friction_warmup"]) == ("friction_warmup",)
 
 
 def test_a_coupling_beside_something_else_is_no_gap():
@@ -109,9 +85,7 @@ def test_what_no_effect_explains_is_reported():
 
 def test_noise_alone_is_no_remainder():
     others = frozenset(catalogue()) - {"unbalance"}
-    assert [diagnose(recorded(MOTION, seed=k), RIG, excluded=others).verdict for k in range(6)] == [
-        "nothing_missing"
-    ] * 6
+    assert {diagnose(recorded(MOTION, seed=k), RIG, excluded=others).verdict for k in range(3)} == {"nothing_missing"}
 
 
 def test_rows_that_a_gap_does_not_determine_are_not_saved():
@@ -132,23 +106,6 @@ def test_a_search_that_its_limit_ends_says_so():
     assert (len(cut.last.terms), cut.stopped) == (1, LIMIT)
     whole = search(bare(trace), effects, POLICY, most=2)
     assert (set(whole.last.hypothesis.names), whole.stopped) == ({"torque_offset", "cogging_torque"}, None)
-
-
-#: Each of seven waves takes a seventh of the residual, less than its two numbers cost by themselves.
-NUMBERS = (3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 16.0)
-SEVEN = [wave(0.02, number) for number in NUMBERS]
-
-
-def test_many_small_effects_are_named_that_explain_it_together():
-    few = ("cogging_torque", "quadratic_drag", "stribeck_friction")
-    found = search(bare(recorded(MOTION, *SEVEN)), [catalogue()[name] for name in few], POLICY).last
-    assert sorted(term.shape[0] for term in found.terms) == [*NUMBERS]
-    assert found.chi < 1.1
-
-
-def test_small_effects_beside_a_remainder_are_not_named():
-    few = ("cogging_torque", "quadratic_drag", "stribeck_friction")
-    assert sought(POLICY, recorded(MOTION, *SEVEN, vibration(0.05, 3.3)), few) == ()
 
 
 def test_shapes_count_as_numbers_however_they_were_searched():

@@ -8,7 +8,6 @@ from scipy.signal import lfilter
 
 from bench.axis_kind import COULOMB
 from bench.diagnosis.diagnosis import diagnose
-from bench.diagnosis.policy import Policy
 from bench.diagnosis.recordings import fit_bare
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Coupling
@@ -23,11 +22,7 @@ from tests.diagnosis.constructed import (
     RIG,
     base,
     moved,
-    names,
-    offset,
-    only_during,
     recorded,
-    wave,
 )
 
 RIGID = [name for name, effect in catalogue().items() if not isinstance(effect, Coupling)]
@@ -55,34 +50,6 @@ def test_identify_and_diagnose_tell_the_same_of_a_null(seed, noise):
     for name in ("moment_of_inertia", "viscous_friction_coefficient", "coulomb_friction_torque"):
         assert diagnosed[name].value == pytest.approx(found[name].value, rel=1e-9)
         assert diagnosed[name].ci95 == pytest.approx(found[name].ci95, rel=1e-6)
-
-
-def test_six_effects_on_one_axis_are_all_named():
-    """An offset beside a spring is the reference of the spring."""
-
-    def stribeck(motion):
-        return 0.06 * motion.sign * np.exp(-((motion.velocity / 4.0) ** 2))
-
-    six = [wave(0.04, 6.0, 0.3), wave(0.06, 1.0, 1.0), offset(0.05), stribeck]
-    six += [lambda motion: 0.01 * motion.position, lambda motion: 1e-4 * motion.velocity * np.abs(motion.velocity)]
-    named = names(Policy(), recorded(moved(4.0), *six), RIGID)
-    assert sorted(named) == [
-        "cogging_torque",
-        "quadratic_drag",
-        "stribeck_friction",
-        "torsion_spring",
-        "unbalance",
-    ]
-
-
-def test_an_event_shorter_than_the_filter_resolves_is_not_named():
-    """Of 4 ms through a filter of 2 ms, torque and duration are one number: a larger one, half as long, looks alike."""
-    trace = recorded(moved(), only_during(0.5, 2.0, 2.004))
-    assert 2.355 * Rows.of(trace, RIG).conditioning.filter.width > 0.004
-    assert names(Policy(), trace, ["load_torque_event"]) == ()
-    assert names(Policy(), recorded(moved(), only_during(0.5, 2.0, 2.04)), ["load_torque_event"]) == (
-        "load_torque_event",
-    )
 
 
 @pytest.mark.parametrize(("duration", "period"), [(1.0, 1e-3), (300.0, 2e-3)])

@@ -1,4 +1,4 @@
-"""Columns of the hypotheses against closed forms: two masses, dead zone, lag, eccentric encoder."""
+"""Where a residual sits: its share by coordinate, what chance makes of one, its spectrum; and a load behind a gap."""
 
 from types import SimpleNamespace
 
@@ -10,10 +10,7 @@ from scipy.interpolate import CubicSpline
 from bench.axis_kind import INERTIA, ROTARY
 from bench.diagnosis.recordings import fit_bare
 from bench.diagnosis.where import BINS, LEAST, _account, _welch, bins_of, by_chance, coordinates, where
-from bench.effects.catalogue import catalogue
 from bench.effects.dead_zone import load_positions
-from bench.effects.effect import lagged
-from bench.effects.presliding_friction import bristles
 from bench.effects.signals import Signals
 from bench.fit.rows import Rows
 from bench.rig.given import recordings_of
@@ -27,22 +24,6 @@ def signals(position, velocity):
     sign = np.sign(velocity)
     zero = np.zeros(count)
     return Signals(np.arange(count) * PERIOD, position, velocity, sign, zero, zero, sign, 1.0, PERIOD)
-
-
-def test_a_load_without_a_gap_follows_the_motor():
-    time = np.arange(4000) * PERIOD
-    position = 10.0 * (1.0 - np.cos(3.0 * time))
-    found = load_positions([position], PERIOD, np.array([[1e-9, 400.0, 0.7, 0.0]]))[0][:, 0]
-    assert np.gradient(np.gradient(found, PERIOD), PERIOD)[200:-2] == pytest.approx(
-        90.0 * np.cos(3.0 * time[200:-2]), abs=0.02
-    )
-
-
-def test_a_load_within_the_gap_feels_nothing():
-    time = np.arange(1000) * PERIOD
-    position = 0.01 * (1.0 - np.cos(20.0 * time))
-    found = load_positions([position], PERIOD, np.array([[0.1, 400.0, 0.5, 0.0]]))[0]
-    assert np.abs(found - found[0]).max() < 1e-6
 
 
 @pytest.mark.parametrize("spring", [0.0, 900.0])
@@ -67,50 +48,6 @@ def test_a_load_thrown_across_the_gap_is_the_contacts_equation_integrated(spring
         x, v = x + step * middle, v + step * force(2 * k + 1, x + 0.5 * step * v, middle)
     found = load_positions([position], PERIOD, np.array([[gap, frequency, damping, spring]]))[0][:, 0]
     assert found == pytest.approx(expected, abs=0.01 * gap)
-
-
-def test_a_lag_is_the_first_order_response():
-    time = np.arange(2000) * PERIOD
-    ramp = 5.0 * time
-    expected = 5.0 * (time - 0.02 * (1.0 - np.exp(-time / 0.02)))
-    assert lagged(ramp, 0.02, PERIOD) == pytest.approx(expected, abs=1e-12)
-
-
-@pytest.mark.parametrize("amplitude", [0.02, 0.5])
-def test_an_eccentric_encoder_is_corrected(amplitude):
-    time = np.arange(3000) * PERIOD
-    angle, speed = 40.0 * time**2, 80.0 * time
-    measured = angle + amplitude * np.sin(angle + 0.7)
-    reported = speed * (1.0 + amplitude * np.cos(angle + 0.7))
-    shape = (amplitude * np.cos(0.7), amplitude * np.sin(0.7))
-    found = catalogue()["encoder_eccentricity"].without_fault(signals(measured, reported), shape)
-    assert found.position == pytest.approx(angle, abs=1e-9)
-    assert found.velocity == pytest.approx(speed, abs=1e-7)
-
-
-def test_bristles_are_dahls_equation_integrated():
-    time = np.arange(4000) * PERIOD
-    position, rate = 0.05 * np.sin(4.0 * time), 60.0
-    velocity = 0.2 * np.cos(4.0 * time)
-    fine = np.interp(np.arange(4000 * 20) / 20, np.arange(4000), position)
-    state, expected = 0.0, np.empty(4000)
-    for k, step in enumerate(np.diff(fine, prepend=fine[0])):
-        state += rate * (1.0 - state * np.sign(step)) * step
-        if k % 20 == 0:
-            expected[k // 20] = state
-    found = bristles(position, np.sign(velocity), np.ones(4000), rate)
-    assert found == pytest.approx(expected, abs=0.02)
-
-
-def test_a_coupling_hears_noise_as_its_transfer_function_says():
-    """The load's acceleration over the motor's by scipy, less one."""
-    antiresonance, damping = 150.0, 0.05
-    omega = np.linspace(1.0, 400.0, 50)
-    numerator = [2.0 * damping / antiresonance, 1.0]
-    denominator = [1.0 / antiresonance**2, 2.0 * damping / antiresonance, 1.0]
-    _, transfer = scipy.signal.freqs(numerator, denominator, omega)
-    found = catalogue()["elastic_coupling"].noise_of_motion((antiresonance, damping), omega)
-    assert found == pytest.approx(transfer - 1.0)
 
 
 def test_a_gap_of_two_directions_belongs_to_direction():
@@ -169,9 +106,8 @@ def test_a_sine_has_turned_as_long_ago_as_its_last_crest():
 @pytest.mark.parametrize(("size", "length"), [(5000, 1024), (700, 700), (701, 701)])
 def test_the_gap_s_spectrum_is_welch_s(size, length):
     values = np.random.default_rng(3).normal(size=size) + 2.0
-    for found, expected in zip(
-        _welch(values, 40.0, length), scipy.signal.welch(values, 40.0, nperseg=length), strict=True
-    ):
+    expected_by_scipy = scipy.signal.welch(values, 40.0, nperseg=length)
+    for found, expected in zip(_welch(values, 40.0, length), expected_by_scipy, strict=True):
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-15)
 
 
