@@ -80,14 +80,14 @@ def test_several_payloads_have_one_armature_and_a_torque_scale_that_nothing_else
 
 
 def test_a_payload_that_its_mjcf_has_wrong_is_reported_with_its_log(tmp_path):
-    logs, mjcfs = swung(tmp_path, "abc", stated={"b": 0.99}, period=5e-3)
+    logs, mjcfs = swung(tmp_path, "abc", stated={"b": 0.99}, period=16e-3)
     (warning,) = [one for one in bench.robot(logs, mjcfs).joints["j"].warnings if "known weight" in one]
     assert "0.909 ± " in warning.split("in a.csv")[1].split("in b.csv")[0]
 
 
 def test_currents_count_by_the_weight_of_the_links_and_in_their_own_direction(tmp_path):
     """kT is -0.8 N*m/A: the log counts the current against the joint's angle."""
-    logs, mjcfs = swung(tmp_path, "ab", "current [A]", -1.0 / 0.8)
+    logs, mjcfs = swung(tmp_path, "ab", "current [A]", -1.0 / 0.8, period=4e-3)
     line = ["robot", *logs, *(word for one in mjcfs for word in ("--mjcf", one))]
     done = command(*line, "--out", tmp_path / "found")
     assert done.status == 0, done.err
@@ -118,7 +118,7 @@ def test_an_mjcf_is_of_all_logs_or_of_one_each(tmp_path):
 @pytest.mark.parametrize(("friction", "name"), [(coulomb, "M1"), (directional, "M5")])
 def test_the_friction_model_of_a_servo_is_the_simplest_that_predicts_its_torque(tmp_path, friction, name):
     """M5 includes M1, and M6 both: none that is larger predicts better than the noise of the torque, 0.01 N*m."""
-    logs, mjcfs = swung(tmp_path, "ab", friction=friction, period=16e-3)
+    logs, mjcfs = swung(tmp_path, "ab", friction=friction, period=24e-3)
     first = Robot.of(mjcfs[0], "j")
     rig = joint_rig(None, first)
     robots = [first, *(replace(Robot.of(mjcf, "j"), datum=first.inertia) for mjcf in mjcfs[1:])]
