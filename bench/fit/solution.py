@@ -62,7 +62,7 @@ SURE = 3.0
 A_DELAY = 0.25
 #: Andrews' bandwidth minimises the error of the covariance, not of an interval's coverage: on 400 recordings of 6 s
 #: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half
-#: again as wide, .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/fit/test_coverage.py).
+#: again as wide, .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/fit/test_intervals.py).
 WIDENED = 1.5
 #: Columns of the plain axis, which take as many degrees of freedom. What effects add is not counted: where residuals
 #: are correlated so long that their number matters, a remainder exists, and the interval does not describe the effect's

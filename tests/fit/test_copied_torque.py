@@ -19,6 +19,7 @@ from bench.fit.rows import Rows
 from bench.fit.stored import Balance
 from bench.trace.trace import Trace
 from tests.fit.motions import RIG
+from tests.sines import sines
 
 INERTIA, VISCOUS, COULOMB = 1.5e-3, 8e-4, 0.06
 TIME = 1e-3 * np.arange(12_000)
@@ -28,10 +29,9 @@ NOISE = 3e-3
 def moved(seed, time=TIME):
     """Speed, acceleration - rad/s, rad/s**2 -, and angle - rad - (n,)."""
     rng = np.random.default_rng(seed)
-    omega, phase = 2.0 * np.pi * rng.uniform(0.3, 4.0, (4, 1)), rng.uniform(0.0, 2.0 * np.pi, (4, 1))
-    amplitude = rng.uniform(10.0, 30.0, (4, 1))
-    speed = (amplitude * np.sin(omega * time + phase)).sum(axis=0)
-    return speed, (amplitude * omega * np.cos(omega * time + phase)).sum(axis=0), np.cumsum(speed) * (time[1] - time[0])
+    frequency, phase, amplitude = (rng.uniform(*limits, 4) for limits in ((0.3, 4.0), (0.0, 2.0 * np.pi), (10.0, 30.0)))
+    speed, acceleration, _ = sines(time, [*zip(amplitude, frequency, phase, strict=True)])
+    return speed, acceleration, np.cumsum(speed) * (time[1] - time[0])
 
 
 def recorded(seed, unknown, factor):

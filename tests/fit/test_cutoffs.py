@@ -127,7 +127,7 @@ def test_conditioning_is_read_where_the_axis_moves():
 def test_misfit_counts_in_the_interval(kind):
     rng, truth = np.random.default_rng(5), Truth()
     inside = []
-    for _ in range(12):
+    for _ in range(8):
         trace = recording(rng, truth, position=True)
         w = trace["velocity"]
         more = {"drag": 4e-6 * w * np.abs(w), "offset": 0.02 + 0.0 * w, "wave": 0.03 * np.sin(trace["position"])}[kind]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import bench
+from tests.sines import sines
 
 PERIOD, COUNT, FINER = 2e-3, 10_000, 20
 INERTIA, VISCOUS, COULOMB = 0.25, 2.0, 1.5
@@ -14,11 +15,10 @@ def recorded(delay=0.0, lag=0.0, faster=1.0, noise=0.02):
     """Torque that acts a delay after it is recorded, or behind a first-order lag: M = acting + lag*d(acting)/dt."""
     rng = np.random.default_rng(0)
     time = PERIOD / FINER * np.arange(-2000, COUNT * FINER)
-    omega = 2.0 * np.pi * faster * np.array([0.13, 0.5, 1.3, 2.7, 5.0])[:, None]
-    angle = omega * time + rng.uniform(0.0, 2.0 * np.pi, (5, 1))
-    size = np.array([0.9, 0.35, 0.12, 0.04, 0.015])[:, None] / faster
-    position, speed = np.sum(size * np.sin(angle), axis=0), np.sum(size * omega * np.cos(angle), axis=0)
-    acting = INERTIA * np.sum(-size * omega**2 * np.sin(angle), axis=0) + VISCOUS * speed + COULOMB * np.sign(speed)
+    waves = [(0.9, 0.13), (0.35, 0.5), (0.12, 1.3), (0.04, 2.7), (0.015, 5.0)]
+    drawn = [(size / faster, faster * rate, rng.uniform(0.0, 2.0 * np.pi)) for size, rate in waves]
+    position, speed, acceleration = sines(time, drawn)
+    acting = INERTIA * acceleration + VISCOUS * speed + COULOMB * np.sign(speed)
     torque = np.interp(time + delay, time, acting) + lag * np.gradient(acting, time)
     at = slice(2000, None, FINER)
     return {

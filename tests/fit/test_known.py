@@ -9,6 +9,7 @@ from bench.fit.hypothesis import Hypothesis, Term, lay_out
 from bench.fit.rows import Rows
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace, less_known, with_known
+from tests.sines import sines
 
 RIG = Rig.of({"name": "axis", "kind": "rotary"})
 TIME = 1e-3 * np.arange(8000)
@@ -18,8 +19,7 @@ J, K_W, K_0 = 2e-3, 1e-3, 0.05
 def recording(noise=0.0, seed=0, torque_noise=2e-3):
     """An axis beside which r + dp/dt acts, far more than its own torque; the momentum p is known with noise."""
     rng = np.random.default_rng(seed)
-    w = 2.0 * np.pi * np.array([0.7, 2.3, 6.1])[:, None]
-    speed, acceleration = (20.0 * np.sin(w * TIME)).sum(0), (20.0 * w * np.cos(w * TIME)).sum(0)
+    speed, acceleration, _ = sines(TIME, [(20.0, 0.7, 0.0), (20.0, 2.3, 0.0), (20.0, 6.1, 0.0)])
     r, p, rate = 2.0 * np.sin(3.0 * TIME), 0.4 * np.cos(11.0 * TIME), -4.4 * np.sin(11.0 * TIME)
     torque = J * acceleration + K_W * speed + K_0 * np.sign(speed) + r + rate
     signals = {

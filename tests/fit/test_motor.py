@@ -140,6 +140,49 @@ def test_a_recording_without_voltage_has_no_motor(run):
     assert bench.identify(noisy({name: run[name] for name in ("time", "current", "velocity")})).motor is None
 
 
+KNOWN = {"torque_constant": 0.05, "back_emf_constant": 0.05, "resistance": 1.2}
+SUPPLY = 24.0
+
+
+@pytest.fixture(scope="module")
+def held():
+    """Columns of a motor whose voltage is held for 2 ms and whose encoder has 12 bit."""
+    columns = noisy(driven(Waves(2e-3, 10.0, (6.0, 0.7), (4.0, 2.3), (2.0, 6.1)), **MOTOR))
+    bit = 2.0 * math.pi / 4096
+    return columns | {"position": bit * np.round(columns["position"] / bit)}
+
+
+def axis(columns, units=None, **motor):
+    return bench.identify(columns, {"motor": {**KNOWN, **motor}}, units=units)
+
+
+@pytest.mark.parametrize("signal", ["position", "velocity"])
+def test_inertia_and_friction_from_volts_and(held, signal):
+    found = axis({name: held[name] for name in ("time", "voltage", signal)})
+    assert found["moment_of_inertia"].value == pytest.approx(MOTOR["inertia"], rel=1e-3)
+    assert found["coulomb_friction_torque"].value == pytest.approx(MOTOR["coulomb"], rel=5e-3)
+    low, high = found["viscous_friction_coefficient"].ci95
+    assert low <= MOTOR["viscous"] <= high
+
+
+def test_a_duty_cycle_is_a_share_of_the_supply_whose_sag_is_measured(held):
+    time, volts, position = (held[name] for name in ("time", "voltage", "position"))
+    sag = SUPPLY - 0.05 * np.abs(volts)
+    columns = {"time": time, "duty": volts / sag, "supply_voltage": sag, "position": position}
+    share = {"time": time, "duty": volts / SUPPLY, "position": position}
+    percent = share | {"duty": 100.0 * share["duty"]}
+    for found in (
+        axis(columns, {"time": "s", "supply_voltage": "V", "position": "rad"}),
+        axis(share, supply_voltage=SUPPLY),
+        axis(percent, {"time": "s", "duty": "%", "position": "rad"}, supply_voltage=SUPPLY),
+    ):
+        assert found["moment_of_inertia"].value == pytest.approx(MOTOR["inertia"], rel=1e-3)
+    with pytest.raises(bench.InputError, match=r"duty cycle; allowed: .*motor.supply_voltage"):
+        axis(share)
+    with pytest.raises(bench.InputError, match=r"voltage left out: .* exceeds 1"):
+        axis(percent, supply_voltage=SUPPLY)
+
+
 def answered(folder, columns, units, *options):
     """What `bench identify` prints of a CSV with these columns, and its motor in the JSON."""
     headings = [f"{name} [{units[name]}]" if units[name] else name for name in columns]

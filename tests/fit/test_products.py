@@ -29,11 +29,11 @@ def fitted(duration, seed):
 
 
 def test_scatter_of_the_levels_is_what_their_intervals_say():
-    found = [uncertain(together(fitted(2.0, seed))) for seed in range(24)]
+    found = [uncertain(together(fitted(2.0, seed))) for seed in range(16)]
     places = [int(np.flatnonzero(found[0].fitted.owners == name)[0]) for name in ("coulomb", 0, 1)]
     scatter = np.std([each.values[places] for each in found], axis=0, ddof=1)
     said = np.sqrt(np.mean([np.diag(each.covariance)[places] for each in found], axis=0))
-    assert scatter / said == pytest.approx(np.ones(3), abs=0.35)
+    assert scatter / said == pytest.approx(np.ones(3), abs=0.42)
 
 
 def test_friction_that_decays_longer_than_the_recording_lasts_is_sure_without_its_size():

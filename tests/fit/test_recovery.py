@@ -10,6 +10,7 @@ from bench.validation.independent.references import random_motion
 from bench.validation.independent.rig import Axis, write_rig
 from bench.validation.independent.sensors import Noise, Sensors
 from bench.validation.independent.simulate import simulate as integrate
+from tests.kept import kept
 from tests.recorded import PLAIN, STEP
 
 LIMITS = np.array([1e-3, 1.5e-2, 5e-3])
@@ -82,9 +83,12 @@ def test_traces_of_the_independent_integrator_give_their_truth(tmp_path):
     noise = {"velocity": Noise(white=0.03), "current": Noise(white=8e-3)}
     sensors = Sensors(**noise, encoder_resolution=2e-5, sample_period=1e-3)
     motions = [random_motion(axis, np.random.default_rng(k), 4.0) for k, axis in enumerate(AXES)]
-    recorded = integrate(AXES, motions, [()] * len(AXES), [sensors] * len(AXES), seed=2, longest_step=STEP)
+
+    def integrated():
+        return integrate(AXES, motions, [()] * len(AXES), [sensors] * len(AXES), seed=2, longest_step=STEP)
+
     inside = []
-    for axis, run in zip(AXES, recorded, strict=True):
+    for axis, run in zip(AXES, kept(integrated, __file__), strict=True):
         write_rig(axis, tmp_path / "rig.toml")
         found = identify(run.trace, load_rig(tmp_path / "rig.toml"))
         truth = np.array([axis.inertia, axis.viscous, axis.coulomb])

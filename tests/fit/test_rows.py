@@ -1,5 +1,7 @@
 """Columns of a recording with holes are those of its stretches, each filtered by itself."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from bench.trace.trace import Trace
 from tests.fit.motions import RIG, recording
 
 
+@cache
 def holed_rows():
     whole = recording(np.random.default_rng(3), position=True)
     kept = (np.arange(len(whole)) % 1811) > 137

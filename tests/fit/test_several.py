@@ -20,6 +20,8 @@ from bench.validation.independent.simulate import simulate as integrate
 from tests.diagnosis.command import started
 from tests.fit.motions import NAMES, RIG, UNITS, Truth, recording
 from tests.fit.test_recovery import AXES
+from tests.fit.test_recovery import __file__ as axes_file
+from tests.kept import kept
 from tests.recorded import STEP
 
 #: About what is chosen for these motions, which takes a fifth of the time where it is given - Hz.
@@ -58,7 +60,11 @@ def test_runs_of_one_direction_determine_together_what_neither_does_alone(tmp_pa
     axes = [axis for axis in AXES for _ in range(2)]
     motions = [one_way(axis, rng, side) for axis in AXES for side in (1.0, -1.0)]
     effects = [(TorqueOffset(offset),) for offset in offsets for _ in range(2)]
-    recorded = integrate(axes, motions, effects, [sensors] * len(axes), seed=4, longest_step=STEP)
+
+    def integrated():
+        return integrate(axes, motions, effects, [sensors] * len(axes), seed=4, longest_step=STEP)
+
+    recorded = kept(integrated, __file__, axes_file)
     for k, (axis, offset) in enumerate(zip(AXES, offsets, strict=True)):
         write_rig(axis, tmp_path / "rig.toml")
         rig = load_rig(tmp_path / "rig.toml").model_copy(update={"offset": True})
@@ -170,7 +176,7 @@ def drawn(rng):
 
 
 @pytest.mark.parametrize(
-    ("count", "draws"), [(2, 40), *(pytest.param(each, 100, marks=pytest.mark.slow) for each in (2, 4))]
+    ("count", "draws"), [(2, 20), *(pytest.param(each, 100, marks=pytest.mark.slow) for each in (2, 4))]
 )
 def test_the_next_recording_lies_where_it_was_expected_and_the_axis_in_the_joint_interval(count, draws):
     rng, next_one, mean, narrow = np.random.default_rng(9), [], [], []
@@ -191,7 +197,7 @@ def test_the_next_recording_lies_where_it_was_expected_and_the_axis_in_the_joint
     assert (coverage[2] < 0.7).any()
 
 
-@pytest.mark.parametrize("draws", [40, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("draws", [20, pytest.param(100, marks=pytest.mark.slow)])
 def test_recordings_that_are_alike_leave_the_joint_interval_as_narrow_as_their_noise(draws):
     rng, held, width, warned = np.random.default_rng(10), [], [], 0
     for _ in range(draws):

@@ -1,6 +1,7 @@
 """Coupling from a motor's and a load's encoder, of two masses that are integrated by small steps of their own."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ UNITS = {"time": "s", "position": "rad", "velocity": "rad/s", "torque": "N*m", "
 RIG = {"motor": {"rotor_inertia": ROTOR}, "load": {"gear_ratio": RATIO}}
 
 
+@cache
 def recorded(gap=0.0, error=0.0, size=1.0):
     """Motor behind a gear, a spring with play and a load; encoders of 16 bit on the motor and 20 bit on the load."""
     rng, waves = np.random.default_rng(0), [(0.35, 0.9), (0.25, 2.7), (0.2, 6.1), (0.15, 13.0)]
@@ -62,7 +64,7 @@ def test_a_transmission_error_once_per_turn():
 
 
 def test_without_a_torque_it_says_what_is_missing():
-    columns = recorded()
+    columns = dict(recorded())
     columns["current"] = columns.pop("torque") / 0.1
     units = {name: unit for name, unit in UNITS.items() if name != "torque"} | {"current": "A"}
     found = bench.identify(columns, RIG, units=units)

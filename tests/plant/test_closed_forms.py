@@ -92,18 +92,6 @@ def test_load_torque_is_held_by_friction_or_not(sign):
     assert coast(parameters, 0.0, 0.0, 0.0, 2000, 250e-6).velocity[-1] * sign < -0.5
 
 
-def test_work_of_the_motor_is_kinetic_energy_and_friction_heat():
-    parameters, _, timestep = AXES["the lab's axis"]
-    time = np.arange(8000) * timestep
-    states = open_loop(build_spec(parameters, timestep), 0.6 * np.sin(9.0 * time))
-    torque, velocity = states.torque[:-1], states.velocity
-    mean = (velocity[1:] + velocity[:-1]) / 2.0
-    friction = parameters.viscous_friction_coefficient * mean**2 + parameters.coulomb_friction * np.abs(mean)
-    work, heat = (torque * mean).sum() * timestep, friction.sum() * timestep
-    assert work == pytest.approx(parameters.inertia * velocity[-1] ** 2 / 2.0 + heat, rel=1e-4)
-    assert heat > 0.5 * parameters.inertia * velocity.max() ** 2
-
-
 def test_error_falls_with_the_square_of_the_step():
     """Torque that varies is held over each step: second order, as of a leapfrog, not first."""
     parameters = AxisParameters(2.2e-3, 0.0, 0.0)

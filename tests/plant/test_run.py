@@ -62,11 +62,6 @@ def test_one_that_diverges_leaves_those_beside_it(plant):
     assert [one.diverged for one in run_loops(loops)] == [False, True, False]
 
 
-def test_runs_again_the_same(plant):
-    references = reversals(duration=0.3)
-    np.testing.assert_array_equal(run(plant, references).velocity, run(plant, references).velocity)
-
-
 def test_progress_goes_up_to_one(plant):
     seen = []
     run(dataclasses.replace(plant, emulated=True), reversals(duration=1.0), seen.append)

@@ -51,13 +51,6 @@ def test_noise_has_the_stated_size_and_no_bias():
         assert abs(error.mean()) < 4.0 * size / np.sqrt(len(error))
 
 
-def test_seed_alone_decides_the_noise():
-    sensors = Sensors(1e-3, velocity_noise=0.03, current_noise=0.005)
-    first, again, other = (record(sensors, seed)[1]["velocity"] for seed in (1, 1, 2))
-    np.testing.assert_array_equal(first, again)
-    assert (first != other).any()
-
-
 def test_current_inverts_the_saturating_torque_constant():
     states, trace = record(Sensors(1e-3, torque_constant=SATURATING), torque=np.full(8000, 3.2))
     np.testing.assert_allclose(SATURATING.torque(trace["current"]), states.torque[::4], rtol=1e-9)

@@ -63,7 +63,7 @@ def test_samples_come_at_the_sample_period(rig_of):
 
 def test_friction_of_drive_and_mechanics_give_one_recording(rig_of):
     rig = 'friction = "{}"\ncurrent_noise = "5 mA"'
-    mechanics, drive = (simulate(rig_of(rig.format(kind))) for kind in ("mechanics", "drive"))
+    mechanics, drive = (simulate(rig_of(rig.format(kind)), "multisine") for kind in ("mechanics", "drive"))
     assert drive.truth.friction == "drive"
     off = np.abs(mechanics.trace["current"] - drive.trace["current"]).max()
     print(f"current with friction in the drive against mechanics: {off:.1e} A")

@@ -8,6 +8,7 @@ from bench.rig.rig import Rig
 from bench.servos.breakaway import _impulse, _standing, static_friction
 from bench.servos.commanded import Gains, balance
 from bench.trace.trace import Trace, with_known
+from tests.sines import sines
 
 KP, KD, RATE = 30.0, 0.5, 500.0
 J, VISCOUS, COULOMB, BIAS, DELAY = 0.02, 0.1, 0.2, 0.03, 0.0071
@@ -16,25 +17,13 @@ RIG = Rig.of({"name": "joint", "kind": "rotary"}, "test")
 WAVES = ((0.5, 0.4, 0.0), (0.2, 1.1, 1.0), (0.08, 2.3, 2.0))
 
 
-def motion(time):
-    """Position of the waves with its first two derivatives (3, n)."""
-    turns = [(size, 2.0 * np.pi * rate, 2.0 * np.pi * rate * time + phase) for size, rate, phase in WAVES]
-    return np.array(
-        [
-            sum(size * np.sin(angle) for size, _, angle in turns),
-            sum(size * rate * np.cos(angle) for size, rate, angle in turns),
-            sum(-size * rate**2 * np.sin(angle) for size, rate, angle in turns),
-        ]
-    )
-
-
 def log(noise, seconds=20.0):
     """A log whose goal makes a joint without links move by the waves."""
     time = np.arange(round(seconds * RATE)) / RATE
-    q, w, alpha = motion(time + DELAY + 0.5 / RATE)  # a held goal acts half a period later
+    q, w, alpha = sines(time + DELAY + 0.5 / RATE, WAVES)  # a held goal acts half a period later
     torque = J * alpha + (VISCOUS + KD) * w + COULOMB * np.sign(w)
     goal = torque / KP + q - BIAS
-    measured = motion(time)[0] + noise * np.random.default_rng(3).standard_normal(time.size)
+    measured = sines(time, WAVES)[0] + noise * np.random.default_rng(3).standard_normal(time.size)
     units = {"time": "s", "position": "rad", "position_reference": "rad"}
     trace = Trace.from_arrays({"time": time, "position": measured, "position_reference": goal}, units)
     zero = np.zeros(time.size)

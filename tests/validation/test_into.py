@@ -12,6 +12,7 @@ from bench.parameter import Parameter
 from bench.validation.coverage import of_effects
 from bench.validation.independent.effects import CoggingTorque
 from bench.validation.into import Injection, Injections, Own, axis_of, fate, inject, own, tried
+from tests.sines import sines
 from tests.validation.test_injection import AXIS, RIG, SWING, host_of
 
 OWN = Own(host_of(SWING, np.zeros(SWING.size)), ("unbalance",), "explained", frozenset({"unbalance"}), 0.01, "N*m")
@@ -82,11 +83,7 @@ def test_a_recording_that_leaves_inertia_open_takes_no_effects():
 def recording():
     """A plain axis with noise, in closed form."""
     rng, time = np.random.default_rng(2), host_of(SWING, SWING).trace.time
-    waves = [(2.0, 0.9, 0.3), (0.6, 2.3, 1.9), (0.2, 5.1, 0.7)]
-    angles = [(size, 2.0 * np.pi * rate, 2.0 * np.pi * rate * time + phase) for size, rate, phase in waves]
-    position = sum(size * np.sin(angle) for size, _, angle in angles)
-    speed = sum(size * rate * np.cos(angle) for size, rate, angle in angles)
-    acceleration = sum(-size * rate**2 * np.sin(angle) for size, rate, angle in angles)
+    position, speed, acceleration = sines(time, [(2.0, 0.9, 0.3), (0.6, 2.3, 1.9), (0.2, 5.1, 0.7)])
     torque = AXIS.inertia * acceleration + AXIS.viscous * speed + AXIS.coulomb * np.sign(speed)
     noise = rng.normal(size=(2, time.size))
     return host_of(position + 2e-5 * noise[0], torque + 4e-3 * noise[1]).trace
