@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", "report", "script", "page", "video"})
 #: Those of them that name folders, which may be there.
 FOLDERS = frozenset({"out", "synthetic", "notebooks"})
+#: Parameters of commands that are the recordings which a result is of.
+RECORDINGS = frozenset({"file", "trace", "traces", "log", "logs"})
 #: Notes on the recordings of this run, in order. Bad input is one line, without them.
 NOTES: dict[str, None] = {}
 #: Parameters of commands whose file is read, and replaced with `--update`.
@@ -143,11 +145,25 @@ def guarded(verb: Callable[..., None]) -> Callable[..., None]:
             json, out = given.get("json"), given.get("out")
             if isinstance(json, Path) and json != STDOUT and not json.parent.is_dir() and json.parent != out:
                 raise InputError(json, f"found no folder '{json.parent}'", "allowed: a file in a folder that is there")
-            verb(**given)
+            with _of_recordings([path for name, path in _paths(given, read=True) if name in RECORDINGS]):
+                verb(**given)
 
     vars(command)["__signature__"] = inspect.Signature(taken)
     command.__annotations__ = {one.name: one.annotation for one in taken}
     return command
+
+
+@contextmanager
+def _of_recordings(paths: Sequence[Path]) -> Iterator[None]:
+    """Name the recordings in a refusal that names none of them."""
+    try:
+        yield
+    except UndeterminedError as error:
+        names = [readable(path) for path in paths]
+        if names and not any(name in str(error) for name in names):
+            more = f" and {len(names) - 1} more" if names[1:] else ""
+            error.args = (f"{names[0]}{more}: {error}",)
+        raise
 
 
 def _paths(given: Mapping[str, object], read: bool) -> Iterator[tuple[str, Path]]:

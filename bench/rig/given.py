@@ -145,7 +145,7 @@ def drafted(recording: Recording, axis: str | None = None) -> tuple[Rig, str, st
         raise InputError(error.where, error.found, f"{error.allowed}; {how}") from error
     mapped = [f"{signal} = {column}" for signal, column in rig.trace.columns.items()]
     direct = {"torque", "force"} & trace.signals.keys()
-    remark = without_rated(rig, trace) if direct else without_constant(rig)
+    remark = without_rated(rig, trace) if direct else without_constant(rig) if "current" in trace else None
     assumed = "; ".join(filter(None, (f"a {rig.kind} axis", ", ".join(mapped), remark)))
     return rig, text, f"no rig was given, so one was drafted from {name}: {assumed}"
 

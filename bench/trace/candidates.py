@@ -51,6 +51,8 @@ _CIA402 = "object of CiA 402"
 #: Columns of drive vendors: the signal, its unit by the manual - None if it depends on settings -, and the source with
 #: what to check.
 COLUMNS: dict[str, tuple[str, str | None, str]] = {
+    "goal_position": ("position_reference", "turn/4096", _DYNAMIXEL),
+    "goal_velocity": ("velocity_reference", "0.229 rpm", _DYNAMIXEL),
     "present_position": ("position", "turn/4096", _DYNAMIXEL),
     "present_velocity": ("velocity", "0.229 rpm", _DYNAMIXEL),
     "present_current": ("current", "2.69 mA", _DYNAMIXEL + ": 2.69 mA of XM and XH, 1 mA of XL330 and XC330"),
@@ -260,7 +262,8 @@ def _by_motion(
             continue
         found.append(("position", pair[0], f"its derivative is '{pair[1].name}'"))
         found.append(("velocity", pair[1], f"is the derivative of '{pair[0].name}'"))
-        others = {one: level for one, level in levels.items() if one not in pair and _is_nameless(names[one])}
+        free = {one for one, name in names.items() if _is_nameless(name) or LETTERS.get(name.letter or "") == "torque"}
+        others = {one: level for one, level in levels.items() if one not in pair and one in free}
         effort = _explained_by(rates[pair[1]], levels[pair[1]], others)
         if effort is not None:
             found.append(("torque", effort, f"accelerates '{pair[1].name}', so it is a torque, or a current"))

@@ -58,3 +58,17 @@ def test_columns_without_names_are_proposed_by_their_motion(columns, tmp_path):
     found = inspect_recording(read_recording(written(tmp_path / "log.csv", [columns], head=None)), GivenOptions())
     signals = [one.suggestion.split(" = ")[0] for one in found.columns]
     assert signals == ["time", "position", "velocity", "torque"]
+
+
+@pytest.mark.parametrize("head", ["t,q,v,M", "t,pos,vel,eff", "t,q,dq,tau_e"])
+def test_letters_are_read_where_motion_agrees(columns, tmp_path, head):
+    rows = columns + [0.0, 0.0, 0.0, 0.01] * np.random.default_rng(1).standard_normal(columns.shape)
+    found = bench.identify(written(tmp_path / "log.csv", [rows], head)).parameters["moment_of_inertia"]
+    assert found.unit == "kg*m**2" and found.value == pytest.approx(INERTIA, rel=2e-3)
+
+
+def test_a_goal_in_counts_of_a_dynamixel_is_read_as_its_position(tmp_path):
+    counts = np.round(2048 + 500 * np.sin(np.arange(500) / 30.0))
+    rows = np.stack([np.arange(500.0) * 10.0, counts, np.roll(counts, 2)], axis=1)
+    trace = bench.read(written(tmp_path / "log.csv", [rows], "time_ms,goal_position,present_position"))
+    np.testing.assert_allclose(trace["position_reference"] * 4096 / (2 * np.pi), counts, atol=1e-6)
