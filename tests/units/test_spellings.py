@@ -1,7 +1,6 @@
 """Units as recorders, drives and datasheets spell them, each with the factor that its closed form gives."""
 
 import math
-import re
 import typing
 from pathlib import Path
 
@@ -19,27 +18,33 @@ from bench.units.grammar import UnitError
 
 KNOWN = {"pi": math.pi, "sqrt": math.sqrt, "inch": 0.0254, "ft": 0.3048, "lb": 0.45359237, "oz": 0.45359237 / 16}
 KNOWN |= {"g0": 9.80665, "__builtins__": {}}
-LINES = Path(__file__).with_name("spellings.txt").read_text(encoding="utf-8").splitlines()
-ROWS = [[cell.strip() for cell in line.split("|")] for line in LINES if "|" in line and not line.startswith("#")]
+#: SI unit, factor, spellings of a line.
+ROWS = [
+    [cell.strip() for cell in line.split("|")]
+    for line in Path(__file__).with_name("spellings.txt").read_text(encoding="utf-8").splitlines()
+    if "|" in line and not line.startswith("#")
+]
+#: Quantities of one column, of which a recording has either.
+EITHER = [("rad/s", "m/s"), ("rad", "m"), ("rad/s**2", "m/s**2"), ("N*m", "dimensionless")]
 
 
-def factor_of(text):
-    return None if text == "refused" else eval(re.sub(r"\bin\b", "inch", text), KNOWN)
-
-
-@pytest.mark.parametrize(("spelling", "factor", "si"), ROWS, ids=[f"{row[0]} as {row[2]}" for row in ROWS])
-def test_a_spelling_has_the_factor_of_its_closed_form(spelling, factor, si):
-    factor = factor_of(factor)
-    if factor is None:
-        with pytest.raises(UnitError):
-            scale_of(spelling, (si,))
-    else:
-        assert scale_of(spelling, (si,)).factor == pytest.approx(factor, rel=1e-12)
+@pytest.mark.parametrize(("si", "factor", "spellings"), [(si, of, rest) for si, of, *rest in ROWS])
+def test_a_spelling_has_the_factor_of_its_closed_form(si, factor, spellings):
+    """Where its quantity alone is allowed, and where the other one of its column is, too."""
+    for allowed in ((si,), *(pair for pair in EITHER if si in pair)):
+        for spelling in spellings:
+            if factor == "refused":
+                with pytest.raises(UnitError) as refused:
+                    scale_of(spelling, allowed)
+                assert refused.value.allowed.startswith("allowed: ")
+            else:
+                found = scale_of(spelling, allowed)
+                assert (found.unit, found.factor) == (si, pytest.approx(eval(factor, KNOWN), rel=1e-12)), spelling
 
 
 def test_the_table_is_large_and_names_no_spelling_twice():
-    assert len(ROWS) >= 500
-    assert len({(spelling, si) for spelling, _, si in ROWS}) == len(ROWS)
+    every = [(si, spelling) for si, _, *spellings in ROWS for spelling in spellings]
+    assert len(set(every)) == len(every) >= 600
 
 
 RPM = 2.0 * math.pi / 60.0
