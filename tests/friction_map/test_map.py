@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from bench.axis_kind import LINEAR, ROTARY
 from bench.effects.catalogue import catalogue
 from bench.effects.effect import Signals
-from bench.friction_map import friction_map
+from bench.friction_map import FrictionCurve, chance, friction_map
 from bench.rig.rig import Rig
 from bench.trace.trace import Trace
 
@@ -70,3 +71,11 @@ def test_the_order_of_recordings_does_not_matter():
     one, other = friction_map(given, RIGS[ROTARY]), friction_map(given[::-1], RIGS[ROTARY])
     assert one.name == other.name == "stribeck_friction"
     assert one.values == pytest.approx(other.values, rel=1e-6)
+
+
+def test_a_chance_is_that_of_the_f_test():
+    """Two numbers more save 6 of 10 squares, of 25 points."""
+    plain, tried = (FrictionCurve("", (), np.zeros(3), squares, free, True) for squares, free in ((10.0, 3), (4.0, 5)))
+    assert chance(plain, tried, 25, 0.0) == pytest.approx(stats.f.sf((6.0 / 2.0) / (4.0 / 20.0), 2, 20))
+    assert chance(plain, tried, 25, 8.0) == pytest.approx(stats.f.sf((6.0 / 2.0) / (8.0 / 20.0), 2, 20))
+    assert chance(plain, plain, 25, 0.0) == 1.0
