@@ -13,13 +13,16 @@ from bench.trace.readers.arrow import seconds
 DAY = 86400.0
 FORMS = {
     "ISO": "%Y-%m-%d %H:%M:%S.%f",
-    "ISO with T": "%Y-%m-%dT%H:%M:%S.%f",
+    "ISO with T": "%Y-%m-%dT%H:%M:%S.%fZ",
+    "ISO with zone": "%Y-%m-%d %H:%M:%S.%f000+01:00",
     "German": "%d.%m.%Y %H:%M:%S,%f",
     "German, short": "%d.%m.%y %H:%M:%S,%f",
     "Chinese": "%Y/%m/%d %H:%M:%S.%f",
     "British": "%d/%m/%Y %H:%M:%S.%f",
     "American": "%m/%d/%Y %I:%M:%S.%f %p",
 }
+#: Times of a day, which run on over midnight.
+CLOCKS = ("%H:%M:%S.%f", "%H:%M:%S,%f", "%H:%M:%S:%f", "%I:%M:%S.%f %p", "%H:%M:%S")
 #: Moments, each list with its true seconds by Python's own calendar.
 SPANS = {
     "four days": [datetime(2024, 3, day, 10, 0, day, tzinfo=UTC) for day in (1, 5)],
@@ -39,10 +42,15 @@ def test_seconds_between_moments_are_those_of_the_calendar(form, span):
     assert found == pytest.approx([(moment - moments[0]).total_seconds() for moment in moments], abs=1e-6)
 
 
-def test_the_order_of_day_and_month_is_the_one_in_which_the_recording_is_short():
-    found = seconds(pa.array(["03/01/2024 10:00:00", "03/05/2024 10:00:00"]))
-    assert found == pytest.approx([0.0, 4.0 * DAY])
-    found = seconds(pa.array(["01/03/2024 10:00:00", "05/03/2024 10:00:00"]))
+@pytest.mark.parametrize("form", CLOCKS)
+def test_a_clock_runs_on_over_midnight(form):
+    found = seconds(pa.array([moment.strftime(form) for moment in SPANS["over midnight"]]))
+    assert np.diff(found) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("dates", [("03/01", "03/05"), ("01/03", "05/03"), ("3/1", "3/5")])
+def test_the_order_of_day_and_month_is_the_one_in_which_the_recording_is_short(dates):
+    found = seconds(pa.array([f"{date}/2024 10:00:00" for date in dates]))
     assert found == pytest.approx([0.0, 4.0 * DAY])
 
 
