@@ -56,14 +56,13 @@ def test_twincat_trace_takes_the_unit_of_the_file():
     np.testing.assert_allclose(stated["voltage"], np.arange(1000) * 1e-3)
 
 
+TWINCAT_HEAD = "Name\tproject\nStarttime of export\t1\n\nName\tvelocity\tName\tcurrent\nUnit\trad/s\tUnit\tA\n\n"
+
+
 def test_twincat_full_time_stamps_and_cells_left_empty_by_a_slower_channel(tmp_path):
-    start = 132959733843760000  # too large for a float to tell 100 ns
-    rows = [
-        f"{start + 10_000 * k + 1}\t{k}\t" + (f"{start + 10_000 * k + 1}\t{k}" if k % 5 == 0 else "\t")
-        for k in range(50)
-    ]
-    head = "Name\tproject\nStarttime of export\t1\n\nName\tvelocity\tName\tcurrent\nUnit\trad/s\tUnit\tA\n\n"
-    (tmp_path / "run.csv").write_text(head + "\n".join(rows))
+    stamps = [132959733843760001 + 10_000 * k for k in range(50)]  # too large for a float to tell 100 ns
+    rows = [f"{t}\t{k}\t" + (f"{t}\t{k}" if k % 5 == 0 else "\t") for k, t in enumerate(stamps)]
+    (tmp_path / "run.csv").write_text(TWINCAT_HEAD + "\n".join(rows))
     trace = read(tmp_path / "run.csv")
     assert trace.sample_period == pytest.approx(1e-3, rel=1e-12)
     np.testing.assert_allclose(trace["current"], np.arange(46), atol=1e-9)
@@ -71,11 +70,9 @@ def test_twincat_full_time_stamps_and_cells_left_empty_by_a_slower_channel(tmp_p
 
 def test_twincat_rows_begin_where_the_first_channel_has_no_sample_yet(tmp_path):
     rows = ["\t\t0\t1.5", *(f"{k}\t{k}\t{k}\t1.5" for k in range(1, 20))]
-    head = "Name\tproject\nStarttime of export\t0\n\nName\tvelocity\tName\tcurrent\nUnit\trad/s\tUnit\tA\n\n"
-    (tmp_path / "run.csv").write_text(head + "\n".join(rows))
-    channels = {channel.name: channel for channel in read_recording(tmp_path / "run.csv").channels}
-    assert channels["current"].values.size == 20
-    assert channels["velocity"].values.size == 19
+    (tmp_path / "run.csv").write_text(TWINCAT_HEAD + "\n".join(rows))
+    sizes = {channel.name: channel.values.size for channel in read_recording(tmp_path / "run.csv").channels}
+    assert sizes == {"velocity": 19, "current": 20}
 
 
 def test_twincat_with_commas_and_a_truncated_end(tmp_path):
@@ -92,8 +89,7 @@ def test_twincat_with_commas_and_a_truncated_end(tmp_path):
 def test_emps_in_the_units_the_rig_gives():
     path = shared("emps", "DATA_EMPS.mat")
     raw = loadmat(path)
-    columns = {"time": "t [s]", "position": "qm [m]", "position_reference": "qg [m]", "voltage": "vir [V]"}
-    trace = read(path, columns)
+    trace = read(path, {"time": "t [s]", "position": "qm [m]", "position_reference": "qg [m]", "voltage": "vir [V]"})
     assert not trace.axis_kind.turns and len(trace) == 24841 and len(trace.segments) == 1
     assert trace.sample_period == pytest.approx(1e-3, rel=1e-9)
     assert trace.time_base is not None and not trace.time_base.resampled
@@ -108,14 +104,6 @@ def test_emps_pulses_are_numbers_before_arithmetic():
     path = shared("emps", "DATA_EMPS_PULSES.mat")
     columns = {"time": "t [s]", "position": "qm [m]", "force": "-pulses_N [N]"}
     assert set(np.unique(read(path, columns)["force"]).tolist()) == {-5.0, 0.0}
-
-
-def test_mat_structs_and_matrices(tmp_path):
-    time = np.arange(100) * 1e-3
-    savemat(tmp_path / "run.mat", {"log": {"t": time, "both": np.column_stack([time, 2 * time])}, "name": "axis"})
-    trace = read(tmp_path / "run.mat", {"time": "log.t [s]", "velocity": "log.both(:,2) [rad/s]"})
-    assert np.array_equal(trace["velocity"], 2 * time)
-    assert trace.metadata["name"] == "axis"
 
 
 def test_epos_example():
@@ -170,24 +158,29 @@ def test_frequency_response_is_refused():
         read(shared("formats", "freq_trace.XML"))
 
 
-def test_mat_cells_and_arrays_of_structs(tmp_path):
+def test_mat_structs_cells_and_matrices(tmp_path):
     time = np.arange(100) * 1e-3
     runs = np.zeros((1, 2), dtype=[("t_s", object), ("w_rad_s", object)])
     runs[0, 0], runs[0, 1] = (time, 2.0 * time), (time + 1.0, 3.0 * time)
     cells = np.empty((1, 2), dtype=object)
     cells[0, :] = [time, 5.0 * time]
-    savemat(tmp_path / "run.mat", {"run": runs, "cell": cells})
+    log = {"t": time, "both": np.column_stack([time, 2 * time])}
+    savemat(tmp_path / "run.mat", {"run": runs, "cell": cells, "log": log, "name": "axis"})
     recording = read_recording(tmp_path / "run.mat")
-    assert [channel.name for channel in recording.channels] == [
+    assert [channel.name for channel in recording.channels][:6] == [
         *(f"run.{place}.{name}" for place in (1, 2) for name in ("t_s", "w_rad_s")),
         *("cell.1", "cell.2"),
     ]
-    trace = assemble(recording, GivenOptions({"velocity": "run.2.w_rad_s", "time": "run.2.t_s"}))
-    np.testing.assert_allclose(trace["velocity"], 3.0 * time)
+    for clock, speed, shift, factor in (
+        ("run.2.t_s", "run.2.w_rad_s", 1.0, 3.0),
+        ("cell.1 [s]", "cell.2 [rad/s]", 0.0, 5.0),
+        ("log.t [s]", "log.both(:,2) [rad/s]", 0.0, 2.0),
+    ):
+        trace = read(tmp_path / "run.mat", {"time": clock, "velocity": speed})
+        np.testing.assert_allclose(trace.time, time + shift)
+        np.testing.assert_allclose(trace["velocity"], factor * time)
+    assert trace.metadata["name"] == "axis"
     np.testing.assert_allclose(assemble(recording, GivenOptions(axis="run.2")).time, time + 1.0)
-    np.testing.assert_allclose(
-        read(tmp_path / "run.mat", {"velocity": "cell.2 [rad/s]", "time": "cell.1 [s]"}).time, time
-    )
 
 
 def test_iddata_in_a_struct(tmp_path):
