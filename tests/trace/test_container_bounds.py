@@ -21,13 +21,14 @@ from bench.errors import InputError
 from bench.trace.read import read, read_recording
 from bench.trace.readers.containers import unpack
 from tests.hostile import cpu_seconds, run
+from tests.trace import formats
 
 TIME = np.arange(400) * 2e-3
 #: A bound that keeps these tests short, and more than it allows.
 BOUND, MUCH = "4 MB", 6 << 20
 
 
-def mcap(path, messages, compression):
+def mcap(path, messages, compression=CompressionType.ZSTD):
     with path.open("wb") as file:
         writer = Writer(file, compression=compression, chunk_size=2 * MUCH)
         writer.start()
@@ -36,16 +37,6 @@ def mcap(path, messages, compression):
             writer.add_message(channel, log_time=at, publish_time=at, data=message)
         writer.finish()
     return path
-
-
-def mcap_bomb(path, compression=CompressionType.ZSTD):
-    return mcap(path, [(0, b"[" + b"0," * (MUCH // 2) + b"0]")], compression)
-
-
-def mcap_of_numbers(path):
-    """Each number of two bytes becomes three of eight."""
-    message = b"[" + b"0," * 255 + b"0]"
-    return mcap(path, [(k, message) for k in range(800)], CompressionType.ZSTD)
 
 
 def mdf_bomb(path):
@@ -61,20 +52,14 @@ def hdf5_bomb(path):
     return path
 
 
-def tdms_that_lies(path):
-    """A length in the head that the file does not hold."""
-    with TdmsWriter(str(path)) as writer:
-        writer.write_segment([ChannelObject("axis", "w", np.zeros(64))])
-    content = path.read_bytes()
-    at = content.index(struct.pack("<Q", 64))
-    path.write_bytes(content[:at] + struct.pack("<Q", 1 << 40) + content[at + 8 :])
-    return path
+def zeros(count):
+    return b"[" + b"0," * count + b"0]"
 
 
 BOMBS = {
-    "zstd.mcap": mcap_bomb,
-    "lz4.mcap": lambda path: mcap_bomb(path, CompressionType.LZ4),
-    "numbers.mcap": mcap_of_numbers,
+    "zstd.mcap": lambda path: mcap(path, [(0, zeros(MUCH // 2))]),
+    "lz4.mcap": lambda path: mcap(path, [(0, zeros(MUCH // 2))], CompressionType.LZ4),
+    "numbers.mcap": lambda path: mcap(path, [(k, zeros(255)) for k in range(800)]),  # of two bytes, three of eight
     "zip.mf4": mdf_bomb,
     "zip.h5": hdf5_bomb,
 }
@@ -90,7 +75,11 @@ def test_what_a_container_expands_to_is_bounded(tmp_path, name):
 
 def test_a_length_that_a_file_does_not_hold_is_reported(tmp_path):
     """npTDMS' own warning is a note, and no line of its own on standard error."""
-    recording = read_recording(tdms_that_lies(tmp_path / "run.tdms"))
+    path = tmp_path / "run.tdms"
+    with TdmsWriter(str(path)) as writer:
+        writer.write_segment([ChannelObject("axis", "w", np.zeros(64))])
+    path.write_bytes(path.read_bytes().replace(struct.pack("<Q", 64), struct.pack("<Q", 1 << 40), 1))
+    recording = read_recording(path)
     assert recording.channels[0].values.size == 64 and "not a multiple of the chunk size" in recording.notes[0]
     done = run("inspect", "run.tdms", cwd=tmp_path)
     assert done.stderr == "" and "not a multiple" in done.stdout
@@ -169,23 +158,10 @@ def test_hdf5_is_of_one_file_and_each_dataset_read_once(tmp_path):
     assert channel.name.endswith(".a.w") and np.array_equal(channel.values, np.sin(TIME))
 
 
-MANY = {f"d{k}": np.arange(4.0) for k in range(5000)}
-
-
-def many_of_hdf5(path):
-    with h5py.File(path, "w") as file:
-        for name, values in MANY.items():
-            file[name] = values
-
-
-def many_of_tdms(path):
-    with TdmsWriter(path) as writer:
-        writer.write_segment([ChannelObject("group", name, values) for name, values in MANY.items()])
-
-
+MANY = {f"d{k}": np.arange(4.0) for k in range(4200)}
 CROWDED = {
-    "many.h5": many_of_hdf5,
-    "many.tdms": many_of_tdms,
+    "many.h5": lambda path: formats.hdf5(path, MANY),
+    "many.tdms": lambda path: formats.tdms(path, MANY),
     "many.npz": lambda path: np.savez(path, **MANY),
     "many.parquet": lambda path: pyarrow.parquet.write_table(pa.table(MANY), path),
     "many.json": lambda path: path.write_text(json.dumps({name: [1, 2] for name in MANY})),

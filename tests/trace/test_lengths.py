@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import scipy.io
 
-from bench import Trace
 from bench.errors import InputError
 from bench.trace.read import read
+from tests.trace import formats
 
 N = 300
 TIME = np.arange(N) * 1e-3
@@ -21,10 +21,8 @@ def as_json(path, columns):
 
 
 def as_hdf5(path, columns):
-    h5py = pytest.importorskip("h5py")
-    with h5py.File(path, "w") as file:
-        for name, values in columns.items():
-            file[name] = [one.encode() for one in values] if isinstance(values, list) else values
+    texts = {name: [one.encode() for one in values] for name, values in columns.items() if isinstance(values, list)}
+    formats.hdf5(path, {**columns, **texts})
 
 
 WRITERS = {
@@ -36,21 +34,15 @@ WRITERS = {
 
 
 @pytest.mark.parametrize("name", WRITERS)
-def test_side_columns_are_left_out_with_a_note(tmp_path, name):
+def test_side_columns_and_a_short_signal_that_nobody_needs_are_left_out_with_a_note(tmp_path, name):
     side = {"joint_names": ["elbow", "wrist"], "gains": np.arange(3.0), "limits": np.arange(N + 5.0)}
-    WRITERS[name](tmp_path / name, {**SIGNALS, **side})
-    trace = read(tmp_path / name, COLUMNS)
-    assert trace.time == pytest.approx(TIME)
-    assert trace.signals["velocity"] == pytest.approx(SIGNALS["velocity"])
-    assert any("gains (3), limits (305)" in note for note in trace.notes)
-
-
-@pytest.mark.parametrize("name", WRITERS)
-def test_a_short_signal_that_nobody_needs_is_left_out_with_a_note(tmp_path, name):
-    WRITERS[name](tmp_path / name, {**SIGNALS, "temperature": np.array([40.0, 41.0])})
+    WRITERS[name](tmp_path / name, {**SIGNALS, **side, "temperature": np.array([40.0, 41.0])})
     trace = read(tmp_path / name, {**COLUMNS, "temperature": "temperature [degC]"})
+    assert trace.time == pytest.approx(TIME)
     assert set(trace.signals) == {"velocity", "current"}
-    assert any("temperature (2)" in note for note in trace.notes)
+    assert trace.signals["velocity"] == pytest.approx(SIGNALS["velocity"])
+    for left_out in ("gains (3)", "limits (305)", "temperature (2)"):
+        assert any(left_out in note for note in trace.notes)
 
 
 @pytest.mark.parametrize("size", [2, N - 1, N + 1])
@@ -60,13 +52,6 @@ def test_a_signal_of_another_length_is_an_error_that_names_both(tmp_path, name, 
     WRITERS[name](tmp_path / name, {**SIGNALS, "current": current})
     with pytest.raises(InputError, match=f"found {size} values; allowed: {N}"):
         read(tmp_path / name, COLUMNS)
-
-
-def test_arrays_of_other_lengths_are_refused():
-    with pytest.raises(InputError, match=f"found {N - 1} values; allowed: {N}"):
-        Trace.from_arrays(
-            {**SIGNALS, "current": SIGNALS["current"][1:]}, {"time": "s", "velocity": "rad/s", "current": "A"}
-        )
 
 
 def test_names_beside_lists_of_numbers_in_json_name_their_places(tmp_path):
