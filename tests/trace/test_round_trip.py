@@ -18,7 +18,7 @@ COUNT = 12
 TIME = np.arange(COUNT)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 NUMBERS = arrays(np.float64, (2, COUNT), elements=FINITE)
-SEVERAL = settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+SEVERAL = settings(max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 
 
 @SEVERAL
