@@ -124,7 +124,7 @@ ELSEWHERE = {
     "docs/robot.md": "joints/test_robot.py",
     "docs/servo.md": "servos/test_servo.py",
     "docs/validate.md": "validation/test_command.py",
-    "docs/view.md": "view/test_manual.py",
+    "docs/view.md": "view/test_command.py",
 }
 
 

@@ -5,28 +5,22 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bench.diagnosis.model import holding_bandwidth
-from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel, AxisParameters
-from bench.plant.model_file import StoredModel, model_toml
 from bench.plant.tracking import SoftTracking, track
 from bench.trace.motion import measured_position
 from bench.view.free_running import free_run, restarted, without_effects
 from tests.diagnosis.test_commands import moving, only
 from tests.fit.motions import RIG
+from tests.view.motions import BALANCE, model_file
 
 #: A tenth more inertia than `moving` has, its friction, and the rig's torque constant.
 INERTIA, VISCOUS, COULOMB, K_T = 1.65e-3, 8e-4, 0.06, 0.8
-#: Of a model's file, which has one; none of the motion.
-BALANCE = '[torque_balance]\nrecording = "closed form"\nfilter_width = 1e-3\ncoefficients = [1e-3, 1e-3, 0.06]\n'
 
 
 @pytest.fixture(scope="module")
 def model(tmp_path_factory):
     """A file with these."""
-    path = tmp_path_factory.mktemp("free") / "model.toml"
-    text = model_toml(StoredModel("axis", AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB))))
-    path.write_text(f"{text}\n{BALANCE}", encoding="utf-8")
-    return path
+    return model_file(tmp_path_factory.mktemp("free") / "model.toml", (INERTIA, VISCOUS, COULOMB))
 
 
 def one_way(seconds):
@@ -83,10 +77,9 @@ def test_it_begins_anew_every_so_often_where_the_sensors_have_the_axis(model):
 
 def test_without_what_was_found_it_is_held_where_it_is(tmp_path, model):
     """As the same axis that never had the effect."""
-    trace, effect = one_way(4.0), Present.of("torque_offset", {"torque": 0.02})
-    text = model_toml(StoredModel("axis", AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB), (effect,))))
-    (tmp_path / "model.toml").write_text(f"{text}\n{BALANCE}", encoding="utf-8")
-    found = without_effects(tmp_path / "model.toml", trace, RIG)
+    trace = one_way(4.0)
+    path = model_file(tmp_path / "model.toml", (INERTIA, VISCOUS, COULOMB), torque_offset={"torque": 0.02})
+    found = without_effects(path, trace, RIG)
     without = AxisModel(AxisParameters(INERTIA, VISCOUS, COULOMB))
     plain = track(SoftTracking(without, trace, K_T * trace["current"]), holding_bandwidth(without, 66.0))
     np.testing.assert_allclose(found, plain.position, atol=1e-6)

@@ -14,16 +14,13 @@ from bench.plant.model_file import StoredModel, model_toml
 from bench.plant.profiles import MotionLimits, plan
 from bench.rig.rig import load_rig
 from bench.view.side_by_side import along_profile, along_recording
-from tests.diagnosis.test_commands import diagnosed, only, run_of, with_unbalance
+from tests.diagnosis.test_commands import only
 from tests.fit.motions import RIG
-from tests.view.motions import AHEAD, shown
-
-__all__ = ["diagnosed"]
+from tests.view.motions import AHEAD, BALANCE, shown
 
 
-def test_along_a_recording_the_ghost_is_what_was_measured(diagnosed):
-    trace = with_unbalance(run_of(seed=2, duration=4.0))
-    found = along_recording("model.toml", replay(diagnosed / "found" / "model.toml", trace, RIG))
+def test_along_a_recording_the_ghost_is_what_was_measured(folder, trace):
+    found = along_recording("model.toml", replay(folder / "model.toml", trace, RIG))
     np.testing.assert_array_equal(found.ghost, trace["position"])
     assert found.kind is RIG.axis_kind
     assert rms(found.apart) < 0.005  # some 100 rad are turned
@@ -32,21 +29,17 @@ def test_along_a_recording_the_ghost_is_what_was_measured(diagnosed):
     assert rms((moved - found.velocity)[1:-1]) < 0.02  # position and velocity are those of one motion
 
 
-def test_without_position_both_start_at_zero_and_turn_as_fast(diagnosed):
-    trace = with_unbalance(run_of(seed=2, duration=4.0))
+def test_without_position_both_start_at_zero_and_turn_as_fast(folder, trace):
     blind = only(trace, "velocity", "current")
-    found = along_recording("model.toml", replay(diagnosed / "found" / "model.toml", blind, RIG))
+    found = along_recording("model.toml", replay(folder / "model.toml", blind, RIG))
     assert found.ghost[0] == 0.0
     np.testing.assert_allclose(found.ghost, trace["position"] - trace["position"][0], atol=0.02)
 
 
-def test_a_model_without_motion_is_refused(diagnosed, tmp_path):
-    text = (diagnosed / "found" / "model.toml").read_text(encoding="utf-8")
-    head, rest = text.split("[parameters]")
-    (tmp_path / "model.toml").write_text(head + rest[rest.index("[torque_balance]") :], encoding="utf-8")
-    replayed = replay(tmp_path / "model.toml", with_unbalance(run_of(seed=2, duration=4.0)), RIG)
+def test_a_model_without_motion_is_refused(trace, tmp_path):
+    (tmp_path / "model.toml").write_text(f'schema = "bench.model/1"\nkind = "rotary"\n{BALANCE}', encoding="utf-8")
     with pytest.raises(InputError, match="missing, so that nothing can move"):
-        along_recording(tmp_path / "model.toml", replayed)
+        along_recording(tmp_path / "model.toml", replay(tmp_path / "model.toml", trace, RIG))
 
 
 def test_along_a_profile_the_ghost_is_what_was_asked_for(tmp_path):
