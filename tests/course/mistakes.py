@@ -42,48 +42,18 @@ def some(random):
     return NAMES if random.random() < 0.5 else (str(random.choice(NAMES)),)
 
 
-def degrees_as_radians(of, random):
-    of.scale(some(random), 1.0, 180.0 / np.pi, 1.0)
+def in_other_units(name, *factors):
+    """Some recordings in units that are not those of their head: time, speed, current times these factors."""
 
+    def mistake(of, random):
+        of.scale(some(random), *factors)
 
-def radians_as_degrees(of, random):
-    of.scale(some(random), 1.0, np.pi / 180.0, 1.0)
-
-
-def rpm_as_radians(of, random):
-    of.scale(some(random), 1.0, 30.0 / np.pi, 1.0)
-
-
-def turns_as_radians(of, random):
-    of.scale(some(random), 1.0, 0.5 / np.pi, 1.0)
-
-
-def seconds_as_ms(of, random):
-    of.scale(some(random), 1e-3, 1.0, 1.0)
-
-
-def ms_as_seconds(of, random):
-    of.scale(some(random), 1e3, 1.0, 1.0)
-
-
-def milliamperes_as_amperes(of, random):
-    of.scale(some(random), 1.0, 1.0, 1e3)
-
-
-def amperes_as_milliamperes(of, random):
-    of.scale(some(random), 1.0, 1.0, 1e-3)
-
-
-def peak_for_rms(of, random):
-    of.scale(some(random), 1.0, 1.0, np.sqrt(2.0))
+    mistake.__name__ = name
+    return mistake
 
 
 def scale_of_the_current(of, random):
     of.scale(NAMES, 1.0, 1.0, random.choice([random.uniform(1.06, 1.3), random.uniform(0.8, 0.93)]))
-
-
-def sign(of, random):
-    of.scale(some(random), 1.0, 1.0, -1.0)
 
 
 def late(of, random):
@@ -200,17 +170,17 @@ BEYOND_MENDING = {
 }
 #: Each mistake, and words that name it.
 MISTAKES = {
-    degrees_as_radians: "deg/s that is labelled rad/s",
-    radians_as_degrees: "rad/s that is labelled deg/s",
-    rpm_as_radians: "rpm that is labelled rad/s",
-    turns_as_radians: "turns/s that is labelled rad/s",
-    seconds_as_ms: "s that are labelled ms",
-    ms_as_seconds: "ms that are labelled s",
-    milliamperes_as_amperes: "mA that is labelled A",
-    amperes_as_milliamperes: "A that is labelled mA",
-    peak_for_rms: "√2 times too large",
+    in_other_units("degrees_as_radians", 1.0, 180.0 / np.pi, 1.0): "deg/s that is labelled rad/s",
+    in_other_units("radians_as_degrees", 1.0, np.pi / 180.0, 1.0): "rad/s that is labelled deg/s",
+    in_other_units("rpm_as_radians", 1.0, 30.0 / np.pi, 1.0): "rpm that is labelled rad/s",
+    in_other_units("turns_as_radians", 1.0, 0.5 / np.pi, 1.0): "turns/s that is labelled rad/s",
+    in_other_units("seconds_as_ms", 1e-3, 1.0, 1.0): "s that are labelled ms",
+    in_other_units("ms_as_seconds", 1e3, 1.0, 1.0): "ms that are labelled s",
+    in_other_units("milliamperes_as_amperes", 1.0, 1.0, 1e3): "mA that is labelled A",
+    in_other_units("amperes_as_milliamperes", 1.0, 1.0, 1e-3): "A that is labelled mA",
+    in_other_units("peak_for_rms", 1.0, 1.0, np.sqrt(2.0)): "√2 times too large",
     scale_of_the_current: "correct its scale",
-    sign: "opposite directions",
+    in_other_units("sign", 1.0, 1.0, -1.0): "opposite directions",
     late: "not of the same instants",
     files_swapped: "files look exchanged",
     the_same_file_twice: "one and the same recording",

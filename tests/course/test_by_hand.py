@@ -117,17 +117,14 @@ def test_10_a_row_of_the_table_is_the_median_within_five_radians_a_second_on_the
 def test_range_of_a_motion_at_one_speed():
     """2 N*m at 1000 rpm, driving and braking: 1.5 N*m to the peak either way, and drawn below zero where it brakes."""
     velocity, torque = np.full(4, 1000.0 / RPM), np.array([2.0, -2.0, 2.0, -1.0])
-    found = in_range(lab_rig(), velocity, torque, "by hand")
-    assert found.numbers["peak reserve, 230 V, 400 V, 230 V cold, 400 V cold"] == (pytest.approx(1.5), "N·m")
-    assert found.numbers["RMS torque"] == (pytest.approx(math.sqrt(13.0 / 4.0)), "N·m")
-    motion, heat, least = found.chart.panels[0].series[:3]
-    assert motion.y == (2.0, -2.0, 2.0, -1.0)
-    assert motion.x == pytest.approx([1000.0] * 4)
-    assert heat.x == pytest.approx([1000.0])
-    assert (least.y, least.high) == ((2.0,), pytest.approx((3.5,)))
-    motion, _, least = in_range(lab_rig(), -velocity, torque, "by hand").chart.panels[0].series[:3]
-    assert motion.y == (-2.0, 2.0, -2.0, 1.0)
-    assert (least.y, least.high) == ((-2.0,), pytest.approx((-3.5,)))
+    for way in (1.0, -1.0):
+        found = in_range(lab_rig(), way * velocity, torque, "by hand")
+        assert found.numbers["peak reserve, 230 V, 400 V, 230 V cold, 400 V cold"] == (pytest.approx(1.5), "N·m")
+        assert found.numbers["RMS torque"] == (pytest.approx(math.sqrt(13.0 / 4.0)), "N·m")
+        motion, heat, least = found.chart.panels[0].series[:3]
+        assert (motion.x, motion.y) == (pytest.approx([1000.0] * 4), tuple(way * torque))
+        assert heat.x == pytest.approx([1000.0])
+        assert (least.y, least.high) == ((2.0 * way,), pytest.approx((3.5 * way,)))
 
 
 def test_a_students_axis_is_a_tenth_to_a_fifth_beyond_its_disks_theory():

@@ -59,15 +59,14 @@ def test_half_a_sample_is_explained_by_what_it_leaves(own):
     for name in ("0", "w"):
         assert abs(own[f"late_{name}"]) > 0.1
         assert own[f"project_{name}"] == pytest.approx(own[f"late_{name}"], rel=0.05)
-    assert abs(own["late_J"]) < 0.002
-    assert abs(own["project_J"]) < 0.002
+    assert max(abs(own["late_J"]), abs(own["project_J"])) < 0.002
 
 
 def test_the_torque_constant_falls_as_the_parabola_through_stall_and_peak_does(own, folder):
     student = Student(folder)
-    at = {name: student.torque(1e3 * own[current]) / own[current] for name, current in (("", "I_rms"), ("2", "I_rms2"))}
-    assert own["ratio_rms"] == pytest.approx(student.stall[0] / student.stall[1] / at[""] - 1.0, abs=1e-9)
-    assert own["ratio_2"] == pytest.approx(np.sqrt(2.0) * at["2"] / at[""] - 1.0, abs=1e-9)
+    at, at_2 = (student.torque(1e3 * own[current]) / own[current] for current in ("I_rms", "I_rms2"))
+    assert own["ratio_rms"] == pytest.approx(student.stall[0] / student.stall[1] / at - 1.0, abs=1e-9)
+    assert own["ratio_2"] == pytest.approx(np.sqrt(2.0) * at_2 / at - 1.0, abs=1e-9)
 
 
 def test_noise_of_the_speed_and_what_it_does_to_the_inertia(own):
@@ -130,11 +129,9 @@ def test_the_command_writes_answers_for_the_examiner_alone(folder, tmp_path):
     assert "student-02" in ended.err
     examiner = (tmp_path / "questions.html").read_text(encoding="utf-8")
     student = (tmp_path / "questions" / "student-01.html").read_text(encoding="utf-8")
-    assert examiner.count("Answer: ") == 3
-    assert "Answer" not in student
-    first = questions(LabRecordings.in_folder(folder), 0)[0]
-    assert first.text[:60] in student
-    assert first.text[:60] in examiner
+    assert (examiner.count("Answer: "), student.count("Answer")) == (3, 0)
+    first = questions(LabRecordings.in_folder(folder), 0)[0].text[:60]
+    assert first in student and first in examiner
     assert bench("lab", "--questions", tmp_path / "none").status == 2
     with pytest.raises(InputError):
         figures(LabRecordings.in_folder(bad))

@@ -1,49 +1,50 @@
 """A student's folder in the states that it comes in: which tasks are done, and why others are not."""
 
+import gzip
 import json
 import shutil
+import sys
 
 import numpy as np
 import pytest
-import scipy.io
 
 from bench.assets import asset
 from bench.course.axis import Sources, lab_rig
+from bench.course.course import course
 from bench.course.flights import read_flights
+from bench.course.record import record
 from bench.course.recordings import LabRecordings
 from bench.course.report import CourseReport, first_numbers, lab_json
 from bench.errors import InputError
 from bench.report.terminal import rendered
 from bench.trace.read import read
+from bench.trace.write import write
 from tests.command import bench
 from tests.course.conftest import as_a_student_has_them
-from tests.course.mistakes import SIMULATED, results_of
+from tests.course.mistakes import NAMES, SI, SIMULATED, results_of
 
 TRACES = asset("data", "traces")
-SI = "time [s];velocity [rad/s];current [A]"
-NAMES = ("JLoadWithoutFriction", "JLoadAndFriction", "MaxAcc")
+#: Tasks of each recording; of recordings that contradict the axis none of REFUSED is done.
 ON_FRICTION = {"7", "8", "9", "range", "tracking"}
-#: Of recordings that contradict the axis nothing is done.
 REFUSED = {"5", "6", "10"} | ON_FRICTION
-RECORDED = {"1", "5", "6", "10"} | ON_FRICTION
+RECORDED = {"1"} | REFUSED
 
 
 def signals(folder, name):
     """time, velocity, current of a recording, which is taken away from the folder."""
-    path = folder / f"{name}.trace"
-    trace = read(path)
-    path.unlink()
+    trace = read(folder / f"{name}.trace")
+    (folder / f"{name}.trace").unlink()
     return trace.time, trace["velocity"], trace["current"]
 
 
-def lines(*columns, separator=";", decimal="."):
-    """Rows of numbers (n,) each as text."""
-    rows = zip(*columns, strict=True)
-    return "".join(separator.join(f"{value:.6g}".replace(".", decimal) for value in row) + "\n" for row in rows)
-
-
 def table(path, header, *columns, decimal="."):
-    path.write_text(f"{header}\n{lines(*columns, decimal=decimal)}", encoding="utf-8")
+    rows = (";".join(f"{value:.6g}".replace(".", decimal) for value in row) for row in zip(*columns, strict=True))
+    path.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+
+
+def columns_of(folder, text):
+    """A rig file that names the columns of the recordings."""
+    (folder / "rig.toml").write_text(f"[trace.columns]\n{text}\n")
 
 
 def as_it_is(folder):
@@ -58,26 +59,22 @@ def wrong_sign(folder):
 
 def wrong_sign_turned_by_the_advice(folder):
     wrong_sign(folder)
-    (folder / "rig.toml").write_text('[trace.columns]\ncurrent = "-current [A]"\n')
+    columns_of(folder, 'current = "-current [A]"')
 
 
 def one_way(folder):
     _, velocity, current = signals(folder, "JLoadAndFriction")
-    forward = np.cumsum(velocity < 20.0) == np.argmax(velocity > 20.0)
-    forward &= velocity > 20.0
-    shifted = np.abs(velocity[forward]), current[forward] + 0.05 / 0.75
-    rows = np.arange(forward.sum()) * 1e-3
-    table(folder / "JLoadAndFriction.csv", SI, rows, *shifted)
+    forward = (np.cumsum(velocity < 20.0) == np.argmax(velocity > 20.0)) & (velocity > 20.0)
+    time = np.arange(forward.sum()) * 1e-3
+    table(folder / "JLoadAndFriction.csv", SI, time, np.abs(velocity[forward]), current[forward] + 0.05 / 0.75)
 
 
 def german_names(folder):
     for name in NAMES:
         time, velocity, current = signals(folder, name)
+        columns = 1e3 * time, np.degrees(velocity), 1e3 * current, np.degrees(np.cumsum(velocity) * 1e-3)
         head = "Zeit [ms];Geschwindigkeit [Grad/s];Strom [mA];Lage [Grad]"
-        lage = np.cumsum(velocity) * 1e-3
-        table(
-            folder / f"{name}.csv", head, 1e3 * time, np.degrees(velocity), 1e3 * current, np.degrees(lage), decimal=","
-        )
+        table(folder / f"{name}.csv", head, *columns, decimal=",")
 
 
 def group_suffixes(folder):
@@ -85,28 +82,36 @@ def group_suffixes(folder):
         (folder / f"{name}.trace").rename(folder / f"{name}{suffix}.trace")
 
 
-def foreign_names(folder):
+def another_format_and_letters(folder):
     for name in NAMES:
-        time, velocity, current = signals(folder, name)
-        table(folder / f"{name}.csv", "time [s];rOmega [rad/s];rI [A]", time, velocity, current)
+        path = folder / f"{name}.trace"
+        units = {"velocity": "rpm", "current": "A", "time": "us"}
+        write(read(path), folder / f"{name.lower()}.csv.gz", units)
+        path.unlink()
 
 
-def unknown_names(folder):
-    for name in NAMES:
-        time, velocity, current = signals(folder, name)
-        table(folder / f"{name}.csv", "time [s];ch2;ch3", time, velocity, current)
+def named(head):
+    """All three recordings with these names of their columns."""
+
+    def made(folder):
+        for name in NAMES:
+            table(folder / f"{name}.csv", head, *signals(folder, name))
+
+    return made
+
+
+foreign_names, unknown_names = named("time [s];rOmega [rad/s];rI [A]"), named("time [s];ch2;ch3")
 
 
 def unknown_names_in_the_advice(folder):
     unknown_names(folder)
-    (folder / "rig.toml").write_text('[trace.columns]\nvelocity = "ch2 [rad/s]"\ncurrent = "ch3 [A]"\n')
+    columns_of(folder, 'velocity = "ch2 [rad/s]"\ncurrent = "ch3 [A]"')
 
 
 def a_full_rig(folder):
     text = asset("data", "rigs", "lab.toml").read_text(encoding="utf-8")
-    text = text[: text.index("[drive]")].replace(
-        'model = "SH30701P"', 'model = "SH30701P"\nrotor_inertia = "0.3 kg*cm**2"'
-    )
+    motor = 'model = "SH30701P"'
+    text = text[: text.index("[drive]")].replace(motor, f'{motor}\nrotor_inertia = "0.3 kg*cm**2"')
     (folder / "rig.toml").write_text(text)
 
 
@@ -125,15 +130,39 @@ def at_rest(folder):
         table(folder / f"{name}.csv", SI, time, 0.0 * velocity, factor * current)
 
 
+def two_of_a_name(folder):
+    (folder / "MaxAcc.csv.gz").write_bytes(gzip.compress(b"time [ms],velocity [rpm]\n0,1\n1,2\n"))
+
+
+def a_file_missing_beside_others(folder):
+    (folder / "JLoadAndFriction.trace").unlink()
+    for name in ("MaxAcc.png", "MaxAcc.m"):
+        (folder / name).write_bytes(b"not a recording")
+
+
+def a_linear_axis(folder):
+    (folder / "JLoadWithoutFriction.trace").unlink()
+    count = np.arange(50.0)
+    table(folder / "JLoadWithoutFriction.csv", "time [ms];velocity [mm/s];current [A]", count, count, 0.0 * count + 1.0)
+
+
+def a_workbook(folder):
+    (folder / "MaxAcc.trace").rename(folder / "MaxAcc.xlsx")
+
+
 def damaged(folder):
     for name in NAMES:
         path = folder / f"{name}.trace"
         path.write_bytes(path.read_bytes()[:4001])
 
 
+def without_flights(folder):
+    shutil.rmtree(folder / "catapult")
+
+
 def nothing_usable(folder):
     damaged(folder)
-    shutil.rmtree(folder / "catapult")
+    without_flights(folder)
 
 
 def empty(folder):
@@ -141,55 +170,14 @@ def empty(folder):
     folder.mkdir()
 
 
-def flights(folder):
-    points = read_flights(folder / "catapult").points
-    shutil.rmtree(folder / "catapult")
-    return points
-
-
-def a_file_each(folder, ending, text):
-    """Flights in files of their own, as `text` of y - m -, z - m - and time - s - has them."""
-    points = flights(folder)
-    (folder / "catapult").mkdir()
-    for k, flight in enumerate(points):
-        content = text(*flight.T, 0.02 * np.arange(len(flight)))
-        (folder / "catapult" / f"{k:02}.{ending}").write_text(content)
-
-
-def flights_in_another_order(folder):
-    a_file_each(folder, "csv", lambda y, z, t: "z [mm];y [mm];t [s]\n" + lines(1e3 * z, 1e3 * y, t))
-
-
-def flights_y_z_t(folder):
-    a_file_each(folder, "csv", lambda y, z, t: "y,z,t\n" + lines(y, z, t, separator=","))
-
-
-def flights_with_blanks_and_decimal_commas(folder):
-    a_file_each(folder, "txt", lambda y, z, t: "y [m]  z [m]\n\n" + lines(y, z, separator="  ", decimal=",") + "\n")
-
-
-def flights_side_by_side(folder):
-    points = flights(folder)
-    header = ";".join(f"y{k} [m];z{k} [m]" for k in range(1, 11))
-    table(folder / "Katapult.csv", header, *(side for flight in points for side in flight.T), decimal=",")
-
-
-def flights_in_mat(folder):
-    points = np.array(flights(folder))
-    scipy.io.savemat(folder / "Katapult_Gruppe7.mat", {"y": points[..., 0].T, "z": points[..., 1].T})
-
-
-def flights_with_a_readme(folder):
-    (folder / "catapult" / "readme.txt").write_text("Ten flights, recorded on a Monday.\ny, z in m\n")
-
-
 def flights_in_mm_without_a_unit(folder):
-    points = flights(folder)
-    table(folder / "catapult.csv", "y;z", *(1e3 * np.concatenate(points)).T)
+    points = np.concatenate(read_flights(folder / "catapult").points)
+    without_flights(folder)
+    table(folder / "catapult.csv", "y;z", *1e3 * points.T)
 
 
 def flights_straight_up(folder):
-    shutil.rmtree(folder / "catapult")
+    without_flights(folder)
     (folder / "catapult.csv").write_text("y [m],z [m]\n0,1\n0,2\n0,3\n0,2.5\n")
 
 
@@ -201,32 +189,28 @@ STATES = [
     (one_way, {"9", "tracking"}, ["one way only"]),
     (german_names, set(), []),
     (group_suffixes, set(), []),
+    (another_format_and_letters, set(), []),
     (foreign_names, set(), []),
-    (
-        unknown_names,
-        RECORDED - {"1"},
-        ['[trace.columns] and velocity = "ch2 [rad/s]" and current = "ch3 [A]"', "'ch2'"],
-    ),
+    (unknown_names, REFUSED, ['[trace.columns] and velocity = "ch2 [rad/s]" and current = "ch3 [A]"', "'ch2'"]),
     (unknown_names_in_the_advice, set(), []),
     (a_full_rig, set(), []),
     (a_rig_of_another_motor, {"3", "4", "10", "11", "range", "tracking"}, ["rotor_inertia", "kT(Iq)"]),
     (two_samples, {"10"}, ["MaxAcc"]),
     (at_rest, {"6", "8", "9", "tracking"}, ["speed never changes", "20 rad/s"]),
-    (damaged, RECORDED - {"1"}, ["damaged"]),
+    (two_of_a_name, {"10"}, ["several"]),
+    (a_file_missing_beside_others, ON_FRICTION, ["JLoadAndFriction.trace: no such file"]),
+    (a_linear_axis, {"5", "6"}, ["linear"]),
+    (a_workbook, {"10"}, ["MaxAcc.xlsx: is no recording, as files ending in .xlsx are not read; save it as CSV"]),
+    (damaged, REFUSED, ["damaged"]),
+    (without_flights, {"1"}, ["catapult"]),
     (nothing_usable, RECORDED, ["damaged", "catapult"]),
     (empty, RECORDED, ["no such file", "no recording"]),
-    (flights_in_another_order, set(), []),
-    (flights_y_z_t, set(), []),
-    (flights_side_by_side, set(), []),
-    (flights_with_blanks_and_decimal_commas, set(), []),
-    (flights_in_mat, set(), []),
-    (flights_with_a_readme, set(), []),
     (flights_in_mm_without_a_unit, {"1"}, ["without a unit", "y [mm]"]),
     (flights_straight_up, {"1"}, ["fewer than three places"]),
 ]
 
 
-@pytest.mark.parametrize(("state", "missing", "words"), STATES, ids=lambda value: getattr(value, "__name__", ""))
+@pytest.mark.parametrize(("state", "missing", "words"), STATES, ids=[state.__name__ for state, *_ in STATES])
 def test_a_students_folder(state, missing, words, tmp_path, done):
     folder = as_a_student_has_them(tmp_path)
     state(folder)
@@ -253,35 +237,17 @@ def _is_as_without(task, reference, same):
 
 
 @pytest.mark.parametrize(("state", "status"), [(two_samples, 0), (empty, 1)])
-def test_the_command_reports_a_folder_with_tasks_missing(state, status, tmp_path):
-    """Page and sources leave out what is missing; without any recording the status says so."""
+def test_the_command_reports_a_folder_with_tasks_missing_without_typst_too(state, status, tmp_path, monkeypatch):
+    """Page and sources leave out what is missing; without any recording the status says so, and one line the remedy."""
+    monkeypatch.setitem(sys.modules, "typst", None)
     state(as_a_student_has_them(tmp_path / "data"))
     done = bench("lab", "--data", tmp_path / "data", "--out", tmp_path / "out")
-    assert (done.status, "Traceback" in done.out + done.err) == (status, False), done.err
+    assert (done.status, done.err.count("\n"), "lab.pdf" in done.out) == (status, 1, False), done.err
+    assert "pip install 'servobench[lab]'" in done.err
     assert "Not done: " in (tmp_path / "out" / "lab.html").read_text(encoding="utf-8")
     scripts = {path.name for path in (tmp_path / "out" / "sources").glob("task*.py")}
     assert "task03.py" in scripts and "task10.py" not in scripts
     assert ("task09.py" in scripts) == (state is two_samples)
-
-
-def test_flights_of_several_kinds_are_one_and_the_same(tmp_path):
-    shutil.copytree(TRACES / "catapult", tmp_path / "catapult")
-    points = np.array(read_flights(tmp_path / "catapult").points)
-    shapes = {
-        "matrices": {f"flight{k}": flight for k, flight in enumerate(points)},
-        "numbered": {f"{side}{k}": flight[:, j] for k, flight in enumerate(points) for j, side in enumerate("yz")},
-        "structs": {f"exp{k}": {"y": flight[:, 0], "z": flight[:, 1]} for k, flight in enumerate(points)},
-        "block": {"flights": points},
-    }
-    for name, content in shapes.items():
-        scipy.io.savemat(tmp_path / f"{name}.mat", content)
-        assert np.array(read_flights(tmp_path / f"{name}.mat").points) == pytest.approx(points), name
-    rows = "\n".join(f"{k},{y},{z}" for k, flight in enumerate(points, 1) for y, z in flight)
-    (tmp_path / "all.csv").write_text(f"flight,y [m],z [m]\n{rows}\n")
-    assert np.array(read_flights(tmp_path / "all.csv").points) == pytest.approx(points)
-    (tmp_path / "bad.mat").write_bytes((tmp_path / "block.mat").read_bytes()[:200])
-    with pytest.raises(Exception, match=r"bad\.mat"):
-        read_flights(tmp_path / "bad.mat")
 
 
 def test_a_rig_without_simulation_loses_no_section(tmp_path):
@@ -295,61 +261,61 @@ def test_a_rig_without_simulation_loses_no_section(tmp_path):
 
 
 def test_every_value_tells_its_source(tmp_path):
-    embedded = Sources.of(None)
-    assert embedded("motor", "peak_torque") == "datasheet"
-    assert embedded("motor", "rotor_inertia") == "assumed"
-    assert embedded("motor", "cold_resistance_share") == "course"
-    assert embedded("load", "outer_diameter") == "embedded rig"
     (tmp_path / "rig.toml").write_text('[motor]\nmodel = "SH30701P"\nrotor_inertia = "0.3 kg*cm**2"\n')
-    own = Sources.of(tmp_path / "rig.toml")
-    assert own("motor", "rotor_inertia") == "rig file"
-    assert own("motor", "peak_torque") == "datasheet"
-    assert own("load", "outer_diameter") == "embedded rig"
+    embedded, own = Sources.of(None), Sources.of(tmp_path / "rig.toml")
+    assert embedded("motor", "cold_resistance_share") == "course"
+    for section, key, of_embedded, of_own in (
+        ("motor", "peak_torque", "datasheet", "datasheet"),
+        ("motor", "rotor_inertia", "assumed", "rig file"),
+        ("load", "outer_diameter", "embedded rig", "embedded rig"),
+    ):
+        assert (embedded(section, key), own(section, key)) == (of_embedded, of_own)
 
 
-@pytest.mark.parametrize(("head", "refused"), [("y [m];z", True), ("y [m];z [mm]", False)])
-def test_lengths_beyond_a_throw_need_a_unit_in_both_columns(tmp_path, head, refused):
-    (tmp_path / "one.csv").write_text(f"{head}\n0;100\n1;900\n2;1000\n3;400\n")
-    if refused:
-        with pytest.raises(InputError, match="found lengths that span 900 without a unit"):
-            read_flights(tmp_path)
-    else:
-        np.testing.assert_allclose(read_flights(tmp_path).points[0][:, 1], [0.1, 0.9, 1.0, 0.4])
-
-
-@pytest.fixture
-def own(tmp_path):
-    """A folder with the course's recordings."""
-    return as_a_student_has_them(tmp_path)
-
-
-def reason(folder, name):
-    with pytest.raises(InputError) as raised:
-        LabRecordings.in_folder(folder).sound(name)
-    return str(raised.value)
-
-
-def test_a_workbook_is_called_what_it_is(own):
-    (own / "MaxAcc.trace").rename(own / "MaxAcc.xlsx")
-    assert "MaxAcc.xlsx: is no recording, as files ending in .xlsx are not read; save it as CSV" in reason(
-        own, "MaxAcc"
-    )
-    shutil.rmtree(own / "catapult")
-    (own / "Katapult.xlsx").write_bytes(b"PK")
-    with pytest.raises(InputError, match=r"Katapult\.xlsx: is no table that can be read, as files ending in \.xlsx"):
-        _ = LabRecordings.in_folder(own).flights
-
-
-def test_another_disk_is_given_by_its_moment_of_inertia(own):
+def test_another_disk_is_given_by_its_moment_of_inertia(tmp_path):
     """Of a disk of 19 kg*cm**2 the rig says 40: the reason names the disk, and the remedy works."""
-    (own / "rig.toml").write_text('[load]\nmoment_of_inertia = "40 kg*cm**2"\n')
-    text = reason(own, "JLoadAndFriction")
-    assert "what the disk has in theory" in text
-    assert 'moment_of_inertia = "30 kg*cm**2"' in text
-    (own / "rig.toml").write_text('[load]\nmoment_of_inertia = "19.2 kg*cm**2"\n')
-    assert LabRecordings.in_folder(own).sound("JLoadAndFriction").time.size > 100
-    (own / "rig.toml").write_text(
-        '[load]\nmoment_of_inertia = "19.2 kg*cm**2"\nouter_diameter = "1 m"\nmass = "1 kg"\n'
-    )
+    folder = as_a_student_has_them(tmp_path)
+
+    def recorded(load):
+        (folder / "rig.toml").write_text(f"[load]\n{load}\n")
+        return LabRecordings.in_folder(folder).sound("JLoadAndFriction")
+
+    with pytest.raises(InputError, match=r'what the disk has in theory.*moment_of_inertia = "30 kg\*cm\*\*2"'):
+        recorded('moment_of_inertia = "40 kg*cm**2"')
+    assert recorded('moment_of_inertia = "19.2 kg*cm**2"').time.size > 100
     with pytest.raises(InputError, match="either moment_of_inertia or the geometry"):
-        LabRecordings.in_folder(own)
+        recorded('moment_of_inertia = "19.2 kg*cm**2"\nouter_diameter = "1 m"\nmass = "1 kg"')
+
+
+def test_no_folder_is_an_error(tmp_path):
+    with pytest.raises(InputError, match="no such folder"):
+        LabRecordings.in_folder(tmp_path / "nowhere")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_recordings_are_machine_expert_traces_in_the_labs_units(name):
+    trace = read(TRACES / f"{name}.trace")
+    assert trace.metadata["format"] == "CODESYS / Machine Expert trace"
+    assert trace.metadata["Comment"] == "units: velocity [deg/s], current [mA]"
+    assert set(trace.signals) == {"velocity", "current"}
+    assert trace.sample_period == pytest.approx(1e-3)
+    truth = json.loads((TRACES / f"{name}.trace.truth.json").read_text())["parameters"]["moment_of_inertia"]
+    assert truth == {"value": pytest.approx(0.00225), "unit": "kg*m**2"}
+
+
+def test_the_command_makes_the_recordings_again(tmp_path):
+    written = {path.relative_to(tmp_path) for path in record(tmp_path)}
+    assert written == {path.relative_to(TRACES) for path in TRACES.rglob("*") if path.is_file()}
+    for name in NAMES:
+        again, stored = (read(where / f"{name}.trace") for where in (tmp_path, TRACES))
+        for signal in ("velocity", "current"):
+            # written to 1e-3 deg/s and 0.1 mA; processors differ in the last place
+            assert again[signal] == pytest.approx(stored[signal], abs=2e-4)
+    again, stored = (np.concatenate(read_flights(where / "catapult").points) for where in (tmp_path, TRACES))
+    assert again == pytest.approx(stored, abs=2e-4)
+
+
+def test_progress_is_reported_after_every_task():
+    shares = []
+    course(LabRecordings.in_folder(None), shares.append, keys={"2", "3", "4", "5"})
+    assert shares == pytest.approx([0.25, 0.5, 0.75, 1.0])

@@ -12,24 +12,13 @@ from bench.course.submission import QUESTIONS, GivenAnswer, Submission
 
 #: Promised to students: by how much of the value an answer may be off at least - percent.
 TOLERANCES = {
-    "catapult_a": 2.0,
-    "catapult_b": 2.0,
-    "catapult_c": 2.0,
-    "catapult_E": 5.0,
-    "kT_stall": 0.5,
-    "kT_peak": 0.5,
-    "kT_a": 1.0,
-    "kT_b": 1.0,
-    "kT_c": 0.5,
+    **dict.fromkeys(("catapult_a", "catapult_b", "catapult_c", "K_fric_w", "K_fric_0"), 2.0),
+    **dict.fromkeys(("kT_stall", "kT_peak", "kT_c", "J_without_friction", "J_load_without_friction"), 0.5),
+    **dict.fromkeys(("J", "J_load"), 0.5),
+    **dict.fromkeys(("kT_a", "kT_b"), 1.0),
+    **dict.fromkeys(("catapult_E", "corner"), 5.0),
     "alpha_max": 20.0,
-    "J_without_friction": 0.5,
-    "J_load_without_friction": 0.5,
-    "J": 0.5,
-    "K_fric_w": 2.0,
-    "K_fric_0": 2.0,
-    "J_load": 0.5,
     "M_max": 3.0,
-    "corner": 5.0,
 }
 MISTAKE, OTHER = "half-sample lag", "backward difference"
 #: Tolerance of J in most tests, and the standard deviation that it stands for.
@@ -78,6 +67,7 @@ def test_every_quantity_is_promised_but_the_error_that_each_right_way_has_its_ow
     assert {question.name for question in QUESTIONS} - set(TOLERANCES) == {"E"}
     graded, found = graded_answers({"E": 1.0}, {"E": 7.0})
     assert found["E"].verdict == "not judged"
+    assert math.isnan(graded_answers({}, {"J": 1.0})[1]["J"].expected)
     assert (graded.right, graded.judged) == (0, len(TOLERANCES))
 
 
@@ -129,20 +119,56 @@ def test_no_student_reads_of_another():
     assert not any("08" in answer.remark or "copi" in answer.remark for answer in graded.answers)
 
 
-def test_two_mistakes_at_once_are_rarer_than_one():
-    """1 in 10000 against 1 in 100: where both give the figure the one is told, and the two where they alone do."""
-    pair = ([MISTAKE, OTHER], {"J": 30.0})
-    assert told({"J": 20.0}, {"J": 30.0}, mistakes=[pair, ([OTHER], {"J": 30.0})]) == {"J": OTHER}
-    assert told({"J": 20.0}, {"J": 30.0}, mistakes=[pair, ([OTHER], {"J": 40.0})]) == {"J": f"{MISTAKE} and {OTHER}"}
+FORGOTTEN = "J_motor not subtracted"
+PAIR = ([MISTAKE, OTHER], {"J": 30.0})
+J, J_W = {"J": 20.0}, {"J": 20.0, "K_fric_w": 1e-3}
+LOADS, WRONG_LOADS = {"J": 20.0, "J_load": 19.0}, {"J": 30.0, "J_load": 29.0}
+#: What is expected, given and known of mistakes, and the mistake that each wrong answer is said to be of.
+TOLD = {
+    "one mistake before two": (J, {"J": 30.0}, [PAIR, ([OTHER], {"J": 30.0})], {"J": OTHER}),
+    "two that alone give it": (J, {"J": 30.0}, [PAIR, ([OTHER], {"J": 40.0})], {"J": f"{MISTAKE} and {OTHER}"}),
+    "a slip on right figures": (LOADS, {"J": 20.0, "J_load": 20.0}, [([MISTAKE], WRONG_LOADS)], {"J_load": FORGOTTEN}),
+    "a mistake without a slip": (LOADS, WRONG_LOADS, [([MISTAKE], WRONG_LOADS)], dict.fromkeys(LOADS, MISTAKE)),
+    "a mistake and a slip": (
+        LOADS,
+        {"J": 30.0, "J_load": 30.0},
+        [([MISTAKE], WRONG_LOADS)],
+        dict.fromkeys(LOADS, f"{MISTAKE} and {FORGOTTEN}"),
+    ),
+    "the one that explains more": (
+        J_W,
+        {"J": 30.0, "K_fric_w": 2e-3},
+        [([MISTAKE], {"J": 30.0}), ([OTHER], {"J": 30.3, "K_fric_w": 2e-3})],
+        dict.fromkeys(J_W, OTHER),
+    ),
+    "the one that keeps what is right": (
+        J_W,
+        {"J": 30.0, "K_fric_w": 1e-3},
+        [([MISTAKE], {"J": 30.0, "K_fric_w": 5e-3}), ([OTHER], {"J": 30.3, "K_fric_w": 1e-3})],
+        {"J": OTHER},
+    ),
+    "none for what it does not give": (
+        {**J_W, "K_fric_0": 0.08},
+        {"J": 30.0, "K_fric_w": 2e-3, "K_fric_0": 1.7},
+        [([MISTAKE], {"J": 30.0, "K_fric_w": 2e-3})],
+        {"J": MISTAKE, "K_fric_w": MISTAKE, "K_fric_0": ""},
+    ),
+    "none of another task": (
+        {"J": 20.0, "M_max": 3.5},
+        {"J": 30.0, "M_max": 5.0},
+        [([MISTAKE], {"J": 30.0, "M_max": 9.0})],
+        {"J": MISTAKE, "M_max": ""},
+    ),
+    "none that gives zero": (J, {"J": 30.0}, [([MISTAKE], {"J": 0.0})], {"J": ""}),
+    "none for zero": (J, {"J": 0.0}, [([MISTAKE], {"J": 30.0})], {"J": ""}),
+}
 
 
-def test_slips_after_the_work_are_named_on_right_figures_and_on_a_mistakes():
-    right, wrong = {"J": 20.0, "J_load": 19.0}, {"J": 30.0, "J_load": 29.0}
-    ways, forgotten = [([MISTAKE], wrong)], "J_motor not subtracted"
-    assert told(right, {"J": 20.0, "J_load": 20.0}, mistakes=ways) == {"J_load": forgotten}
-    assert told(right, wrong, mistakes=ways) == dict.fromkeys(right, MISTAKE)
-    both = dict.fromkeys(right, f"{MISTAKE} and {forgotten}")
-    assert told(right, {"J": 30.0, "J_load": 30.0}, mistakes=ways) == both
+@pytest.mark.parametrize("case", TOLD)
+def test_the_likeliest_mistake_is_told(case):
+    """Two at once are 1 in 10000, one is 1 in 100; nothing is a share of zero away from it."""
+    expected, given, ways, found = TOLD[case]
+    assert told(expected, given, mistakes=ways) == found
 
 
 def test_the_remaining_error_tells_two_mistakes_apart_that_give_the_same_answers():
@@ -156,26 +182,6 @@ def test_the_remaining_error_tells_two_mistakes_apart_that_give_the_same_answers
         near = ([MISTAKE], {"J": 30.0 * math.exp(2.0 * DEVIATION), "E": 2.0})
         far = ([OTHER], {"J": 30.0, "E": 2.0 * math.exp(apart * 0.02)})
         assert told(expected, {"J": 30.0, "E": 2.0}, mistakes=[near, far])["J"].startswith(f"{first}, or ")
-
-
-def test_the_mistake_that_explains_more_answers_is_named():
-    ways = [([MISTAKE], {"J": 30.0}), ([OTHER], {"J": 30.3, "K_fric_w": 2e-3})]
-    expected, given = {"J": 20.0, "K_fric_w": 1e-3}, {"J": 30.0, "K_fric_w": 2e-3}
-    assert told(expected, given, mistakes=ways) == dict.fromkeys(given, OTHER)
-
-
-def test_an_answer_that_is_right_speaks_against_a_mistake_that_would_have_changed_it():
-    """Of two with the same wrong figure the one is named that leaves what is right as it is."""
-    ways = [([MISTAKE], {"J": 30.0, "K_fric_w": 5e-3}), ([OTHER], {"J": 30.3, "K_fric_w": 1e-3})]
-    expected, given = {"J": 20.0, "K_fric_w": 1e-3}, {"J": 30.0, "K_fric_w": 1e-3}
-    assert told(expected, given, mistakes=ways) == {"J": OTHER}
-
-
-def test_a_mistake_of_one_task_is_not_looked_for_in_another():
-    ways = [([MISTAKE], {"J": 30.0, "M_max": 9.0})]
-    expected, given = {"J": 20.0, "M_max": 3.5}, {"J": 30.0, "M_max": 5.0}
-    assert told(expected, given, mistakes=ways) == {"J": MISTAKE, "M_max": ""}
-    assert math.isnan(graded_answers({}, {"J": 1.0})[1]["J"].expected)
 
 
 def test_what_a_task_leaves_open_another_task_tells():
@@ -195,22 +201,3 @@ def test_what_a_task_leaves_open_another_task_tells():
     far = ([MISTAKE], {"J": 30.0, "M_max": 5.0})
     assert told(expected, given, mistakes=[open_, far]) == {"J": MISTAKE, "M_max": OTHER}
     assert told(expected, given, mistakes=[([MISTAKE], {"J": 30.0}), open_]) == {"J": MISTAKE, "M_max": OTHER}
-
-
-def test_an_answer_that_the_mistake_does_not_give_is_not_put_down_to_it():
-    """J and K_fric_w are the mistake's; K_fric_0 far from it and from right is of something else."""
-    ways = [([MISTAKE], {"J": 30.0, "K_fric_w": 2e-3})]
-    expected = {"J": 20.0, "K_fric_w": 1e-3, "K_fric_0": 0.08}
-    given = {"J": 30.0, "K_fric_w": 2e-3, "K_fric_0": 1.7}
-    assert told(expected, given, mistakes=ways) == {"J": MISTAKE, "K_fric_w": MISTAKE, "K_fric_0": ""}
-
-
-def test_a_mistake_that_gives_zero_explains_no_answer_but_zero():
-    """Nothing is a share of zero away from it."""
-    _, found = graded_answers({"J": 20.0}, {"J": 30.0}, mistakes=[([MISTAKE], {"J": 0.0})])
-    assert (found["J"].verdict, found["J"].mistake) == ("wrong", "")
-
-
-def test_an_answer_of_zero_is_wrong_and_of_no_known_mistake():
-    _, found = graded_answers({"J": 20.0}, {"J": 0.0}, mistakes=[([MISTAKE], {"J": 30.0})])
-    assert (found["J"].verdict, found["J"].mistake) == ("wrong", "")

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from bench.assets import asset
-from tests.course import mistakes
 from tests.course.mistakes import (
     BARE,
     BEYOND_MENDING,
@@ -23,15 +22,20 @@ from tests.course.mistakes import (
 )
 
 TRACES = asset("data", "traces")
-COUNT = 20
-#: Every mistake once, and more that are drawn; slow are those too that are another one the other way round.
-DRAWN = np.random.default_rng(25).choice(list(MISTAKES), COUNT)
-REVERSE = [mistakes.radians_as_degrees, mistakes.turns_as_radians, mistakes.ms_as_seconds]
-REVERSE += [mistakes.amperes_as_milliamperes, mistakes.one_sample_at_zero]
-CASES = [(mistake, 0) for mistake in BEYOND_MENDING | MISTAKES if mistake not in REVERSE]
-MORE = [(mistake, 0) for mistake in REVERSE] + [(mistake, 1) for mistake in BEYOND_MENDING]
-MORE += [(mistake, seed) for seed, mistake in enumerate(DRAWN, 1)]
-CASES += [pytest.param(*case, marks=pytest.mark.slow) for case in MORE]
+WORDS = {mistake.__name__: words for mistake, words in (BEYOND_MENDING | MISTAKES).items()}
+NAMED = {mistake.__name__: mistake for mistake in BEYOND_MENDING | MISTAKES}
+#: What is another mistake the other way round, and is tried in the slow runs alone, as are draws of other strengths.
+REVERSE = ("radians_as_degrees", "turns_as_radians", "ms_as_seconds", "amperes_as_milliamperes", "one_sample_at_zero")
+DRAWN = np.random.default_rng(25).choice([mistake.__name__ for mistake in MISTAKES], 20)
+SLOW = [((name,), 0) for name in REVERSE] + [((mistake.__name__,), 1) for mistake in BEYOND_MENDING]
+SLOW += [((str(name),), seed) for seed, name in enumerate(DRAWN, 1)]
+SLOW += [(("columns_swapped", "amperes_as_milliamperes"), 1), (("the_same_file_twice", "peak_for_rms"), 2)]
+SLOW += [(("two_at_once", "sign"), 1)]
+#: One alone, and one in what another hides: a file that stands twice, a hole, exchanged columns, exchanged files.
+CASES = [((name,), 0) for name in NAMED if name not in REVERSE]
+CASES += [(("the_same_file_twice", "scale_of_the_current"), 1), (("hole", "milliamperes_as_amperes"), 1)]
+CASES += [(("late", "columns_swapped"), 1), (("files_swapped", "two_at_once"), 1)]
+CASES += [pytest.param(*case, marks=pytest.mark.slow) for case in SLOW]
 
 
 @pytest.fixture(scope="module")
@@ -45,47 +49,21 @@ def truth():
     axis = json.loads((TRACES / "MaxAcc.trace.truth.json").read_text())["parameters"]
     throw = json.loads((TRACES / "catapult" / "truth.json").read_text())["parameters"]
     known = {("1", name): throw[name]["value"] for name in "abc"}
-    for task in "69":
-        known |= {(task, "J"): 22.5, (task, "J_load"): 22.25}
+    known |= {(task, name): value for task in "69" for name, value in (("J", 22.5), ("J_load", 22.25))}
     known |= {("9", "K_fric_w"): 1.1e-3, ("9", "K_fric_0"): 0.085}
     return known | {("10", "measured corner"): axis["corner_speed"]["value"] * 30.0 / np.pi}
 
 
-@pytest.mark.parametrize(("mistake", "seed"), CASES, ids=lambda value: getattr(value, "__name__", str(value)))
-def test_no_wrong_number_is_done(mistake, seed, recorded, truth, tmp_path):
-    of = Folder(dict(recorded[0]), list(recorded[1]))
-    mistake(of, np.random.default_rng(seed))
+@pytest.mark.parametrize(("names", "seed"), CASES, ids=lambda one: "+".join(one) if isinstance(one, tuple) else "")
+def test_no_wrong_number_is_done_and_each_mistake_is_named(names, seed, recorded, truth, tmp_path):
+    of, random = Folder(dict(recorded[0]), list(recorded[1])), np.random.default_rng(seed)
+    for name in names:
+        NAMED[name](of, random)
     of.write(tmp_path / "data")
     tasks = tasks_of(tmp_path / "data")
     assert wrong_numbers(tasks, truth) == {}
     reasons = [task["reason"] for task in tasks if task["status"] == "not_done"]
-    assert reasons
-    assert any((MISTAKES | BEYOND_MENDING)[mistake] in reason for reason in reasons), reasons
-
-
-@pytest.mark.parametrize(
-    ("pair", "seed"),
-    [
-        ((mistakes.the_same_file_twice, mistakes.scale_of_the_current), 1),
-        ((mistakes.hole, mistakes.milliamperes_as_amperes), 1),
-        ((mistakes.late, mistakes.columns_swapped), 1),
-        pytest.param((mistakes.columns_swapped, mistakes.amperes_as_milliamperes), 1, marks=pytest.mark.slow),
-        ((mistakes.files_swapped, mistakes.two_at_once), 1),
-        pytest.param((mistakes.the_same_file_twice, mistakes.peak_for_rms), 2, marks=pytest.mark.slow),
-        pytest.param((mistakes.two_at_once, mistakes.sign), 1, marks=pytest.mark.slow),
-    ],
-    ids=lambda value: " and ".join(one.__name__ for one in value) if isinstance(value, tuple) else "",
-)
-def test_two_mistakes_are_both_named(pair, seed, recorded, truth, tmp_path):
-    """One in what the other hides: a file that stands twice, a hole, exchanged columns, exchanged files."""
-    of, random = Folder(dict(recorded[0]), list(recorded[1])), np.random.default_rng(seed)
-    for mistake in pair:
-        mistake(of, random)
-    of.write(tmp_path / "data")
-    tasks = tasks_of(tmp_path / "data")
-    assert wrong_numbers(tasks, truth) == {}
-    reasons = " ".join(task["reason"] for task in tasks if task["status"] == "not_done")
-    assert [mistake.__name__ for mistake in pair if MISTAKES[mistake] not in reasons] == [], reasons
+    assert [name for name in names if not any(WORDS[name] in reason for reason in reasons)] == [], reasons
 
 
 def test_what_is_right_is_done_in_the_courses_words(recorded, truth, tmp_path):
