@@ -32,13 +32,9 @@ AS_IT_WAS = Truth()
 def again(seed, truth=AS_IT_WAS, cogging=0.0):
     """The same motion with other noise."""
     first = recording(np.random.default_rng(5), truth, position=True)
-    rng = np.random.default_rng(seed)
-    noisy = {
-        "velocity": first["velocity"] + 0.02 * rng.normal(size=len(first)),
-        "current": first["current"]
-        + 0.01 * rng.normal(size=len(first))
-        + cogging / 0.8 * np.sin(6.0 * first["position"]),
-    }
+    rng, wave = np.random.default_rng(seed), cogging / 0.8 * np.sin(6.0 * first["position"])
+    velocity = first["velocity"] + 0.02 * rng.normal(size=len(first))
+    noisy = {"velocity": velocity, "current": first["current"] + 0.01 * rng.normal(size=len(first)) + wave}
     return replace(first, signals={**first.signals, **noisy})
 
 
@@ -60,11 +56,29 @@ def axis(bench, made):
     return bench
 
 
-def test_an_axis_that_is_the_same(axis):
-    write(again(2), Path("now.csv"))
+#: An axis and its rig file, the status, and what is printed.
+WORN = Truth(coulomb=0.069)
+STATES = {
+    "same": (AS_IT_WAS, str, 0, "The same"),
+    "changed": (WORN, str, 3, "Changed: Coulomb friction torque rose from 0.0"),
+    "another rig": (AS_IT_WAS, lambda rig: rig.replace("0.8 N", "0.9 N"), 1, "motor.torque_constant: 0.8 -> 0.9"),
+    "a name and a margin": (
+        Truth(coulomb=0.066),
+        lambda rig: rig.replace('"axis"', '"x"') + '[check.margin]\ncoulomb_friction_torque = "20 %"\n',
+        0,
+        "The same",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", STATES)
+def test_the_verdict_of_an_axis(axis, what):
+    """What only the simulation and the check read is no other rig."""
+    truth, changed, expected, words = STATES[what]
+    Path("rig.toml").write_text(changed(Path("rig.toml").read_text()), encoding="utf-8")
+    write(again(2, truth), Path("now.csv"))
     status, printed, _ = axis(*BASE, "now.csv")
-    assert status == 0
-    assert "The same" in printed
+    assert (status, words in printed) == (expected, True), printed
 
 
 def test_an_update_on_a_full_disk_leaves_the_baseline_as_it_was(axis):
@@ -80,12 +94,13 @@ def test_an_update_on_a_full_disk_leaves_the_baseline_as_it_was(axis):
     assert Path("base.toml").read_bytes() != before
 
 
-def test_an_axis_that_has_changed(axis):
-    write(again(2, Truth(coulomb=0.069)), Path("now.csv"))
-    status, printed, _ = axis(*BASE, "now.csv", "--json", "c.json", "--junit", "j.xml")
+def test_a_change_in_json_junit_and_a_page(axis):
+    write(again(2, WORN), Path("now.csv"))
+    status, printed, _ = axis(*BASE, "now.csv", "--json", "c.json", "--junit", "j.xml", "--report", "c.html")
+    assert (status, "wrote c.html" in printed) == (3, True)
+    page = Path("c.html").read_text(encoding="utf-8")
+    assert ("Changed: " in page, "before.csv" in page) == (True, True)
     found = json.loads(Path("c.json").read_text(encoding="utf-8"))
-    assert status == 3
-    assert "Changed: Coulomb friction torque rose from 0.0" in printed
     assert (found["schema"], found["result"], found["false_alarm_rate"]) == ("bench.check/1", "changed", 0.01)
     (friction,) = (one for one in found["quantities"] if one["name"] == "coulomb_friction_torque")
     assert friction["result"] == "changed"
@@ -103,8 +118,7 @@ def test_a_new_effect_is_named(bench):
     assert bench("check", "before.csv", *BASE[1:], "--update")[0] == 0
     status, printed, _ = bench(*BASE, "now.csv", "--json", "c.json")
     found = json.loads(Path("c.json").read_text(encoding="utf-8"))
-    assert status == 3
-    assert "Cogging torque (harmonic 6) appeared: amplitude 0.0" in printed
+    assert (status, "Cogging torque (harmonic 6) appeared: amplitude 0.0" in printed) == (3, True)
     (effect,) = found["effects"]["appeared"]
     assert effect["parameters"]["amplitude"]["value"] == pytest.approx(0.05, rel=0.05)
     assert effect["evidence"]["torque"]["now"] > effect["evidence"]["torque"]["margin"]
@@ -112,23 +126,7 @@ def test_a_new_effect_is_named(bench):
     assert {one["name"] for one in found["quantities"] if one["result"] == "changed"} <= {"torque_gap"}
     assert bench("check", "now.csv", *BASE[1:], "--update")[0] == 0
     status, printed, _ = bench(*BASE, "before.csv")
-    assert status == 3
-    assert "Cogging torque (harmonic 6) is gone" in printed
-
-
-def test_another_rig_file_is_reported(axis):
-    Path("rig.toml").write_text(Path("rig.toml").read_text().replace("0.8 N*m/A", "0.9 N*m/A"), encoding="utf-8")
-    write(again(2), Path("now.csv"))
-    status, printed, _ = axis(*BASE, "now.csv")
-    assert status == 1
-    assert "motor.torque_constant: 0.8 -> 0.9" in printed
-
-
-def test_what_only_the_simulation_and_the_check_read_is_no_other_rig(axis):
-    more = '[check.margin]\ncoulomb_friction_torque = "20 %"\n'
-    Path("rig.toml").write_text(Path("rig.toml").read_text().replace('"axis"', '"x"') + more, encoding="utf-8")
-    write(again(2, Truth(coulomb=0.066)), Path("now.csv"))
-    assert axis(*BASE, "now.csv")[0] == 0
+    assert (status, "Cogging torque (harmonic 6) is gone" in printed) == (3, True)
 
 
 WRONG = {
@@ -138,6 +136,8 @@ WRONG = {
     "no model": (("check", "--simulated", "none.toml", "--baseline", "base.toml"), "found that of recordings"),
     "both": ((*BASE, "before.csv", "--simulated", "before.csv"), "found with recordings"),
     "names now": ((*BASE, "before.csv", "--without-names"), "when the baseline is made"),
+    "a page of another ending": ((*BASE, "before.csv", "--report", "c.txt"), "allowed: .html"),
+    "a page of an update": ((*BASE, "before.csv", "--update", "--report", "c.html"), "--report"),
     "an output that is the baseline": ((*BASE, "before.csv", "--junit", "base.toml"), "is an input"),
     "a baseline that is a recording": (
         ("check", "before.csv", "--rig", "rig.toml", "--baseline", "before.csv", "--update"),
@@ -151,15 +151,13 @@ def test_what_is_wrong_is_one_line_and_status_2(what, axis):
     arguments, message = WRONG[what]
     before = Path("base.toml").read_bytes()
     status, _, error = axis(*arguments)
-    assert status == 2
-    assert message in error
-    assert len(error.strip().splitlines()) == 1
+    assert (status, message in error, len(error.strip().splitlines())) == (2, True, 1), error
     assert Path("base.toml").read_bytes() == before
 
 
 def test_github_gets_commands_of_its_own_alone(axis, monkeypatch):
     name = "now ::error::x ##[error]%0A<b>|`.csv"
-    write(again(2, Truth(coulomb=0.069)), Path(name))
+    write(again(2, WORN), Path(name))
     monkeypatch.setenv("GITHUB_STEP_SUMMARY", "summary.md")
     Path("summary.md").write_text("before\n", encoding="utf-8")
     status, printed, _ = axis(*BASE, name, "--format", "github")
@@ -183,7 +181,7 @@ def test_a_workflow_command_is_escaped_as_github_does():
 
 
 def test_gitlab_gets_a_code_quality_report(axis):
-    write(again(2, Truth(coulomb=0.069)), Path("now.csv"))
+    write(again(2, WORN), Path("now.csv"))
     status, printed, _ = axis(*BASE, "now.csv", "--format", "gitlab")
     issues = json.loads(printed)
     assert status == 3
@@ -194,50 +192,48 @@ def test_gitlab_gets_a_code_quality_report(axis):
     assert len({issue["fingerprint"] for issue in issues}) == len(issues)
 
 
-def test_xml_holds_any_text():
-    element = ElementTree.Element("a")
-    element.text = xml_text("\x00\x1b<&]]>\ud800\ufffe\u202e")
-    assert ElementTree.fromstring(ElementTree.tostring(element, encoding="utf-8")).text
-
-
 def test_the_baseline_is_no_output_like_others():
     assert "baseline" not in WRITTEN  # it is read, and replaced where that is asked for
 
 
-def test_models_are_held_against_each_other(bench):
-    write(again(1), Path("a.csv"))
-    write(again(1, cogging=0.05), Path("b.csv"))
-    for name in "ab":
-        assert bench("diagnose", f"{name}.csv", "--rig", "rig.toml", "--out", name)[0] == 0
-    assert bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml", "--update")[0] == 0
-    assert bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml")[0] == 0
-    assert bench("check", "--simulated", "a/model.toml", "--baseline", "a/model.toml")[0] == 0
-    status, printed, _ = bench("check", "--simulated", "b/model.toml", "--baseline", "m.toml")
-    assert status == 3
-    assert "Cogging torque (harmonic 6) appeared" in printed
+@pytest.fixture(scope="module")
+def models(tmp_path_factory):
+    """A folder with the models of two axes, of which one has cogging, and a baseline of the other."""
+    folder = tmp_path_factory.mktemp("models")
+    (folder / "rig.toml").write_text(RIG, encoding="utf-8")
+    with contextlib.chdir(folder):
+        for name, cogging in (("a", 0.0), ("b", 0.05)):
+            write(again(1, cogging=cogging), Path(f"{name}.csv"))
+            assert run("diagnose", f"{name}.csv", "--rig", "rig.toml", "--out", name).status == 0
+        assert run("check", "--simulated", "a/model.toml", "--baseline", "m.toml", "--update").status == 0
+    return folder
+
+
+def test_models_are_held_against_each_other(models, monkeypatch):
+    monkeypatch.chdir(models)
+
+    def checked(model, baseline):
+        status, printed, error = run("check", "--simulated", model, "--baseline", baseline)
+        return status, printed + error
+
+    assert checked("a/model.toml", "m.toml")[0] == checked("a/model.toml", "a/model.toml")[0] == 0
+    status, printed = checked("b/model.toml", "m.toml")
+    assert (status, "Cogging torque (harmonic 6) appeared" in printed) == (3, True)
     key = 'viscous_friction_coefficient = "'
     heavier = Path("a/model.toml").read_text(encoding="utf-8").replace(key, f"{key}1")
     Path("c.toml").write_text(heavier, encoding="utf-8")
-    status, _, error = bench("check", "--simulated", "c.toml", "--baseline", "a/model.toml")
-    assert status == 2
-    assert "c.toml" in error
+    status, printed = checked("c.toml", "a/model.toml")
+    assert (status, "c.toml" in printed) == (2, True)
     Path("c.toml").write_text(heavier.replace("same_parameters = true", "same_parameters = false"), encoding="utf-8")
-    status, printed, _ = bench("check", "--simulated", "c.toml", "--baseline", "a/model.toml")
-    assert status == 3
-    assert "Changed: Viscous friction coefficient rose" in printed
-
-
-def test_a_simulator_that_moves_otherwise_is_a_change(bench):
-    write(again(1), Path("a.csv"))
-    bench("diagnose", "a.csv", "--rig", "rig.toml", "--out", "a")
-    bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml", "--update")
+    status, printed = checked("c.toml", "a/model.toml")
+    assert (status, "Changed: Viscous friction coefficient rose" in printed) == (3, True)
+    # a simulator that moves otherwise
     lines = Path("m.toml").read_text(encoding="utf-8").splitlines()
     at = lines.index("torque = [") + 5
     lines[at] = f"    {1.2 * float(lines[at].strip(' ,')) + 0.1!r},"
-    Path("m.toml").write_text("\n".join(lines), encoding="utf-8")
-    status, printed, _ = bench("check", "--simulated", "a/model.toml", "--baseline", "m.toml")
-    assert status == 3
-    assert "response torque" in printed
+    Path("other.toml").write_text("\n".join(lines), encoding="utf-8")
+    status, printed = checked("a/model.toml", "other.toml")
+    assert (status, "response torque" in printed) == (3, True)
 
 
 @given(st.text())

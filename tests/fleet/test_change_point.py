@@ -62,11 +62,11 @@ def test_two_recordings_tell_no_change(values):
     assert change_point(np.array(values), np.ones(len(values))) is None
 
 
-@pytest.mark.parametrize("count", [4, 8, 30])
+@pytest.mark.parametrize("count", [4, 30])
 @pytest.mark.parametrize(("between", "unlike"), [(0.0, 0.0), (1.0, 0.5), (10.0, 1.0)])
 def test_false_alarms_come_no_oftener_than_stated(count, between, unlike):
     """Over series without a step: errors alike and unlike, recordings that differ by no more than them and by far."""
-    rng, runs = np.random.default_rng(count), 3000
+    rng, runs = np.random.default_rng(count), 2000
     alarms = np.zeros(2)
     for _ in range(runs):
         errors = np.exp(rng.normal(0.0, unlike, count))

@@ -38,6 +38,11 @@ def made(tmp_path_factory):
     made.add("never://disk/1.csv", "press 2", 1)
     made.add("deadly://disk/2.csv", "press 2", 2)
     made.add(f"file://{folder}/press_0_1.csv.gz", "press 2", 3)
+    made.add("of_another_unit.csv", "press 2", 4)
+    trace = recording(np.random.default_rng(0), duration=3.0)
+    columns = np.stack([trace.time, trace["velocity"], 1e3 * trace["current"]], axis=1)
+    head = "time [s],velocity [rad/s],current [MA]"
+    np.savetxt(folder / "of_another_unit.csv", columns, delimiter=",", header=head, comments="")
     offer(folder / "site")
     return made.write()
 
@@ -54,33 +59,29 @@ def broken_storage(made):
 
 @pytest.fixture(scope="module")
 def cluster(broken_storage):
-    """Two Dask workers, as somebody else may have started them."""
-    with LocalCluster(
-        2, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
-    ) as cluster:
+    """A Dask worker, as somebody else may have started it."""
+    quiet = {"dashboard_address": "127.0.0.1:0", "silence_logs": logging.CRITICAL}
+    with LocalCluster(1, threads_per_worker=1, **quiet) as cluster:
         yield cluster
 
 
 @pytest.fixture(scope="module")
 def found(made):
-    """What one process makes of it."""
+    """The fleet, its folder and the rows of its table, by one process."""
     out = made.parent / "out"
-    return (
-        fleet(made, out, storages=STORAGES, limits=LIMITS, workers=1),
-        out,
-        pq.read_table(out / "fleet.parquet").to_pylist(),
-    )
+    fleet_ = fleet(made, out, storages=STORAGES, limits=LIMITS, workers=1)
+    return fleet_, out, pq.read_table(out / "fleet.parquet").to_pylist()
 
 
 def test_every_recording_has_a_row_in_the_manifests_order(made, found):
     _, _, rows = found
     named = [line.split(",")[0] for line in made.read_text().splitlines()[1:]]
     assert [row["file"] for row in rows] == named
-    statuses = {row["file"]: row["status"] for row in rows[:-4]}
+    statuses = {row["file"]: row["status"] for row in rows[:-5]}
     assert {statuses[name] for name in named[:16]} == {"done"}
     for damage in DAMAGES:
         assert statuses[f"{damage.__name__}.csv.gz"] == ("missing" if damage is missing else "refused")
-    assert [row["status"] for row in rows[-4:]] == ["missing", "timed_out", "failed", "done"]
+    assert [row["status"] for row in rows[-5:]] == ["missing", "timed_out", "failed", "done", "done"]
     assert all((row["reason"] is None) == (row["status"] == "done") for row in rows)
 
 
@@ -111,16 +112,18 @@ def test_the_row_is_what_identify_tells(made, found):
     assert row["shift"] == "000"  # carried along as it was
 
 
-def test_a_copy_of_a_url_tells_the_same(found):
+def test_a_copy_of_a_url_tells_the_same_and_what_is_assumed_of_a_unit_is_a_warning(found):
     rows = {row["file"]: row for row in found[2]}
     url = next(name for name in rows if name.startswith("file://"))
-    assert rows[url]["moment_of_inertia"] == rows["press_0_1.csv.gz"]["moment_of_inertia"]
-    assert rows[url]["trace_sha256"] == rows["press_0_1.csv.gz"]["trace_sha256"]
+    for name in ("moment_of_inertia", "trace_sha256"):
+        assert rows[url][name] == rows["press_0_1.csv.gz"][name]
+    told = [json.loads(path.read_text("utf-8")).get("warnings", []) for path in (found[1] / "results").rglob("*.json")]
+    assert [one for warnings in told for one in warnings if "MA taken as mA" in one]
 
 
 def test_only_what_is_missing_is_done_and_the_table_is_the_same_to_the_byte(made, found):
     first, out, _ = found
-    assert first.evaluated == 16 + 5 + 2 + 1  # all but what cannot be begun: missing, pipe, no rig
+    assert first.evaluated == 16 + 5 + 2 + 2  # all but what cannot be begun: missing, pipe, no rig
     table = (out / "fleet.parquet").read_bytes()
     again = fleet(made, out, storages=STORAGES, limits=LIMITS, workers=1)
     assert again.evaluated == 0
@@ -136,7 +139,7 @@ def test_only_what_is_missing_is_done_and_the_table_is_the_same_to_the_byte(made
 @pytest.mark.slow  # `tests/jobs` has Dask beside each run of the tests
 def test_on_dask_the_table_is_the_same_to_the_byte(made, found, cluster):
     out = made.parent / "on_dask"
-    assert fleet(made, out, storages=STORAGES, limits=LIMITS, scheduler=cluster.scheduler_address).evaluated == 24
+    assert fleet(made, out, storages=STORAGES, limits=LIMITS, scheduler=cluster.scheduler_address).evaluated == 25
     assert (out / "fleet.parquet").read_bytes() == (found[1] / "fleet.parquet").read_bytes()
 
 
@@ -169,9 +172,9 @@ def test_the_axis_that_changed_is_named_with_its_day(found):
 def test_who_needs_a_person_is_reported_gravest_first(found):
     concerns = [(one.axis, one.kind, one.recordings, one.of) for one in found[0].summary.concerns]
     assert concerns == [
-        ("press 2", "failed", 1, 4),
-        ("press 2", "timed_out", 1, 4),
-        ("press 2", "missing", 1, 4),
+        ("press 2", "failed", 1, 5),
+        ("press 2", "timed_out", 1, 5),
+        ("press 2", "missing", 1, 5),
         ("press 0", "missing", 1, 15),
         ("press 0", "refused", 6, 15),
     ]
@@ -179,16 +182,15 @@ def test_who_needs_a_person_is_reported_gravest_first(found):
 
 def test_the_command_prints_and_writes_what_it_found(made, found):
     out = made.parent / "out"
-    status, printed, _ = bench(
-        "fleet", made, "--out", out, "--workers", 1, *(word for one in STORAGES for word in ("--storage", one))
-    )
+    allowed = [word for one in STORAGES for word in ("--storage", one)]
+    status, printed, _ = bench("fleet", made, "--out", out, "--workers", 1, *allowed)
     assert status == 0
-    for line in ("27 recordings of 3 axes", "17 done, 2 missing, 6 refused, 1 failed, 1 timed out", "0 evaluated now"):
+    for line in ("28 recordings of 3 axes", "18 done, 2 missing, 6 refused, 1 failed, 1 timed out", "0 evaluated now"):
         assert line in printed
     assert "press 1" in printed
     summary = json.loads((out / "summary.json").read_text())
     assert summary["schema"] == "bench.fleet/1"
-    assert summary["recordings"] == {"total": 27, "done": 17, "missing": 2, "refused": 6, "failed": 1, "timed_out": 1}
+    assert summary["recordings"] == {"total": 28, "done": 18, "missing": 2, "refused": 6, "failed": 1, "timed_out": 1}
     assert [one["quantity"] for one in summary["changed"]] == ["coulomb_friction_torque"]
     assert summary["attention"][1]["reason"] == "no result within 12 s"
     page = (out / "fleet.html").read_text(encoding="utf-8")
@@ -214,19 +216,6 @@ def test_effects_are_named_where_that_is_asked_for(tmp_path):
     assert (named.name, named.recordings, named.of, named.since) == ("unbalance", 1, 2, "2026-01-02 06:00:00")
 
 
-def test_what_was_assumed_of_a_units_name_is_a_warning_of_the_row(tmp_path):
-    made = fleet_of(tmp_path / "fleet", axes=1, each=1)
-    trace = recording(np.random.default_rng(0), duration=3.0)
-    columns = trace.time, trace["velocity"], 1e3 * trace["current"]
-    header = "time [s],velocity [rad/s],current [MA]"
-    np.savetxt(made.folder / "press_0_0.csv", np.stack(columns, axis=1), delimiter=",", header=header, comments="")
-    made.rows = [made.rows[0].replace(".csv.gz", ".csv")]
-    fleet(made.write(), tmp_path / "out", workers=1)
-    (row,) = (tmp_path / "out" / "results").iterdir()
-    (told,) = json.loads(next(row.rglob("*.json") if row.is_dir() else iter([row])).read_text("utf-8"))["warnings"]
-    assert "MA taken as mA" in told
-
-
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
@@ -249,13 +238,11 @@ def test_a_bad_manifest_is_one_line(text, expected, tmp_path):
 
 
 def test_an_output_is_never_an_input(tmp_path):
-    made, name = fleet_of(tmp_path, axes=1, each=1), "press_0_0.csv.gz"
-    for output in ("fleet.parquet", "fleet.html", "summary.json"):
-        (tmp_path / name).rename(tmp_path / output)
-        made.rows, name = [made.rows[0].replace(name, output)], output
-        status, _, message = bench("fleet", made.write(), "--out", tmp_path)
-        assert status == 2
-        assert "is an input of this command" in message
+    made = fleet_of(tmp_path, axes=1, each=1)
+    (tmp_path / "press_0_0.csv.gz").rename(tmp_path / "fleet.parquet")
+    made.rows = [made.rows[0].replace("press_0_0.csv.gz", "fleet.parquet")]
+    status, _, message = bench("fleet", made.write(), "--out", tmp_path)
+    assert (status, "is an input of this command" in message) == (2, True)
 
 
 def test_the_manuals_commands_run(tmp_path, cluster, monkeypatch):
