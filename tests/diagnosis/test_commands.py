@@ -99,9 +99,6 @@ def test_an_effects_values_and_the_inertia_are_those_of_the_closed_form(diagnose
     amplitude = found["effects"][0]["parameters"]["amplitude"]
     assert amplitude["ci95"][0] < PENDULUM < amplitude["ci95"][1]
     assert found["parameters"]["moment_of_inertia"]["value"] == pytest.approx(Truth().inertia, rel=2e-3)
-
-
-def test_the_model_opens_in_mujoco_alone(diagnosed):
     assert mujoco.MjModel.from_xml_path(str(diagnosed / "found" / "model.xml")).njnt >= 1
 
 
@@ -193,70 +190,57 @@ def test_slow_motion_under_noisy_torque_is_given_no_name(bench, seed):
     assert json.loads(out)["effects"] == []
 
 
-@pytest.mark.parametrize(
-    ("trace", "words"),
-    [
-        (run_of(duration=0.05), ["run.csv contains 50 samples", "0.53 s at least"]),
-        (run_of(duration=0.3), ["run.csv contains 300 samples", "0.53 s at least"]),
-        (moving(lambda t: 0.02 * np.sin(9.0 * t)), ["no filtered sample", "speeds well above 0.1"]),
-        (moving(lambda t: 0.5 * np.sin(9.0 * t) * np.cos(2.0 * t)), ["noise of the velocity", "or a finer velocity"]),
-        (run_of(torque_noise=3.0), ["torque varies", "its noise", "more than"]),
-        (run_of(velocity_noise=80.0, position=False), ["no filtered sample", "speeds well above"]),
-        (moving(lambda t: 50.0 + 0.0 * t), ["record instead: a motion that accelerates"]),
-        (moving(lambda t: np.where(t < 2.0, 50.0, -50.0)), ["record instead: a motion that accelerates"]),
-        (run_of(period=0.02, duration=12.0), ["keep one direction well over"]),
-    ],
-    ids=["0.05 s", "0.3 s", "standing", "slow", "torque quiet", "speed quiet", "one speed", "two speeds", "20 ms"],
-)
-def test_what_cannot_be_decided_is_status_one_with_what_to_record(bench, tmp_path, trace, words):
-    write(trace, "run.csv")
-    status, out, err = bench("diagnose", "run.csv", "--rig", "rig.toml", "--json", "found.json", "--out", "found")
-    assert (status, out, err.count("\n")) == (1, "", 1), err
-    assert "record instead" in err
-    for word in words:
-        assert word in err
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["rig.toml", "run.csv"]
-
-
 def turned(trace, name, factor):
     return replace(trace, signals={**trace.signals, name: factor * trace[name]})
 
 
+UNDECIDED = {
+    "0.05 s": (run_of(duration=0.05), ["run.csv contains 50 samples", "0.53 s at least"]),
+    "0.3 s": (run_of(duration=0.3), ["run.csv contains 300 samples", "0.53 s at least"]),
+    "standing": (moving(lambda t: 0.02 * np.sin(9.0 * t)), ["no filtered sample", "speeds well above 0.1"]),
+    "slow": (
+        moving(lambda t: 0.5 * np.sin(9.0 * t) * np.cos(2.0 * t)),
+        ["noise of the velocity", "or a finer velocity"],
+    ),
+    "torque quiet": (run_of(torque_noise=3.0), ["torque varies", "its noise", "more than"]),
+    "speed quiet": (run_of(velocity_noise=80.0, position=False), ["no filtered sample", "speeds well above"]),
+    "one speed": (moving(lambda t: 50.0 + 0.0 * t), ["record instead: a motion that accelerates"]),
+    "two speeds": (
+        moving(lambda t: np.where(t < 2.0, 50.0, -50.0)),
+        ["record instead: a motion that accelerates"],
+    ),
+    "20 ms": (run_of(period=0.02, duration=12.0), ["keep one direction well over"]),
+}
+CONTRADICTORY = {
+    "no current": (only(run_of(), "position", "velocity"), ["run.csv", "current"]),
+    "no motion": (only(run_of(), "current"), ["run.csv", "velocity"]),
+    "deg as rad": (turned(run_of(), "velocity", 180.0 / np.pi), ["57.29 times", "units"]),
+    "position turned": (turned(run_of(), "position", -1.0), ["-1 times", "position"]),
+    "current turned": (turned(run_of(), "current", -1.0), ["opposite signs", "[trace.columns]"]),
+}
+ARGUMENTS = {
+    ("--without", "coging_torque"): ["--without", "cogging_torque"],
+    ("--holdout", "nowhere.csv"): ["nowhere.csv", "no such file"],
+    ("--holdout", "rig.toml"): ["rig.toml"],
+    ("--holdout", "run.csv"): ["holdout", "the recording itself"],
+    ("--out", "rig.toml"): ["rig.toml", "is an input"],
+    ("--json", "."): ["found a folder", "name a file"],
+}
+REFUSED = [
+    *((name, (), trace, 1, [*words, "record instead"]) for name, (trace, words) in UNDECIDED.items()),
+    *((name, (), trace, 2, words) for name, (trace, words) in CONTRADICTORY.items()),
+    *((" ".join(given), given, run_of(), 2, words) for given, words in ARGUMENTS.items()),
+]
+
+
 @pytest.mark.parametrize(
-    ("trace", "words"),
-    [
-        (only(run_of(), "position", "velocity"), ["run.csv", "current"]),
-        (only(run_of(), "current"), ["run.csv", "velocity"]),
-        (turned(run_of(), "velocity", 180.0 / np.pi), ["57.29 times", "units"]),
-        (turned(run_of(), "position", -1.0), ["-1 times", "position"]),
-        (turned(run_of(), "current", -1.0), ["opposite signs", "[trace.columns]"]),
-    ],
-    ids=["no current", "no motion", "deg as rad", "position turned", "current turned"],
+    ("given", "trace", "status", "words"), [row[1:] for row in REFUSED], ids=[r[0] for r in REFUSED]
 )
-def test_signals_that_contradict_each_other_are_status_two(bench, tmp_path, trace, words):
+def test_what_is_refused_is_one_line_with_its_status_and_no_file(bench, tmp_path, given, trace, status, words):
     write(trace, "run.csv")
-    status, out, err = bench("diagnose", "run.csv", "--rig", "rig.toml", "--json", "found.json", "--out", "found")
-    assert (status, out, err.count("\n")) == (2, "", 1), err
-    for word in words:
-        assert word in err
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["rig.toml", "run.csv"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("--without", "coging_torque"), ["--without", "cogging_torque"]),
-        (("--holdout", "nowhere.csv"), ["nowhere.csv", "no such file"]),
-        (("--holdout", "rig.toml"), ["rig.toml"]),
-        (("--holdout", "run.csv"), ["holdout", "the recording itself"]),
-        (("--out", "rig.toml"), ["rig.toml", "is an input"]),
-        (("--json", "."), ["found a folder", "name a file"]),
-    ],
-)
-def test_bad_arguments_are_one_line_and_status_two(bench, tmp_path, arguments, words):
-    write(run_of(), "run.csv")
-    status, _, err = bench("diagnose", "run.csv", "--rig", "rig.toml", *arguments)
-    assert (status, err.count("\n")) == (2, 1), err
+    files = given or ("--json", "found.json", "--out", "found")
+    found, out, err = bench("diagnose", "run.csv", "--rig", "rig.toml", *files)
+    assert (found, out, err.count("\n")) == (status, "", 1), err
     for word in words:
         assert word in err
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["rig.toml", "run.csv"]

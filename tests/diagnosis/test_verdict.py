@@ -69,63 +69,86 @@ def against(*effects, velocity=None, torque=None, unknown=0.1, **otherwise):
 
 
 SPRING = named("torsion_spring", stiffness=(0.1, 0.01))
+WARM, EITHER = {"relative_amplitude": (0.3, 0.02), "time_constant": (2.0, 0.1)}, {"viscous_share": (0.4, 3.0)}
 
 
-@pytest.mark.parametrize(
-    ("identify", "holdout", "said"),
-    [
-        ((0.50, 0.10), None, ""),
-        ((0.50, 3.39), None, "recording is worse"),
-        ((0.50, 0.10), (0.5, 0.6), "holdout is worse"),
-        ((0.050, 0.055), None, ""),
-        (None, None, ""),
-    ],
-)
-def test_a_model_that_moves_worse_explains_nothing(identify, holdout, said):
-    """Worse by more than noise makes of it: sqrt(0.05**2 + 0.027**2) = 0.0568."""
-    found = against(SPRING, velocity=Gap("rad/s", 0.027, identify, holdout))
-    assert found.keys() == ({"moves_worse"} if said else set())
-    assert said in found.get("moves_worse", "")
+def speed(identify, holdout=None, noise=0.027, **limit):
+    return {"velocity": Gap("rad/s", noise, identify, holdout, **limit)}
 
 
-@pytest.mark.parametrize(("after", "said"), [(0.70, ""), (0.72, "recording is worse"), (3.39, "recording is worse")])
-def test_a_model_whose_waves_lost_their_phase_is_judged_by_a_speed_whose_squares_double(after, said):
-    """At wrong instants they err twice, where they are and where they are not: sqrt(2*(0.5**2 + 0.027**2)) = 0.708."""
-    found = against(SPRING, velocity=Gap("rad/s", 0.027, (0.50, after), None), in_phase=False)
-    assert said in found.get("moves_worse", "")
-    assert (bool(found), out_of_phase(added(SPRING, in_phase=False)) != []) == (bool(said), True)
+def event(start):
+    return named("load_torque_event", torque=(0.1, 0.01), start=start, end=(2.0, 0.05))
 
 
-@pytest.mark.parametrize(
-    ("effect", "said"),
-    [
-        (SPRING, ""),
-        (named("torsion_spring", stiffness=(0.1, 0.11)), "stiffness"),
-        (named("load_torque_event", torque=(0.1, 0.01), start=(0.001, 0.05), end=(2.0, 0.05)), ""),
-        (named("load_torque_event", torque=(0.1, 0.01), start=(0.17, 1.7e6), end=(2.0, 0.05)), "start"),
-        (named("unbalance", amplitude=(0.1, 0.01), phase=(0.02, 0.3)), ""),
-        (named("unbalance", amplitude=(0.1, 0.01), phase=(0.02, 3.5)), "phase"),
-    ],
-)
-def test_a_quantity_that_is_not_determined_explains_nothing(effect, said):
-    found = against(effect)
-    assert found.keys() == ({"undetermined"} if said else set())
-    assert said in found.get("undetermined", "")
+def unbalance(phase):
+    return named("unbalance", amplitude=(0.1, 0.01), phase=phase)
 
 
-def test_friction_that_is_not_determined_counts_where_its_torque_does():
-    assert "not determined" in against(SPRING, friction=(0.08, 0.09))["undetermined"]
-    assert against(SPRING, friction=(0.001, 0.002)) == {}
-    assert against(friction=(0.08, 0.09)) == {}
+def warming(**wide):
+    return named("friction_warmup", **WARM | EITHER | wide)
 
 
-def test_what_is_minor_may_be_open():
-    """How warming friction divides between viscous and dry is minor; how much it is, is not."""
-    known, either = {"relative_amplitude": (0.3, 0.02), "time_constant": (2.0, 0.1)}, {"viscous_share": (0.4, 3.0)}
-    assert against(named("friction_warmup", **known, **either)) == {}
-    for name, (value, _) in known.items():
-        wide = known | either | {name: (value, 1.1 * value)}
-        assert name.replace("_", " ") in against(named("friction_warmup", **wide))["undetermined"]
+def of_holdout(after):
+    return {"torque": Gap("N*m", 0.01, (0.1, 0.008), (0.1, after))}
+
+
+#: Effects, what else is not as where all is well, the criterion that speaks against it, and its words, if any.
+SPEAKS = [
+    # worse by more than noise makes of it: sqrt(0.05**2 + 0.027**2) = 0.0568
+    ([SPRING], speed((0.50, 0.10)), "moves_worse", ""),
+    ([SPRING], speed((0.50, 3.39)), "moves_worse", "recording is worse"),
+    ([SPRING], speed((0.50, 0.10), (0.5, 0.6)), "moves_worse", "holdout is worse"),
+    ([SPRING], speed((0.050, 0.055)), "moves_worse", ""),
+    ([SPRING], speed(None), "moves_worse", ""),
+    # out of phase a wave errs twice, where it is and where it is not: sqrt(2*(0.5**2 + 0.027**2)) = 0.708
+    ([SPRING], speed((0.50, 0.70)) | {"in_phase": False}, "moves_worse", ""),
+    ([SPRING], speed((0.50, 0.72)) | {"in_phase": False}, "moves_worse", "recording is worse"),
+    # without a name the gap is within its limit
+    ([], speed((0.03, 0.03), noise=0.01, limit=0.035), "moves_otherwise", ""),
+    ([], speed((0.04, 0.04), noise=0.01, limit=0.035), "moves_otherwise", "4 times the noise"),
+    ([], speed(None, noise=0.01, limit=0.035), "moves_otherwise", ""),
+    ([SPRING], {}, "undetermined", ""),
+    ([named("torsion_spring", stiffness=(0.1, 0.11))], {}, "undetermined", "stiffness"),
+    ([event((0.001, 0.05))], {}, "undetermined", ""),
+    ([event((0.17, 1.7e6))], {}, "undetermined", "start"),
+    ([unbalance((0.02, 0.3))], {}, "undetermined", ""),
+    ([unbalance((0.02, 3.5))], {}, "undetermined", "phase"),
+    # how warming friction divides between viscous and dry is minor; how much it is, is not
+    ([warming()], {}, "undetermined", ""),
+    ([warming(relative_amplitude=(0.3, 0.33))], {}, "undetermined", "relative amplitude"),
+    ([warming(time_constant=(2.0, 2.2))], {}, "undetermined", "time constant"),
+    # friction counts where its torque does
+    ([SPRING], {"friction": (0.08, 0.09)}, "undetermined", "not determined"),
+    ([SPRING], {"friction": (0.001, 0.002)}, "undetermined", ""),
+    ([], {"friction": (0.08, 0.09)}, "undetermined", ""),
+    ([SPRING], {"friction": (-0.08, 0.001)}, "negative", "is negative"),
+    ([], {"friction": (-0.002, 0.001)}, "negative", "is negative"),
+    ([], {"friction": (-0.02, 0.03)}, "negative", "is negative"),
+    ([], {"friction": (-0.002, 0.003)}, "negative", ""),
+    ([], {"withheld": True}, "withheld", "an excluded effect was found"),
+    ([], {"stopped": "limit"}, "stopped", "limit"),
+    ([], {"stopped": "limit", "withheld": True}, "stopped", "limit"),
+    ([], {"chi": 1.11}, "residual", ""),
+    ([], {"chi": 1.13}, "residual", "the residual is 1.13 times the noise"),
+    ([], of_holdout(0.029), "holdout", ""),
+    ([], of_holdout(0.031), "holdout", "residual of the holdout is 0.031"),
+    ([], {"unknown": 0.49}, "likelier", ""),
+    ([], {"unknown": 0.6}, "likelier", "unknown effect is more likely (60 %) than no missing effect (40 %)"),
+    ([SPRING], {"on": Dependence("torque", {})}, "dependence", "torque"),
+    ([SPRING], {"refused": {"moment_of_inertia": "its interval contains zero"}}, "refused", "contains zero"),
+]
+
+
+@pytest.mark.parametrize(("effects", "otherwise", "criterion", "said"), SPEAKS)
+def test_one_objection_turns_the_verdict(effects, otherwise, criterion, said):
+    """On either side of its border, and no other criterion with it."""
+    found = against(*effects, **otherwise)
+    assert found.keys() == ({criterion} if said else set())
+    assert said in found.get(criterion, "")
+
+
+def test_waves_out_of_phase_are_reported():
+    assert out_of_phase(added(SPRING, in_phase=False)) != []
 
 
 def test_the_torque_of_friction_is_that_of_its_own_column():
@@ -145,36 +168,6 @@ def test_the_torque_of_friction_is_that_of_its_own_column():
     assert speed > 10.0
 
 
-def test_friction_resists():
-    assert "is negative" in against(friction=(-0.002, 0.001))["negative"]
-    assert "is negative" in against(friction=(-0.02, 0.03))["negative"]
-    assert against(friction=(-0.002, 0.003)) == {}
-
-
-@pytest.mark.parametrize(
-    ("stopped", "withheld", "said"),
-    [
-        (None, False, ""),
-        (None, True, "an excluded effect was found"),
-        ("limit", False, "limit"),
-        ("limit", True, "limit"),
-    ],
-)
-def test_a_search_that_was_cut_or_kept_from_a_name_explains_nothing(stopped, withheld, said):
-    assert "".join(against(stopped=stopped, withheld=withheld).values()) == said
-
-
-@pytest.mark.parametrize(("chi", "said"), [(1.11, ""), (1.13, "the residual is 1.13 times the noise")])
-def test_twelve_hundredths_above_the_floor_remain(chi, said):
-    assert "".join(against(chi=chi).values()) == said
-
-
-def test_a_holdout_residual_of_three_times_that_of_the_recording_is_an_objection():
-    near, far = (Gap("N*m", 0.01, (0.1, 0.008), (0.1, after)) for after in (0.029, 0.031))
-    assert against(torque=near) == {}
-    assert "residual of the holdout is 0.031" in against(torque=far)["holdout"]
-
-
 def test_a_holdout_with_half_as_much_friction_again_is_no_proof_that_nothing_is_missing():
     more = recorded(MOTION, lambda motion: 0.49 * COULOMB * motion.sign, seed=1)
     same = diagnose(recorded(MOTION), RIG, recorded(MOTION, seed=1), excluded=NONE)
@@ -188,38 +181,3 @@ def test_friction_that_drives_is_reported():
     found = diagnose(recorded(MOTION, lambda motion: -1.5 * COULOMB * motion.sign), RIG, excluded=NONE)
     assert found.verdict == "unexplained_remainder"
     assert any("Coulomb friction torque" in said and "negative" in said for said in reasons(found))
-
-
-def test_no_missing_effect_needs_the_speed_gap_within_its_limit():
-    assert against(velocity=Gap("rad/s", 0.01, (0.03, 0.03), limit=0.035)) == {}
-    found = against(velocity=Gap("rad/s", 0.01, (0.04, 0.04), limit=0.035))
-    assert "4 times the noise" in found["moves_otherwise"]
-    assert against(velocity=Gap("rad/s", 0.01, None, limit=0.035)) == {}
-
-
-def test_no_missing_effect_needs_nothing_to_be_the_likeliest_answer():
-    assert against(unknown=0.49) == {}
-    likelier = against(unknown=0.6)["likelier"]
-    assert "unknown effect is more likely (60 %) than no missing effect (40 %)" in likelier
-
-
-AGAINST = {
-    "residual": against(SPRING, chi=1.2),
-    "dependence": against(SPRING, on=Dependence("torque", {})),
-    "moves_otherwise": against(velocity=Gap("rad/s", 0.01, (0.1, 0.1), limit=0.035)),
-    "likelier": against(unknown=0.6),
-    "stopped": against(SPRING, stopped="limit of effects reached"),
-    "withheld": against(SPRING, withheld=True),
-    "moves_worse": against(SPRING, velocity=Gap("rad/s", 0.01, (0.1, 0.2), None)),
-    "undetermined": against(named("torsion_spring", stiffness=(0.1, 0.11))),
-    "negative": against(SPRING, friction=(-0.08, 0.001)),
-    "refused": against(SPRING, refused={"moment_of_inertia": "its interval contains zero"}),
-    "holdout": against(SPRING, torque=Gap("N*m", 0.01, (0.1, 0.008), (0.1, 0.04))),
-}
-
-
-def test_one_objection_alone_turns_the_verdict():
-    for criterion, found in AGAINST.items():
-        assert found.keys() == {criterion}
-        assert all(found.values())
-    assert against(SPRING) == against() == {}

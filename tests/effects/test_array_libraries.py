@@ -27,17 +27,6 @@ def of_axes(value):
     return np.full(COUNT, float(value))
 
 
-def axis():
-    """The axis of the tests, once for each of many."""
-    one = model().axis
-    assert one.winding is not None
-    winding = replace(
-        one.winding, **{each.name: of_axes(getattr(one.winding, each.name)) for each in fields(one.winding)}
-    )
-    constants = {each.name: of_axes(getattr(one, each.name)) for each in fields(one) if each.name != "winding"}
-    return Axis(**constants, winding=winding)
-
-
 #: Every method of a step: the type that asks for it, and what it is given beside values and axis.
 STEPS = {
     Torque: lambda e, v, a, at, _: e.torque(v, a, at),

@@ -99,6 +99,7 @@ def test_noise_of_the_known_torque_stays_on_a_link_that_hangs_loose(read):
     assert white[1] == pytest.approx(white[0], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_coupling_that_damps_noise_of_a_coarse_encoder_is_not_named(tmp_path):
     """12 bit at 200 Hz: half of the elbow's noise is that of its link's acceleration, which a soft gear filters."""
     robot, rng = ROBOTS["desktop_arm"], np.random.default_rng([2, 6])

@@ -103,7 +103,7 @@ def test_friction_that_takes_nearly_all_torque_doubts_no_link(tmp_path):
     """The torque of a joint that always drives is its own magnitude along the motion, as which it explained itself."""
     (tmp_path / "arm.xml").write_text(ur5e.mjcf())
     hidden = [*(replace(one, effect="") for one in ur5e.HIDDEN[:5]), ur5e.Hidden(0.05, 0.8, 1.0)]
-    logged = write_log(tmp_path / "log.csv", ur5e.log(hidden, seed=0))
+    logged = write_log(tmp_path / "log.csv", ur5e.log(hidden, seed=0, duration=10.0))
     assert not doubt_links([JointLogs(joint, tmp_path / "arm.xml", (logged,)) for joint in ur5e.NAMES])
 
 

@@ -5,6 +5,7 @@ import pytest
 from tests.studies.pulses import reported_push
 
 
+@pytest.mark.slow
 def test_a_push_is_found_in_size_and_time_beside_another_misfit(tmp_path):
     assert reported_push(5, True, tmp_path, 5.0).right
 
