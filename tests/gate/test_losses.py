@@ -3,17 +3,16 @@
 import numpy as np
 import pytest
 
-from bench.errors import InputError
 from bench.fit.identify import identify
 from bench.gate import repairs
-from bench.gate.gate import gate, passed
+from bench.gate.gate import gate
 from tests.gate.damage import doubled, losing, stale, with_samples, without
 from tests.independent.axes import PLAIN
 
 
 @pytest.mark.parametrize("damage", [losing, stale, doubled])
 @pytest.mark.parametrize("share", [0.001, 0.005])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_lost_and_repeated_samples_are_put_right(sound, rig, damage, share, seed):
     damaged = damage(sound, share, seed)
     gated = gate(damaged, rig, [repairs.none_lost])
@@ -39,11 +38,6 @@ def test_a_longer_loss_is_a_hole(sound, rig):
     assert "20 samples lost" in gated.checks[0].found
     assert [part.stop for part in gated.trace.segments] == [1500, len(sound) - 20]
     assert gated.trace.time[-1] == pytest.approx(sound.time[-1])
-
-
-def test_many_losses_are_refused(sound, rig):
-    with pytest.raises(InputError, match="lost_samples"):
-        passed(losing(sound, 0.03), rig)
 
 
 def test_losses_that_no_speed_confirms_are_refused(sound, rig):

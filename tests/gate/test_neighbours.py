@@ -19,7 +19,7 @@ def swings(t):
 
 
 def is_moved_once(t):
-    return STATED + 0.4 * (t > 8.0), 0.0 * t, 0.0 * t
+    return STATED + 0.4 * (t > 6.0), 0.0 * t, 0.0 * t
 
 
 #: What the elbow's own may be beside a shoulder that stands, of time, angle, speed, acceleration and torque - N*m.
@@ -35,14 +35,14 @@ OWN = {
     "a drift": lambda t, q, w, a, torque: -0.15 * torque * t / t[-1],
     "warming": lambda t, q, w, a, torque: -0.5 * np.sign(w) * t / t[-1],
     "another inertia": lambda t, q, w, a, torque: 0.03 * a,
-    "a push": lambda t, q, w, a, torque: 0.8 * ((t > 7.0) & (t < 7.3)),
+    "a push": lambda t, q, w, a, torque: 0.8 * ((t > 5.0) & (t < 5.3)),
     "a delay": lambda t, q, w, a, torque: np.interp(t - 0.02, t, torque) - torque,
 }
 
 
 def checked(folder, shoulder, more=OWN["nothing"], arm=MJCF):
     """The check of a log of the elbow alone, with the noise of its sensors."""
-    rng, (time, _, elbow) = np.random.default_rng(1), motion(20.0, 4e-3)
+    rng, (time, _, elbow) = np.random.default_rng(1), motion(14.0, 5e-3)
     torque = elbow_torque(*shoulder(time), *elbow) + HIDDEN.torque(*elbow)
     torque = torque + more(time, *elbow, torque) + 1e-2 * rng.standard_normal(time.size)
     seen = (
@@ -76,7 +76,7 @@ def test_a_joint_whose_motion_would_not_be_felt_is_not_asked_about(tmp_path):
     """Without weight, as about a vertical axis, where it stands does not matter to the other."""
 
     def pushed(t, *_):
-        return 0.5 * (t > 9.0)
+        return 0.5 * (t > 6.0)
 
     assert checked(tmp_path, stands, pushed).status == "warn"
     weightless = MJCF.replace('gravity="0 0 -9.81"', 'gravity="0 0 0"')
