@@ -9,13 +9,13 @@ ONE_EACH = {"distributed.scheduler.worker-saturation": 1.0}
 
 @pytest.fixture(scope="module")
 def cluster():
-    """Two Dask workers, as somebody else may have started them."""
+    """A Dask worker, as somebody else may have started it."""
     from distributed import LocalCluster
 
     with (
         dask.config.set(ONE_EACH),
         LocalCluster(
-            2, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
+            1, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
         ) as cluster,
     ):
         yield cluster

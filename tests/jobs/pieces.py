@@ -9,8 +9,9 @@ import time
 
 
 def work(item):
-    kind, number = item
-    return ACTS[kind](number)
+    """One of these with its number."""
+    piece, number = item
+    return piece(number)
 
 
 def square(number):
@@ -58,11 +59,6 @@ def unpicklable(number):
     return lambda: number
 
 
-def wait(number):
-    time.sleep(0.01 * number)
-    return number
-
-
 def process(number):
     return os.getpid()
 
@@ -70,9 +66,3 @@ def process(number):
 def slowly(number):
     time.sleep(number)
     return os.getpid()
-
-
-ACTS = {
-    act.__name__: act
-    for act in (square, refuse, hang, sleep, crash, killed, parricide, leave, fill, unpicklable, wait, process, slowly)
-}
