@@ -30,31 +30,32 @@ def driven(targets, gain, peak, slope, no_load):
     return SimpleNamespace(**dict(zip(("speed", "torque"), noisy, strict=True)))
 
 
-def steps(reach):
-    """Target speeds (8000, k) that jump every 0.4 s, up to a reach (k,) - rad/s."""
-    return np.repeat(np.random.default_rng(0).uniform(-reach, reach, (20, reach.size)), 400, axis=0)
+RNG = np.random.default_rng(1)
+#: 40 motors drawn at random, and three of a peak torque of 2 N*m and a no-load speed of 200 rad/s.
+PEAK = np.append(RNG.uniform(2.0, 4.0, 40), [2.0] * 3)
+NO_LOAD = np.append(RNG.uniform(120.0, 250.0, 40), [200.0] * 3)
+SLOPE = np.append(RNG.uniform(1.5, 3.0, 40), [2.0] * 3) * PEAK / NO_LOAD
+GAIN = np.append([0.5] * 40, [0.003, 0.5, 0.5])
+#: Of their target speeds, which jump every 0.4 s: the three are weak and slow, slow, and fast.
+REACH = np.append(1.2 * NO_LOAD[:40], [60.0, 60.0, 240.0])
 
 
 @pytest.fixture(scope="module")
-def known():
-    """Of a peak torque of 2 N*m and a no-load speed of 200 rad/s: weak and slow, slow, and fast."""
-    return driven(steps(np.array([60.0, 60.0, 240.0])), np.array([0.003, 0.5, 0.5]), 2.0, 0.02, 200.0)
+def motors():
+    targets = np.random.default_rng(0).uniform(-REACH, REACH, (20, REACH.size))
+    return driven(np.repeat(targets, 400, axis=0), GAIN, PEAK, SLOPE, NO_LOAD)
 
 
 def found(speed, torque):
     return envelope(speed, torque, "rad/s", "N*m")
 
 
-def test_intervals_of_the_limits_hold_the_truth():
+def test_intervals_of_the_limits_hold_the_truth(motors):
     """40 motors: of their intervals 95 % is 152 +- 2.8 of 160."""
-    rng = np.random.default_rng(1)
-    peak, no_load = rng.uniform(2.0, 4.0, 40), rng.uniform(120.0, 250.0, 40)
-    slope = rng.uniform(1.5, 3.0, 40) * peak / no_load
-    run = driven(steps(1.2 * no_load), 0.5, peak, slope, no_load)
-    truth = {"peak": peak, "no_load": no_load, "slope": slope, "corner": no_load - peak / slope}
+    truth = {"peak": PEAK, "no_load": NO_LOAD, "slope": SLOPE, "corner": NO_LOAD - PEAK / SLOPE}
     inside, errors = [], []
     for k in range(40):
-        one = found(run.speed[:, k], run.torque[:, k])
+        one = found(motors.speed[:, k], motors.torque[:, k])
         for name, values in truth.items():
             if (value := getattr(one, name)) is not None:
                 inside.append(value.ci95[0] <= values[k] <= value.ci95[1])
@@ -64,17 +65,12 @@ def test_intervals_of_the_limits_hold_the_truth():
     assert np.median(errors) < 1e-3
 
 
-def test_a_limit_that_is_not_reached_is_none(known):
-    one = found(known.speed[:, 0], known.torque[:, 0])
-    assert (one.peak, one.no_load, one.slope, one.corner, one.stall) == (None,) * 5
-    assert one.largest == pytest.approx(np.abs(known.torque[:, 0]).max(), abs=0.05)
-
-
-def test_the_limit_of_current_alone(known):
-    one = found(known.speed[:, 1], known.torque[:, 1])
-    assert one.peak is not None
-    assert one.peak.value == pytest.approx(2.0, rel=2e-3)
-    assert one.no_load is None
+def test_a_limit_that_is_not_reached_is_none(motors):
+    weak, slow = (found(motors.speed[:, k], motors.torque[:, k]) for k in (40, 41))
+    assert (weak.peak, weak.no_load, weak.slope, weak.corner, weak.stall) == (None,) * 5
+    assert weak.largest == pytest.approx(np.abs(motors.torque[:, 40]).max(), abs=0.05)
+    assert slow.peak.value == pytest.approx(2.0, rel=2e-3)
+    assert slow.no_load is None
 
 
 @pytest.mark.parametrize("shape", ["sine", "triangle"])
@@ -87,10 +83,7 @@ def test_planned_motions_that_repeat_reach_no_limit(shape):
     acceleration = np.tile(cycle, 5)
     speed = np.cumsum(acceleration) * PERIOD
     torque = INERTIA * acceleration + VISCOUS * speed + COULOMB * np.sign(speed)
-    one = found(
-        speed + 0.2 * rng.normal(size=speed.size),
-        torque + 0.01 * rng.normal(size=speed.size),
-    )
+    one = found(*(true + noise * rng.normal(size=speed.size) for true, noise in ((speed, 0.2), (torque, 0.01))))
     assert (one.peak, one.no_load) == (None, None)
 
 
@@ -99,15 +92,18 @@ def test_what_never_drives_has_no_limits():
         found(np.linspace(1.0, 2.0, 500), np.full(500, -1.0))
 
 
-def test_the_command_tells_the_limits_without_a_datasheet(known, tmp_path):
+def test_the_command_tells_the_limits_without_a_datasheet(motors, tmp_path):
     log, told = tmp_path / "log.csv", tmp_path / "limits.json"
-    table = np.column_stack([np.arange(8000) * PERIOD, known.speed[:, 2], known.torque[:, 2]])
+    table = np.column_stack([np.arange(8000) * PERIOD, motors.speed[:, 42], motors.torque[:, 42]])
     np.savetxt(log, table, delimiter=",", header="time [s],velocity [rad/s],torque [N*m]", comments="", fmt="%.6g")
     done = CliRunner().invoke(app, ["limits", str(log), "--out", str(tmp_path / "limits.png"), "--json", str(told)])
     assert done.exit_code == 0, done.output
     assert "reaches the limit of current and of voltage" in done.output
     found = json.loads(told.read_text(encoding="utf-8"))["parameters"]
-    assert found["peak_torque"]["value"] == pytest.approx(2.0, rel=1e-3)
-    assert found["no_load_speed"]["value"] == pytest.approx(200.0, rel=2e-3)
-    assert found["corner_speed"]["value"] == pytest.approx(100.0, rel=5e-3)
+    for name, value, error in (
+        ("peak_torque", 2.0, 1e-3),
+        ("no_load_speed", 200.0, 2e-3),
+        ("corner_speed", 100.0, 5e-3),
+    ):
+        assert found[name]["value"] == pytest.approx(value, rel=error)
     assert (tmp_path / "limits.png").stat().st_size > 10_000

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from bench.assets import asset
 from bench.errors import InputError
+from bench.rig.given import rig_of
 from bench.rig.motor import motor_names, motor_sources
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
@@ -97,21 +98,50 @@ def test_a_missing_rig_file_is_named(tmp_path):
         load_rig(tmp_path)
 
 
-def test_effort_comes_from_what_is_recorded(rig):
-    motor = '[motor]\ntorque_constant = "0.5 N*m/A"\nrated_torque = "2 N*m"\nresistance = "4 ohm"'
-    axis = rig(motor)
-    assert axis.effort(trace(velocity=[0, 1, 2], current=[2, 2, 2]))[0] == pytest.approx([1, 1, 1])
-    assert axis.effort(trace(velocity=[0, 1, 2], torque=[3, 3, 3], current=[9, 9, 9]))[0] == pytest.approx([3, 3, 3])
-    share = trace({"torque": "dimensionless"}, velocity=[0, 1, 2], torque=[0.5, 0.5, 0.5])
-    assert axis.effort(share)[0] == pytest.approx([1, 1, 1])
-    by_voltage, unit = axis.effort(trace(velocity=[0, 4, 8], voltage=[8, 8, 8]))
-    assert by_voltage == pytest.approx([1.0, 0.75, 0.5])
-    assert unit == "N*m"
+MOTOR = '[motor]\ntorque_constant = "0.5 N*m/A"\nrated_torque = "2 N*m"\nresistance = "4 ohm"'
 
 
-def test_without_a_constant_the_effort_stays_in_its_own_unit(rig):
-    assert rig("").effort(trace(velocity=[0, 1, 2], current=[1, 2, 3]))[1] == "A"
-    assert rig("").effort(trace(velocity=[0, 1, 2], voltage=[1, 2, 3]))[1] == "V"
+@pytest.mark.parametrize(
+    ("text", "signals", "units", "effort", "unit"),
+    [
+        (MOTOR, {"current": 2}, {}, 1, "N*m"),
+        (MOTOR, {"torque": 3, "current": 9}, {}, 3, "N*m"),
+        (MOTOR, {"torque": 0.5}, {"torque": "dimensionless"}, 1, "N*m"),
+        (MOTOR, {"voltage": 8}, {}, [1.0, 0.9375, 0.875], "N*m"),
+        ("", {"current": [1, 2, 3]}, {}, [1, 2, 3], "A"),
+        ("", {"voltage": [1, 2, 3]}, {}, [1, 2, 3], "V"),
+    ],
+)
+def test_effort_comes_from_what_is_recorded(rig, text, signals, units, effort, unit):
+    """K_t*(U - K_e*w)/R of a voltage; without a constant it stays in its own unit."""
+    filled = {name: np.broadcast_to(values, 3) for name, values in signals.items()}
+    found, of = rig(text).effort(trace(units, velocity=[0, 1, 2], **filled))
+    assert found == pytest.approx(np.broadcast_to(effort, 3))
+    assert of == unit
+
+
+def test_a_rig_may_be_given_as_a_table_a_file_or_itself(rig, tmp_path):
+    loaded = rig(MOTOR)
+    assert rig_of(loaded) is loaded
+    assert rig_of(tmp_path / "rig.toml").motor == loaded.motor
+    assert rig_of({"motor": {"torque_constant": "0.5 N*m/A"}}).motor.torque_constant == 0.5
+
+
+def test_stated_inertia_is_that_of_motor_and_load_where_both_are_stated(rig):
+    rotor, load = '[motor]\nrotor_inertia = "2 kg*cm**2"\n', '[load]\nouter_diameter = "0.2 m"\nmass = "1 kg"\n'
+    assert rig(rotor + load).stated_inertia == pytest.approx(2e-4 + 0.5 * 1.0 * 0.1**2)
+    assert [rig(text).stated_inertia for text in (rotor, load)] == [None, None]
+
+
+def test_a_joints_own_values_replace_those_for_all(rig):
+    both = rig(
+        '[motor]\ntorque_constant = "0.5 N*m/A"\n[joints.elbow]\ntorque_constant = "0.7 N*m/A"\ngear_ratio = 8.0'
+    )
+    assert both.of_joint("wrist") is both
+    elbow = both.of_joint("elbow")
+    assert (elbow.motor.torque_constant, elbow.load.gear_ratio) == (0.7, 8.0)
+    kept = rig('[motor]\ntorque_constant = "0.5 N*m/A"\n[joints.elbow]\ngear_ratio = 8.0').of_joint("elbow")
+    assert kept.motor.torque_constant == 0.5
 
 
 def test_a_trace_of_the_other_kind_of_axis_is_noticed(rig):

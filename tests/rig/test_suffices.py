@@ -39,15 +39,15 @@ def test_rigs_are_listed_and_copied(tmp_path, capsys, monkeypatch):
 
 
 def test_an_effective_current_and_its_constant_are_converted():
-    values = {"torque_constant": "1.2 N*m/A", "peak_current": "5 A"}
-    peak, effective = (Rig.of({**BARE, "motor": {**values, "current": current}}) for current in ("peak", "effective"))
-    assert peak.motor.torque_constant == pytest.approx(2**0.5 * (effective.motor.torque_constant or 0.0))
-    assert (effective.motor.peak_current or 0.0) == pytest.approx(2**0.5 * 5.0)
+    def motors(**values):
+        return [Rig.of({**BARE, "motor": {**values, "current": current}}).motor for current in ("peak", "effective")]
+
+    peak, effective = motors(torque_constant="1.2 N*m/A", peak_current="5 A")
+    assert peak.torque_constant == pytest.approx(2**0.5 * effective.torque_constant)
+    assert effective.peak_current == pytest.approx(2**0.5 * 5.0)
     stall = {"continuous_stall_torque": "2 N*m", "continuous_stall_current": "2 A", "peak_torque": "6 N*m"}
-    both = [Rig.of({**BARE, "motor": {**stall, "peak_current": "7 A", "current": c}}) for c in ("peak", "effective")]
-    constants = [rig.motor.torque_per_ampere for rig in both]
-    assert constants[0] is not None and constants[1] is not None
-    assert constants[1].torque(7.0 * 2**0.5) == pytest.approx(6.0) == constants[0].torque(7.0)
+    peak, effective = (motor.torque_per_ampere for motor in motors(**stall, peak_current="7 A"))
+    assert effective.torque(7.0 * 2**0.5) == pytest.approx(6.0) == peak.torque(7.0)
 
 
 def test_an_effective_unit_in_a_rig_is_asked_about(tmp_path):
