@@ -18,11 +18,8 @@ from tests.shared import SHARED
 
 UNITS = {"time": "ms", "position": "rad", "velocity": "rad/s", "torque": "N*m", "current": "A", "temperature": "degC"}
 FAULTS = ("two_axes", "temp_as_velocity", "derivative_sign", "setpoint_columns", "no_units", "unit_suffix")
-EXPORTS = sorted(
-    path
-    for path in (SHARED / "data" / "exports").glob("*/*")
-    if path.suffix not in (".toml", ".json", ".md", ".mcap", ".tdms")
-)
+OTHER = (".toml", ".json", ".md", ".mcap", ".tdms")
+EXPORTS = sorted(path for path in (SHARED / "data" / "exports").glob("*/*") if path.suffix not in OTHER)
 
 
 def completed(text):

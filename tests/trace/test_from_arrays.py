@@ -62,12 +62,10 @@ def test_a_data_frame_gives_what_its_arrays_give(frame):
     assert_same(Trace.from_arrays(frame(columns()), UNITS), Trace.from_arrays(columns(), UNITS))
 
 
-def test_a_sample_period_stands_for_regular_times():
-    signals = {"velocity": velocity(REGULAR), "current": current(REGULAR)}
-    units = {"velocity": "deg/s", "current": "mA"}
-    expected = Trace.from_arrays(columns(), UNITS)
-    assert_same(Trace.from_arrays(signals, units, sample_period=1e-3), expected)
-    assert_same(Trace.from_arrays(signals, units, sample_period="1 ms"), expected)
+@pytest.mark.parametrize("period", [1e-3, "1 ms"])
+def test_a_sample_period_stands_for_regular_times(period):
+    signals, units = ({name: of[name] for name in ("velocity", "current")} for of in (columns(), UNITS))
+    assert_same(Trace.from_arrays(signals, units, sample_period=period), Trace.from_arrays(columns(), UNITS))
 
 
 def test_a_name_may_carry_its_unit_and_a_rigs_columns_name_foreign_ones():
@@ -91,20 +89,17 @@ def test_what_is_not_needed_stops_nothing():
 
 
 def test_the_trace_has_samples_of_its_own():
-    table = {"time": REGULAR.copy(), "velocity": velocity(REGULAR)}
-    trace = Trace.from_arrays(table, {"time": "s", "velocity": "rad/s"})
+    table = columns(REGULAR.copy())
+    trace = Trace.from_arrays(table, UNITS)
     for values in table.values():
         values[:] = 0.0
-    np.testing.assert_array_equal(trace.time, REGULAR)
-    np.testing.assert_array_equal(trace["velocity"], velocity(REGULAR))
+    assert_same(trace, Trace.from_arrays(columns(), UNITS))
 
 
 @pytest.mark.parametrize(
     ("changed", "units", "arguments", "words"),
     [
         ({}, {"time": "s", "current": "mA"}, {}, ["velocity", "no unit", 'units={"velocity": "rad/s"}']),
-        ({}, {**UNITS, "velocity": "mA"}, {}, ["velocity", "mA", "rad/s"]),
-        ({}, {**UNITS, "velocity": "bananas"}, {}, ["velocity", "bananas"]),
         ({}, {**UNITS, "velocty": "deg/s"}, {}, ["velocty", "did you mean 'velocity'"]),
         ({"current": current(REGULAR)[:-1]}, UNITS, {}, ["current", "1999", "2000"]),
         ({"velocity": np.zeros((2000, 2))}, UNITS, {}, ["velocity", "(2000, 2)"]),
@@ -113,7 +108,7 @@ def test_the_trace_has_samples_of_its_own():
         ({"velocity": [[1.0], [1.0, 2.0]]}, UNITS, {}, ["velocity", "number"]),
         ({"velocity": [*velocity(REGULAR[1:]), np.inf]}, UNITS, {}, ["velocity", "sample 1999", "inf"]),
         ({"velocity": [None] * 2000}, UNITS, {}, ["velocity", "null"]),
-        ({"time": REGULAR[::-1]}, UNITS, {}, ["time", "backwards"]),
+        ({"time": np.where(REGULAR == 0.8, 3e-4, REGULAR)}, UNITS, {}, ["time", "backwards"]),
         ({}, UNITS, {"sample_period": 1e-3}, ["time", "sample_period"]),
         ({}, UNITS, {"columns": {"torque": "Axis1.Torque [N*m]"}, "origin": "run 7"}, ["run 7", "Axis1.Torque"]),
     ],
@@ -122,8 +117,7 @@ def test_a_fault_is_one_line_that_names_the_signal(changed, units, arguments, wo
     with pytest.raises(InputError) as refused:
         Trace.from_arrays({**columns(), **changed}, units, **arguments)
     assert "\n" not in str(refused.value)
-    for word in words:
-        assert word in str(refused.value)
+    assert [word for word in words if word not in str(refused.value)] == []
 
 
 @pytest.mark.parametrize("period", [0.0, -1e-3, np.nan, np.inf, "1 m", "fast"])
@@ -132,9 +126,11 @@ def test_a_sample_period_is_a_positive_time(period):
         Trace.from_arrays({"velocity [rad/s]": REGULAR}, sample_period=period)
 
 
-def test_neither_time_nor_sample_period_is_asked_for():
+def test_what_has_no_time_or_no_columns_is_refused():
     with pytest.raises(InputError, match="arrays: time: found no column of it and no sample_period"):
         Trace.from_arrays({"velocity [rad/s]": REGULAR})
+    with pytest.raises(InputError, match="arrays: found ndarray; allowed: arrays by their names, or a data frame"):
+        Trace.from_arrays(REGULAR, sample_period=1e-3)
 
 
 @pytest.mark.parametrize("nothing", [None, np.nan])
@@ -144,8 +140,3 @@ def test_a_few_values_that_are_none_are_holes(nothing):
     trace = Trace.from_arrays({**columns(), "velocity": speed}, UNITS)
     assert len(trace) == 1999 and len(trace.segments) == 2
     assert any("1 cell is empty or no number, the first at arrays: sample 700" in note for note in trace.notes)
-
-
-def test_what_has_no_columns_is_refused():
-    with pytest.raises(InputError, match="arrays: found ndarray; allowed: arrays by their names, or a data frame"):
-        Trace.from_arrays(REGULAR, sample_period=1e-3)

@@ -9,7 +9,7 @@ from bench.errors import InputError
 from bench.fit.hypothesis import Hypothesis, lay_out
 from bench.fit.rows import Rows
 from bench.trace.trace import Trace, join
-from tests.fit.motions import RIG, UNITS, recording
+from tests.fit.motions import RIG, recording
 
 
 def run_of(seed, **more):
@@ -64,18 +64,16 @@ def test_a_signal_that_one_recording_lacks_is_left_out_and_reported():
     assert any("position: omitted" in note for note in joined.notes)
 
 
+def linear(samples=50):
+    return Trace(np.arange(samples) * 1e-3, {"velocity": np.arange(float(samples))}, {"velocity": "m/s"}, "linear")
+
+
 @pytest.mark.parametrize(
     ("traces", "words"),
     [
         ([], "found none"),
         ([run_of(1), run_of(1)], "the same recording as run1"),
-        (
-            [
-                run_of(1),
-                Trace(np.arange(50) * 1e-3, {"velocity": np.arange(50.0)}, {**UNITS, "velocity": "m/s"}, "linear"),
-            ],
-            "linear: velocity",
-        ),
+        ([run_of(1), linear()], "linear: velocity"),
     ],
     ids=["none", "twice", "units"],
 )
