@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 import scipy.signal
@@ -53,32 +55,22 @@ def test_the_source_is_the_one_whose_noise_makes_less_of_the_acceleration(positi
     assert found.effort_noise == pytest.approx(5e-3, rel=0.03)
 
 
-def test_thresholds_of_a_velocity_are_its_noise():
-    found = condition(*recorded(velocity=0.05), 30.0)
-    assert found.order == 0
-    assert found.speed_noise == found.source_noise == pytest.approx(0.05, rel=0.03)
+@pytest.mark.parametrize(("signal", "noise", "order"), [("velocity", 0.05, 0), ("position", 1e-4, 1)])
+def test_thresholds_are_those_of_the_noise_of_the_speed(signal, noise, order):
+    """(x[k + 1] - x[k - 1])/(2*T) has sqrt(2)/(2*T) times the noise of x.
+
+    Parseval: (j*omega)**k*G leaves a variance of T*Gamma(k + 1/2)/(2*pi*width**(2*k + 1)).
+    """
+    found = condition(*recorded(**{signal: noise}), 30.0)
+    assert found.order == order
+    assert found.source_noise == pytest.approx(noise, rel=0.03)
+    assert found.speed_noise == pytest.approx(found.source_noise / (np.sqrt(2.0) * PERIOD) ** order)
     assert found.sign_threshold == 4.0 * found.speed_noise
-    width = np.sqrt(np.log(2.0)) / (2.0 * np.pi * 30.0)
-    assert found.filter.width == pytest.approx(width)
-    # Parseval: (j*omega)**k*G leaves a variance of T*Gamma(k + 1/2)/(2*pi*width**(2*k + 1)); Gamma(1/2) = sqrt(pi)
-    power = PERIOD * np.sqrt(np.pi) / (2.0 * np.pi * width)
-    assert found.source_noise * found.filter.noise_gain(found.order) == pytest.approx(
-        found.source_noise * np.sqrt(power)
-    )
-    assert found.source_noise * found.filter.noise_gain(found.order + 1) == pytest.approx(
-        found.source_noise * np.sqrt(0.5 * power) / width
-    )
-
-
-def test_thresholds_of_a_position_are_those_of_its_central_difference():
-    """(x[k + 1] - x[k - 1])/(2*T) has sqrt(2)/(2*T) times the noise of x."""
-    found = condition(*recorded(position=1e-4), 30.0)
-    assert found.order == 1
-    assert found.speed_noise == pytest.approx(found.source_noise / (np.sqrt(2.0) * PERIOD))
-    power = PERIOD * 0.5 * np.sqrt(np.pi) / (2.0 * np.pi * found.filter.width**3)
-    assert found.source_noise * found.filter.noise_gain(found.order) == pytest.approx(
-        found.source_noise * np.sqrt(power)
-    )
+    width = found.filter.width
+    assert width == pytest.approx(np.sqrt(np.log(2.0)) / (2.0 * np.pi * 30.0))
+    for k in (0, 1, 2):
+        power = PERIOD * math.gamma(k + 0.5) / (2.0 * np.pi * width ** (2 * k + 1))
+        assert found.filter.noise_gain(k) == pytest.approx(np.sqrt(power))
 
 
 def test_the_cutoff_is_where_effort_and_acceleration_share_half_of_their_power():

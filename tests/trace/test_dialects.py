@@ -241,13 +241,6 @@ def test_a_few_cells_without_a_number_are_a_hole_each(table, nothing):
     assert any("line 52, column 'velocity [rpm]': a hole each" in note for note in trace.notes)
 
 
-def test_a_column_of_which_most_cells_are_empty_was_sampled_more_slowly(table):
-    rows = (f"{row},{k / 10 if k % 10 == 0 else ''}" for k, row in enumerate(ROWS))
-    trace = read(table(rows, f"{HEAD},position [rad]"))
-    np.testing.assert_allclose(trace["position"], np.arange(trace.time.size) / 10, atol=1e-9)
-    assert any("position is given in 60 of 600 rows" in note for note in trace.notes)
-
-
 def test_what_is_not_needed_stops_nothing_and_is_reported(table):
     head = f"{HEAD},position,voltage [bananas],state,acceleration,spare [V]"
     trace = read(table((f"{row},{k % 7},1,RUN,nan,1" for k, row in enumerate(ROWS)), head))

@@ -9,21 +9,9 @@ import pytest
 
 from bench.errors import InputError
 from bench.trace.read import read, read_recording
-from tests.trace.recordings import csv_text, current, shared, velocity
+from tests.trace.recordings import csv_text, shared, velocity
 
 TIME = np.arange(500) * 1e-3
-
-
-def test_canonical_csv_is_read_in_si_and_its_values_are_untouched(tmp_path):
-    path = tmp_path / "run.csv"
-    path.write_text(csv_text(TIME, velocity__deg_s=velocity(TIME), current__mA=current(TIME)))
-    trace = read(path)
-    assert dict(trace.units) == {"velocity": "rad/s", "current": "A"}
-    assert np.array_equal(trace.time, TIME)
-    np.testing.assert_allclose(trace["velocity"], np.deg2rad(velocity(TIME)), rtol=1e-15)
-    np.testing.assert_allclose(trace["current"], current(TIME) / 1e3, rtol=1e-15)
-    assert trace.time_base is not None and not trace.time_base.resampled
-    assert trace.notes == ()
 
 
 def test_content_decides_before_the_ending(tmp_path):
@@ -98,15 +86,6 @@ def test_columns_become_signals(tmp_path, case):
     for name, values in expected.items():
         np.testing.assert_allclose(trace[name], np.broadcast_to(values, 3))
     assert any(note in one for one in trace.notes)
-
-
-@pytest.mark.parametrize("unit", ["counts/s", "%", "Nm", "V"])
-def test_what_is_no_angle_does_not_pass_for_one(tmp_path, unit):
-    path = tmp_path / "run.csv"
-    path.write_text(f"time [ms],velocity [{unit}]\n0,1\n1,2\n2,3\n")
-    allowed = r"column 'velocity \[.*\]': found unit .*allowed: a unit of the dimension of rad/s"
-    with pytest.raises(InputError, match=allowed):
-        read(path)
 
 
 def test_laas_recording_reports_its_gaps():
