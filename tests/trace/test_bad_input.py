@@ -14,7 +14,8 @@ from bench.trace.choose import GivenOptions
 from bench.trace.inspect import inspect_recording
 from bench.trace.read import read, read_recording
 from bench.trace.write import write
-from tests.trace.formats import COLUMNS, WRITERS, content
+from tests.trace import formats
+from tests.trace.formats import COLUMNS, WRITERS
 from tests.trace.recordings import csv_text, current, velocity
 
 TIME = np.arange(60) * 1e-3
@@ -28,39 +29,30 @@ def _rows(**changed):
     return "".join([HEAD, *(changed.get(f"l{line}", row) for line, row in enumerate(ROWS, 2))])
 
 
-TEXT = {
+NO_TRACE = r"not a trace in any format the bench reads; allowed: LeRobot dataset, Parquet"
+NO_UNIT = r"column 'velocity': has no unit, where other columns have theirs; allowed: .*\[tr"
+BACKWARDS = r"line 30, column 'time \[ms\]': time runs backwards \(0.027 s, then 0.003 s\)"
+REPEATED = r"line 3, column 'time \[ms\]': 30 of 60 samples repeat the time of another one"
+TWO_ROWS = "\n0,1,1\n1,2,2\n"
+#: Content of a file, and words of its refusal.
+FILES = {
     "missing time": ("velocity [deg/s],current [mA]\n1,2\n2,3\n", r"column 'time': not in the file; found: velocity"),
-    "no known signal": ("time [ms],a [V],b [V]\n0,1,1\n1,2,2\n", r"position or velocity: not in the file; found: time"),
-    "unit missing": (
-        "time [ms],velocity,current [mA]\n0,1,1\n1,2,2\n",
-        r"column 'velocity': has no unit, where other columns have theirs; allowed: .*\[tr",
-    ),
+    "no known signal": (f"time [ms],a [V],b [V]{TWO_ROWS}", r"position or velocity: not in the file; found: time"),
+    "unit missing": (f"time [ms],velocity,current [mA]{TWO_ROWS}", NO_UNIT),
     "time without unit": ("time,velocity [deg/s]\n0,1\n1,2\n", r"column 'time': has no unit"),
-    "empty unit": ("time [ms],velocity [],current [A]\n0,1,1\n1,2,2\n", r"column 'velocity': has no unit"),
-    "wrong dimension": (
-        "time [ms],velocity [V]\n0,1\n1,2\n",
-        r"'velocity \[V\]': found unit 'V'; allowed: .* rad/s or m/s",
-    ),
+    "empty unit": (f"time [ms],velocity [],current [A]{TWO_ROWS}", r"column 'velocity': has no unit"),
+    "wrong dimension": ("time [ms],velocity [V]\n0,1\n1,2\n", r"\[V\]': found unit 'V'; allowed: .* rad/s or m/s"),
     "time in metres": ("time [m],velocity [deg/s]\n0,1\n1,2\n", r"column 'time \[m\]': found unit 'm'; allowed: .* s"),
     "no unit at all": ("time [ms],velocity [furlong/x]\n0,1\n1,2\n", r"found 'furlong/x', which is not a unit"),
-    "two kinds of axis": (
-        "time [ms],position [m],velocity [deg/s]\n0,1,1\n1,2,2\n",
-        r"position in m, velocity in rad/s",
-    ),
-    "twice the same column": ("time [ms],velocity [V],velocity [V]\n0,1,1\n1,2,2\n", r"several columns"),
+    "two kinds of axis": (f"time [ms],position [m],velocity [deg/s]{TWO_ROWS}", r"position in m, velocity in rad/s"),
+    "twice the same column": (f"time [ms],velocity [V],velocity [V]{TWO_ROWS}", r"several columns"),
     "header only": (HEAD, r"found a header and no samples; allowed: at least two samples"),
     "header without newline": (HEAD.strip(), r"found a header and no samples"),
     "no header": ("0,1,2\n1,2,3\n", r"position or velocity: not in the file; found: column 1, column 2, column 3"),
     "one column": ("velocity [deg/s]\n1\n2\n", r"line 1: found one column"),
     "one sample": (HEAD + ROWS[0], r"found 1 sample; allowed: at least two"),
-    "text in a number": (
-        _rows(l8="6,6O,6\n"),
-        r"run.csv: line 8, column 'velocity \[deg/s\]': found '6O'; allowed: a number",
-    ),
-    "infinite above rows that a spreadsheet left empty": (
-        _rows(l8="6,6,-inf\n") + ",,\n,,\n",
-        r"line 8, column 'current \[mA\]': found -inf",
-    ),
+    "text in a number": (_rows(l8="6,6O,6\n"), r"run.csv: line 8, .*deg/s\]': found '6O'; allowed: a number"),
+    "infinite, and empty rows": (_rows(l8="6,6,-inf\n") + ",,\n,,\n", r"line 8, column 'current \[mA\]': found -inf"),
     "a number of Python's alone": (_rows(l8="6,6,1_0\n"), r"line 8, column 'current \[mA\]': found '1_0'"),
     "infinite": (_rows(l8="6,6,-inf\n"), r"line 8, column 'current \[mA\]': found -inf"),
     "hardly a number": (HEAD + "".join(f"{k},nan,{k}\n" for k in range(60)), r"'velocity \[deg/s\]': found 0 numbers"),
@@ -70,44 +62,32 @@ TEXT = {
     ),
     "short line": (_rows(l8="6,6\n"), r"line 8: found 2 cells; allowed: 3, as the header has"),
     "long line": (_rows(l8="6,6,6,6\n"), r"line 8: found 4 cells"),
-    "time backwards": (
-        _rows(l30="3,6,6\n"),
-        r"line 30, column 'time \[ms\]': time runs backwards \(0.027 s, then 0.003 s\)",
-    ),
-    "duplicate times": (
-        HEAD + "".join(f"{k // 2},{10 * k},{k}\n" for k in range(60)),
-        r"line 3, column 'time \[ms\]': 30 of 60 samples repeat the time of another one",
-    ),
+    "time backwards": (_rows(l30="3,6,6\n"), BACKWARDS),
+    "duplicate times": (HEAD + "".join(f"{k // 2},{10 * k},{k}\n" for k in range(60)), REPEATED),
     "all at one time": (HEAD + "5,1,1\n" * 50, r"found 1 different times"),
     "cut in the last line": (_rows().rstrip().rpartition(",")[0], r"line 61: found 2 cells"),
-}
-BYTES = {
     "empty": (b"", r"the file is empty"),
     "blank": (b"\n  \n", r"the file is empty"),
-    "latin-1 in the data": (
-        _rows(l8="6,6µ,6\n").encode("latin-1"),
-        r"run.csv: line 8, .*found '6µ'; allowed: a number",
-    ),
-    "utf-16 without mark": (GOOD.encode("utf-16-le"), r"not a trace in any format"),
+    "latin-1 in the data": (_rows(l8="6,6µ,6\n").encode("latin-1"), r"line 8, .*found '6µ'; allowed: a number"),
+    "utf-16 without mark": (GOOD.encode("utf-16-le"), NO_TRACE),
     "half a utf-16 character": (GOOD.encode("utf-16")[:-1], r"UTF-16-LE text is truncated"),
     "truncated gz": (gzip.compress(GOOD.encode())[:-40], r"gzip is truncated or damaged"),
     "damaged gz": (gzip.compress(GOOD.encode())[:30] + b"spam" * 30, r"gzip is truncated or damaged"),
     "empty gz": (gzip.compress(b""), r"the file is empty"),
-    "picture in gz": (gzip.compress(b"\x89PNG" + bytes(2000)), r"not a trace in any format"),
-    "binary": (bytes(range(256)) * 30, r"not a trace in any format the bench reads; allowed: LeRobot dataset, Parquet"),
-    "jpeg-like": (b"\xff\xd8\xff\xe0" + bytes(1000), r"not a trace in any format"),
+    "picture in gz": (gzip.compress(b"\x89PNG" + bytes(2000)), NO_TRACE),
+    "binary": (bytes(range(256)) * 30, NO_TRACE),
+    "jpeg-like": (b"\xff\xd8\xff\xe0" + bytes(1000), NO_TRACE),
     "parquet magic alone": (b"PAR1", r"Parquet file is truncated or damaged"),
-    "html": (b"<!DOCTYPE html><html><body>time,velocity</body></html>", r"not a trace in any format"),
-    "json": (b'{"entries": 3}', r"not a trace in any format"),
+    "html": (b"<!DOCTYPE html><html><body>time,velocity</body></html>", NO_TRACE),
+    "json": (b'{"entries": 3}', NO_TRACE),
 }
-FILES = {**{name: (text.encode(), message) for name, (text, message) in TEXT.items()}, **BYTES}
 
 
 @pytest.mark.parametrize("case", FILES)
 def test_bad_files(tmp_path, case):
     content, message = FILES[case]
     path = tmp_path / "run.csv"
-    path.write_bytes(content)
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
     with pytest.raises(InputError, match=message) as error:
         read(path)
     assert "\n" not in str(error.value) and str(error.value).startswith(str(path))
@@ -135,29 +115,25 @@ def test_blank_lines_do_not_shift_the_lines_of_messages(tmp_path):
         read(path)
 
 
-def test_two_samples_are_read_and_reported(tmp_path):
+@pytest.mark.parametrize(
+    ("rows", "segments", "note"),
+    [
+        (ROWS[:2], 1, "only 2 samples"),
+        (ROWS[:20] + ROWS[30:], 2, "1 hole, the longest 0.011 s; nothing is placed inside"),
+    ],
+)
+def test_few_samples_and_a_hole_are_read_and_reported(tmp_path, rows, segments, note):
     path = tmp_path / "run.csv"
-    path.write_text(HEAD + ROWS[0] + ROWS[1])
+    path.write_text(HEAD + "".join(rows))
     trace = read(path)
-    assert len(trace) == 2 and trace.notes == ("only 2 samples",)
+    assert (len(trace), len(trace.segments), trace.notes) == (len(rows), segments, (note,))
     assert inspect_recording(read_recording(path), GivenOptions()).notes == trace.notes
-
-
-def test_a_hole_is_reported(tmp_path):
-    path = tmp_path / "run.csv"
-    path.write_text(HEAD + "".join(ROWS[:20] + ROWS[30:]))
-    trace = read(path)
-    assert trace.notes == ("1 hole, the longest 0.011 s; nothing is placed inside",)
-    assert len(trace.segments) == 2 and len(trace) == 50
 
 
 @pytest.mark.parametrize(
     ("columns", "message"),
     [
-        (
-            {"velocity": "Axis9.Speed [deg/s]", "torque": "T [N*m]"},
-            r"column 'T \[N\*m\]': not in the file; found: time",
-        ),
+        ({"velocity": "Axis9.Speed [deg/s]", "torque": "T [N*m]"}, r"'T \[N\*m\]': not in the file; found: time"),
         ({"speed": "velocity [deg/s]"}, r"columns: speed: not a signal.*; allowed: time, position"),
         ({"velocity": "velocity [N]"}, r"found unit 'N'"),
         ({"time": "time [kg]"}, r"found unit 'kg'"),
@@ -171,19 +147,22 @@ def test_bad_columns(tmp_path, columns, message):
         read(path, columns)
 
 
-def test_parquet_without_rows_and_with_gaps(tmp_path):
-    path = tmp_path / "run.parquet"
-    pq.write_table(
-        pa.table({"time [s]": pa.array([], pa.float64()), "velocity [rad/s]": pa.array([], pa.float64())}), path
-    )
-    with pytest.raises(InputError, match="found columns and no rows"):
-        read(path)
-    pq.write_table(pa.table({"time [s]": [0.0, 1.0, 2.0, 3.0], "velocity [rad/s]": [1.0, None, None, None]}), path)
-    with pytest.raises(InputError, match=r"column 'velocity \[rad/s\]': found 1 numbers; allowed: at least two"):
-        read(path)
-    pq.write_table(pa.table({"time [s]": [0.0, 1.0, 2.0], "velocity [rad/s]": ["a", "b", "c"]}), path)
-    with pytest.raises(InputError, match=r"column 'velocity \[rad/s\]': found string; allowed: numbers"):
-        read(path)
+@pytest.mark.parametrize(
+    ("time", "speed", "message"),
+    [
+        (pa.array([], pa.float64()), pa.array([], pa.float64()), "found columns and no rows"),
+        (
+            [0.0, 1.0, 2.0, 3.0],
+            [1.0, None, None, None],
+            r"'velocity \[rad/s\]': found 1 numbers; allowed: at least two",
+        ),
+        ([0.0, 1.0, 2.0], ["a", "b", "c"], r"'velocity \[rad/s\]': found string; allowed: numbers"),
+    ],
+)
+def test_parquet_without_rows_or_numbers(tmp_path, time, speed, message):
+    pq.write_table(pa.table({"time [s]": time, "velocity [rad/s]": speed}), tmp_path / "run.parquet")
+    with pytest.raises(InputError, match=message):
+        read(tmp_path / "run.parquet")
 
 
 def test_damaged_mat_of_version_7_3_is_reported(tmp_path):
@@ -204,7 +183,7 @@ class Files(dict):
 def files():
     """A good one of each format."""
     numbers = np.arange(60), np.arange(60.0) ** 2, np.arange(60.0)
-    return Files({name: content(name, *numbers) for name in WRITERS})
+    return Files({name: formats.content(name, *numbers) for name in WRITERS})
 
 
 @pytest.mark.parametrize("name", WRITERS)
