@@ -57,26 +57,27 @@ def test_an_effective_unit_in_a_rig_is_asked_about(tmp_path):
         load_rig(path)
 
 
+def drafted(folder, head, **more):
+    cells = ",".join(["{}"] * (head.count(",") + 1))
+    rows = (cells.format(k, k % 50, k % 7) for k in range(300))
+    (folder / "run.csv").write_text("\n".join([head, *rows]))
+    return draft(inspect_recording(read_recording(folder / "run.csv"), GivenOptions()), **more)
+
+
 @pytest.mark.parametrize(
     ("head", "mapped"),
     [("t [ms],n_ist [1/min],Strom Achse [A]", {"velocity", "current"}), ("Zeit [s],Winkel [°],M [Nm]", {"position"})],
 )
 def test_a_draft_is_a_rig_that_works_as_far_as_the_file_tells(tmp_path, head, mapped):
-    path = tmp_path / "run.csv"
-    path.write_text("\n".join([head, *(f"{k},{k % 50},{k % 7}" for k in range(300))]))
-    text = draft(inspect_recording(read_recording(path), GivenOptions()), motor="SH30701P")
+    text = drafted(tmp_path, head, motor="SH30701P")
     (tmp_path / "rig.toml").write_text(text)
-    rig = load_rig(tmp_path / "rig.toml")
-    assert mapped - {"time"} <= set(rig.trace.columns)
+    assert mapped <= set(load_rig(tmp_path / "rig.toml").trace.columns)
     assert tomllib.loads(text)["motor"] == {"model": "SH30701P"}
 
 
 @pytest.mark.parametrize(("head", "asked"), [("Zeit [s],Winkel [°],M [Nm]", False), ("Winkel [°],M [Nm]", True)])
 def test_a_draft_asks_for_the_sample_period_of_what_holds_no_time_alone(tmp_path, head, asked):
-    path = tmp_path / "run.csv"
-    cells = head.count(",") + 1
-    path.write_text("\n".join([head, *(",".join([f"{k}"] * cells) for k in range(300))]))
-    assert ("sample_period" in draft(inspect_recording(read_recording(path), GivenOptions()))) == asked
+    assert ("sample_period" in drafted(tmp_path, head)) == asked
 
 
 def test_a_folder_of_a_shipped_rigs_name_hides_no_rig(tmp_path, monkeypatch):

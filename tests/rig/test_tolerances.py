@@ -57,24 +57,31 @@ def test_a_tolerance_travels_to_another_process():
         assert tolerance_of(other.torque_constant) == pytest.approx(0.04)
 
 
-def test_intervals_count_the_torque_constant_s_tolerance():
-    """M = kT*I: every coefficient is proportional to kT, so 5 % of one is 5 % of the other."""
+@pytest.mark.parametrize(
+    ("motor", "share"),
+    [
+        ({"torque_constant": "0.8 +/- 0.04 N*m/A"}, 0.05),
+        ({"torque_constant": "0.8 N*m/A", "back_emf_constant": "0.64 V*s/rad"}, 0.2),
+    ],
+    ids=["a tolerance", "constants that disagree"],
+)
+def test_intervals_count_what_is_not_known_of_the_torque_constant(motor, share):
+    """M = kT*I: every coefficient is proportional to kT, so 5 % of one is 5 % of the other; by Ke a fifth."""
     trace = recording(np.random.default_rng(0))
-    sharp, wide = (identify(trace, rig(torque_constant=text)) for text in ("0.8 N*m/A", "0.8 +/- 0.04 N*m/A"))
+    sharp, wide = (identify(trace, rig(**values)) for values in ({"torque_constant": "0.8 N*m/A"}, motor))
     for name in ("moment_of_inertia", *FRICTION):
         own, found = sharp[name], wide[name]
         assert found.value == own.value
         half, before = found.ci95[1] - found.value, own.ci95[1] - own.value
-        assert half == pytest.approx(np.hypot(before, 0.05 * found.value), rel=1e-3)
-        assert found.std_error == pytest.approx(np.hypot(own.std_error, 0.05 / NORMAL95 * found.value), rel=1e-3)
+        assert half == pytest.approx(np.hypot(before, share * found.value), rel=1e-3)
+        assert found.std_error == pytest.approx(np.hypot(own.std_error, share / NORMAL95 * found.value), rel=1e-3)
 
 
 def test_datasheet_values_and_the_rotor_s_inertia_count_too():
     trace = recording(np.random.default_rng(1))
     plain = {"continuous_stall_current": "2 A", "peak_torque": "6 N*m", "peak_current": "8 A"}
-    found = identify(
-        trace, rig(continuous_stall_torque="1.6 +/- 0.08 N*m", rotor_inertia="2 +/- 0.5 kg*cm**2", **plain)
-    )
+    toleranced = {"continuous_stall_torque": "1.6 +/- 0.08 N*m", "rotor_inertia": "2 +/- 0.5 kg*cm**2"}
+    found = identify(trace, rig(**toleranced, **plain))
     inertia, load = found["moment_of_inertia"], found["load_moment_of_inertia"]
     assert inertia.std_error > 0.02 * inertia.value
     assert load.value == pytest.approx(inertia.value - 2e-4)
@@ -99,13 +106,3 @@ def test_constants_of_two_motors_are_reported(constant, back_emf, reported):
     check = next(check for check in found.checks if check.name == "motor_constants_agree")
     assert check.status == ("warn" if reported else "pass")
     assert any("back-EMF constant" in warning for warning in warnings_of(found.checks)) == reported
-
-
-def test_intervals_reach_as_far_as_constants_disagree():
-    """By Ke the torque constant would be 0.64 instead of 0.8: every coefficient a fifth less."""
-    trace = recording(np.random.default_rng(3))
-    found = identify(trace, rig(torque_constant="0.8 N*m/A", back_emf_constant="0.64 V*s/rad"))
-    sure = identify(trace, rig(torque_constant="0.8 N*m/A"))
-    for name in ("moment_of_inertia", *FRICTION):
-        half, own = (each[name].ci95[1] - each[name].value for each in (found, sure))
-        assert half == pytest.approx(np.hypot(own, 0.2 * found[name].value), rel=1e-3)
