@@ -8,13 +8,10 @@ import scipy.special
 from bench.arrays import NORMAL95, column_rms, recurrence, recursive_filter, rms, symmetric_inverse
 
 
-def test_rms_of_whole_periods_of_a_sine_is_its_amplitude_over_root_two():
+def test_rms_of_whole_periods_of_a_sine_is_its_amplitude_over_root_two_and_of_columns_that_of_each():
     phase = 2.0 * np.pi * np.arange(1000) / 1000
     assert rms(3.0 * np.sin(5.0 * phase)) == pytest.approx(3.0 / math.sqrt(2.0), rel=1e-12)
     assert isinstance(rms(phase), float)
-
-
-def test_rms_of_columns_is_that_of_each_alone():
     table = np.random.default_rng(1).normal(size=(50, 3)) * [1.0, 10.0, 0.1]
     np.testing.assert_allclose(column_rms(table), [rms(column) for column in table.T], rtol=1e-14)
     assert rms(table) == pytest.approx(math.sqrt(float(np.mean(column_rms(table) ** 2))), rel=1e-14)
@@ -32,9 +29,6 @@ def test_inverse_of_symmetric_matrices_is_that_of_numpy(rank):
     expected = np.linalg.pinv(matrices, rcond=1e-10, hermitian=True)
     np.testing.assert_allclose(symmetric_inverse(matrices, 1e-10), expected, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(symmetric_inverse(matrices[0], 1e-10), expected[0], rtol=1e-9, atol=1e-12)
-
-
-def test_inverse_of_nothing_is_nothing():
     assert symmetric_inverse(np.empty((2, 0, 0)), 1e-8).shape == (2, 0, 0)
 
 

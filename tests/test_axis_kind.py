@@ -9,9 +9,11 @@ from bench.trace.signals import unit_on
 from bench.units import Quantity, dimensionality, same_dimension
 
 
-def test_an_axis_kind_is_found_by_its_name():
-    assert axis_kind("rotary", "rig.toml") is ROTARY
-    assert axis_kind("linear", "rig.toml") is LINEAR
+def test_an_axis_kind_is_found_by_its_name_and_stays_itself_between_processes():
+    assert [axis_kind(kind.name, "rig.toml") for kind in (ROTARY, LINEAR)] == [ROTARY, LINEAR]
+    for kind in KINDS:
+        again = pickle.loads(pickle.dumps(kind))
+        assert (again, hash(again)) == (kind, hash(kind))
 
 
 @pytest.mark.parametrize("name", ["Rotary", "", None, 1, ["linear"], {}])
@@ -96,9 +98,3 @@ def test_harmonics_times_position_and_phases_are_angles_on_every_axis():
             product = f"({kind.unit(harmonic)})*({kind.length_unit})"
             assert dimensionality(product) == dimensionality("rad")
         assert {kind.unit(phase) for phase in phases} == {"rad"}
-
-
-def test_kinds_stay_themselves_between_processes():
-    for kind in KINDS:
-        assert pickle.loads(pickle.dumps(kind)) == kind
-        assert hash(kind) == hash(pickle.loads(pickle.dumps(kind)))

@@ -16,38 +16,26 @@ ENTRY = re.compile(r"^ {4}((?:\*{0,2}\w+)(?:, \*{0,2}\w+)*)(?: \([^)]*\))?:(?: |
 
 def section(docstring: str, head: str) -> list[str]:
     """Names that a section of a docstring lists."""
-    lines = docstring.splitlines()
-    if f"{head}:" not in lines:
-        return []
-    names = []
-    for line in lines[lines.index(f"{head}:") + 1 :]:
-        if line and not line.startswith(" "):
-            break
-        if found := ENTRY.match(line):
-            names += [name.strip("* ") for name in found[1].split(",")]
-    return names
+    _, found, rest = docstring.partition(f"\n{head}:\n")
+    body = re.split(r"^(?=\S)", rest, maxsplit=1, flags=re.MULTILINE)[0] if found else ""
+    entries = filter(None, map(ENTRY.match, body.splitlines()))
+    return [name.strip("* ") for entry in entries for name in entry[1].split(",")]
 
 
 def taken(function: ast.FunctionDef) -> set[str]:
     """Names of a function's arguments."""
-    given = function.args
-    every = [*given.posonlyargs, *given.args, *given.kwonlyargs, given.vararg, given.kwarg]
-    return {one.arg for one in every if one is not None}
+    return {node.arg for node in ast.walk(function.args) if isinstance(node, ast.arg)}
 
 
 def had(kind: ast.ClassDef) -> set[str]:
-    """Names of a class' attributes, as its own body has them."""
-    fields = {
-        node.target.id for node in kind.body if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
-    }
-    fields |= {
-        one.id
-        for node in kind.body
-        if isinstance(node, ast.Assign)
-        for one in node.targets
-        if isinstance(one, ast.Name)
-    }
-    fields |= {node.name for node in kind.body if isinstance(node, ast.FunctionDef)}
+    """Names of a class' attributes, as its own body and its methods set them, and of what makes it."""
+    fields = {node.name for node in kind.body if isinstance(node, ast.FunctionDef)}
+    for node in kind.body:
+        if isinstance(node, ast.AnnAssign | ast.Assign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            fields |= {one.id for one in targets if isinstance(one, ast.Name)}
+        elif isinstance(node, ast.FunctionDef) and node.name == "__init__":
+            fields |= taken(node)
     for node in ast.walk(kind):
         if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and ast.unparse(node.value) == "self":
             fields.add(node.attr)
@@ -59,14 +47,10 @@ def wrong(every: Iterable[ast.AST]) -> list[str]:
     found = []
     for node in every:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            text = ast.get_docstring(node) or ""
-            if isinstance(node, ast.FunctionDef):
-                there = taken(node)
-            else:
-                made = [one for one in node.body if isinstance(one, ast.FunctionDef) and one.name == "__init__"]
-                there = had(node) | {name for one in made for name in taken(one)}
-            inherits = isinstance(node, ast.ClassDef) and bool(node.bases)
+            text, is_class = ast.get_docstring(node) or "", isinstance(node, ast.ClassDef)
+            inherits = is_class and bool(node.bases)
             listed = section(text, "Args") + ([] if inherits else section(text, "Attributes"))
+            there = had(node) if is_class else taken(node)
             found += [f"{node.lineno}: {node.name} has no {name}" for name in listed if name not in there]
     return found
 
@@ -105,11 +89,8 @@ class Declared:
 
 
 class Overriding(Declared):
-    def hook(self):
-        pass
-
-    def more(self):
-        pass
+    def hook(self): ...
+    def more(self): ...
 
 
 def test_a_hook_without_a_docstring_is_found():

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.hostile import DEADLINE, RIG, ROOT, assert_one_line, columns, csv_of
+from tests.hostile import bound_by_permissions as bound
 
 #: Of the environment, what belongs to somebody.
 PERSONAL = ("DISPLAY", "WAYLAND_DISPLAY", "XAUTHORITY", "HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR")
@@ -35,15 +36,13 @@ def bench(*arguments, cwd, before=(), install=ROOT, **environment):
     )  # fmt: skip
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture
 def bound_by_permissions():
     """Command that starts another without root's right to read and write whatever permissions say."""
-    if os.geteuid() != 0:
-        return ()
-    drop = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")
-    if shutil.which("setpriv") is None or subprocess.run([*drop, "true"], capture_output=True, check=False).returncode:
+    found = bound()
+    if found is None:
         pytest.skip("root is stopped by no permission, and setpriv cannot drop that right here")
-    return drop
+    return found
 
 
 @pytest.fixture

@@ -54,17 +54,11 @@ def names(tmp_path_factory):
     df.to_csv(folder / "bare.csv", index=False)
     df.add_suffix("_of_axis").to_csv(folder / "named.csv", index=False)
     cogged = pd.DataFrame({"time": bumpy.time, **{name: np.array(bumpy[name]) for name in bumpy.units}})
-    cogged.rename(columns=lambda name: f"{name} [{ {**bumpy.units, 'time': 's'}[name] }]").to_csv(
-        folder / "cogged.csv", index=False
-    )
+    write(bumpy, folder / "cogged.csv")
     rpm = df.assign(velocity=df.velocity * 30 / np.pi, current=1e3 * df.current).drop(columns="position")
     si_units = {"time": "s", "velocity": "rad/s", "current": "A", "position": "rad"}
-    mm = {
-        "time": plain.time,
-        "position": 0.1 * si["position"],
-        "velocity": 0.1 * si["velocity"],
-        "force": 8 * si["current"],
-    }
+    mm = {name: 0.1 * si[name] for name in ("position", "velocity")}
+    mm |= {"time": plain.time, "force": 8 * si["current"]}
     write(of_axis(3, AMPLITUDE), folder / "cogged2.csv")
     write_baseline(folder / "axis.toml", observe(plain, bench.load_rig(folder / "rig.toml"), names=False).state)
     known = {
@@ -242,18 +236,8 @@ bench.diagnose(cogged, numbers, holdout="cogged2.csv").torque.holdout[1] < 0.5 *
 def test_results_behave_as_numbers_tables_and_pictures(names, monkeypatch, line):
     folder, known = names
     monkeypatch.chdir(folder)
-    assert eval(
-        line,
-        {
-            **known,
-            "INERTIA": INERTIA,
-            "AMPLITUDE": AMPLITUDE,
-            "json": json,
-            "pytest": pytest,
-            "re": re,
-            "help_of": lambda of: str(inspect.signature(of)),
-        },
-    )
+    more = {"INERTIA": INERTIA, "AMPLITUDE": AMPLITUDE, "json": json, "pytest": pytest, "re": re}
+    assert eval(line, {**known, **more, "help_of": lambda of: str(inspect.signature(of))})
     pyplot.close("all")
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.docs.pages import PAGES, bench_commands, run_commands
-from tests.fit.motions import Truth, recording
+from tests.fit.motions import NAMES, Truth, recording
 from tests.trace.test_containers import JOINT_STATE
 
 SECTIONS = dict(re.findall(r"^## (.*?)\n(.*?)(?=^## |\Z)", PAGES["docs/recordings.md"], re.MULTILINE | re.DOTALL))
@@ -75,19 +75,11 @@ def test_at_most_three_commands_lead_to_the_truth(section, axis, tmp_path, monke
     monkeypatch.chdir(tmp_path)
     write, factor = RECORDERS[section]
     write(axis)
-    done = run_commands(
-        SECTIONS[section], lambda line: f"{line} --json found.json" if line.startswith("bench identify") else line
-    )
+    add = {True: " --json found.json", False: ""}
+    done = run_commands(SECTIONS[section], lambda line: line + add[line.startswith("bench identify")])
     assert len(done) <= 3
     found = json.loads(Path("found.json").read_text())["parameters"]
-    truth = dict(
-        zip(
-            ("moment_of_inertia", "viscous_friction_coefficient", "coulomb_friction_torque"),
-            Truth().values,
-            strict=True,
-        )
-    )
-    for name, value in truth.items():
+    for name, value in zip(NAMES, Truth().values, strict=True):
         assert found[name]["value"] == pytest.approx(factor * value, rel=0.03), name
     if section == "A ROS 2 bag":
         assert any("wrist, elbow" in one.out for one in done)
