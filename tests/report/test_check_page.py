@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from matplotlib import pyplot
@@ -11,13 +10,10 @@ from bench.errors import InputError
 from bench.report.check import check_document
 from bench.report.document import Chart, Intervals, Paragraph, Points, Table
 from bench.report.html import html
-from bench.trace.write import write
 from tests.baseline.states import named, state
-from tests.baseline.test_command import again
 from tests.baseline.test_compare import checked
 from tests.report.test_page import HOSTILE
 
-BASE = ("--rig", "rig.toml", "--baseline", "base.toml")
 COGGING = named("cogging_torque", 0.03, amplitude=0.05, harmonic=6.0)
 
 
@@ -56,9 +52,8 @@ def test_comparisons_stand_worst_first_and_the_chart_counts_in_margins():
     assert first.low < first.value < first.high < -1.0
 
 
-def with_runs(of, name, values):
+def with_runs(of, name, each):
     """A state whose quantity is of several recordings."""
-    each = tuple(values)
     known = replace(of.quantities[name], value=sum(each) / len(each), recordings=len(each), spread=1e-4, each=each)
     return replace(of, quantities={**of.quantities, name: known})
 
@@ -103,11 +98,8 @@ def test_what_lies_far_beyond_its_margin_does_not_hide_the_rest():
 
 
 def test_what_differs_beside_the_axis_is_reported():
-    same = check_document(checked(state(), state()), "x")
-    other = check_document(checked(state(), state(duration=3.0)), "x")
-    rig = check_document(
-        checked(state(), replace(state(), rig={"kind": "rotary", "motor.torque_constant": "0.9"})), "x"
-    )
+    other_rig = replace(state(), rig={"kind": "rotary", "motor.torque_constant": "0.9"})
+    same, other, rig = (check_document(checked(state(), now), "x") for now in (state(), state(duration=3.0), other_rig))
     assert any("are those of the baseline" in one.text for one in blocks(same, Paragraph))
     assert any("duration" in item for one in blocks(other, Points) for item in one.items)
     assert any("torque_constant" in item for one in blocks(rig, Points) for item in one.items)
@@ -119,20 +111,6 @@ def test_text_of_a_baseline_is_text():
     made = html(check_document(checked(before, state()), HOSTILE))
     assert "<script" not in made
     assert re.search("baseline: .*&lt;script&gt;", made)
-
-
-def test_the_command_writes_it(bench):
-    write(again(1), "before.csv")
-    assert bench("check", "before.csv", *BASE, "--update", "--without-names")[0] == 0
-    write(again(2), "now.csv")
-    status, out, _ = bench("check", "now.csv", *BASE, "--report", "check.html")
-    assert status == 0
-    assert "wrote check.html" in out
-    page = Path("check.html").read_text(encoding="utf-8")
-    assert "The same: " in page
-    assert "before.csv" in page
-    assert bench("check", "now.csv", *BASE, "--report", "check.txt")[0] == 2
-    assert bench("check", "now.csv", *BASE, "--update", "--report", "check.html")[0] == 2
 
 
 def test_models_are_reported_without_recordings():

@@ -12,37 +12,27 @@ def plain(text):
 
 
 @pytest.mark.parametrize(
-    ("value", "half", "unit", "text"),
+    ("shown", "value", "half", "unit", "text"),
     [
-        (0.0501, 0.00022, "N*m", "0.05010 ± 0.00022 N·m"),
-        (0.00131, 1.2e-6, "kg*m**2", "(1.3100 ± 0.0012)·10⁻³ kg·m²"),
-        (-3.1648, 0.05, "N", "−3.165 ± 0.050 N"),
-        (95.1089, 0.4, "kg", "95.11 ± 0.40 kg"),
-        (6.0, 0.0, "dimensionless", "6"),
-        (123456.0, 789.0, "N", "(123.46 ± 0.79)·10³ N"),
-        (2.0, 150.0, "rad/s**2", "2 ± 150 rad/s²"),
-        (0.0, 0.1, "N", "0.00 ± 0.10 N"),
-        (-0.000274, 0.00349, "kg*m**2", "−0.0003 ± 0.0035 kg·m²"),
+        (interval, 0.0501, 0.00022, "N*m", "0.05010 ± 0.00022 N·m"),
+        (interval, 0.00131, 1.2e-6, "kg*m**2", "(1.3100 ± 0.0012)·10⁻³ kg·m²"),
+        (interval, -3.1648, 0.05, "N", "−3.165 ± 0.050 N"),
+        (interval, 95.1089, 0.4, "kg", "95.11 ± 0.40 kg"),
+        (interval, 6.0, 0.0, "dimensionless", "6"),
+        (interval, 123456.0, 789.0, "N", "(123.46 ± 0.79)·10³ N"),
+        (interval, 2.0, 150.0, "rad/s**2", "2 ± 150 rad/s²"),
+        (interval, 0.0, 0.1, "N", "0.00 ± 0.10 N"),
+        (interval, -0.000274, 0.00349, "kg*m**2", "−0.0003 ± 0.0035 kg·m²"),
+        (brief, 0.04996, 0.00021, "N*m", "0.0500 N·m ± 0.42 %"),
+        (brief, 2.25003e-3, 1.3e-7, "kg*m**2", "0.00225 kg·m² ± 0.0058 %"),
+        (brief, 123456.0, 789.0, "N", "1.23·10⁵ N ± 0.64 %"),
+        (brief, 199.4, 2.0, "N", "199 N ± 1 %"),
+        (brief, -0.7, 1.8, "N", "−0.7 ± 1.8 N"),
+        (brief, 6.0, 0.0, "dimensionless", "6"),
     ],
 )
-def test_a_value_has_as_many_digits_as_its_interval(value, half, unit, text):
-    parameter = Parameter(value, unit, half / 1.96, (value - half, value + half))
-    assert plain(interval(parameter)) == text
-
-
-@pytest.mark.parametrize(
-    ("value", "half", "unit", "text"),
-    [
-        (0.04996, 0.00021, "N*m", "0.0500 N·m ± 0.42 %"),
-        (2.25003e-3, 1.3e-7, "kg*m**2", "0.00225 kg·m² ± 0.0058 %"),
-        (123456.0, 789.0, "N", "1.23·10⁵ N ± 0.64 %"),
-        (199.4, 2.0, "N", "199 N ± 1 %"),
-        (-0.7, 1.8, "N", "−0.7 ± 1.8 N"),
-        (6.0, 0.0, "dimensionless", "6"),
-    ],
-)
-def test_a_value_in_brief_has_three_digits(value, half, unit, text):
-    assert plain(brief(Parameter(value, unit, half / 1.96, (value - half, value + half)))) == text
+def test_a_value_has_as_many_digits_as_its_interval_and_in_brief_three(shown, value, half, unit, text):
+    assert plain(shown(Parameter(value, unit, half / 1.96, (value - half, value + half)))) == text
 
 
 @pytest.mark.parametrize("shown", [interval, brief])
@@ -56,31 +46,23 @@ def test_of_what_is_known_up_to_a_factor_both_ends_are_given(shown):
     assert "±" in shown(little) and "±" in str(little)
 
 
-def test_names_in_a_row():
-    assert [listed("abc"[:n]) for n in range(4)] == ["", "a", "a and b", "a, b and c"]
-
-
 @pytest.mark.parametrize(
-    ("value", "text"),
-    [(0.0278, "0.0278 rad/s"), (-1.5, "−1.5 rad/s"), (1.9e-33, "1.9·10⁻³³ rad/s"), (float("nan"), "not known")],
+    ("found", "text"),
+    [
+        (number(0.0278, "rad/s", 3), "0.0278 rad/s"),
+        (number(-1.5, "rad/s", 3), "−1.5 rad/s"),
+        (number(1.9e-33, "rad/s", 3), "1.9·10⁻³³ rad/s"),
+        (number(float("nan"), "rad/s", 3), "not known"),
+        *((share(value), text) for value, text in ((0.87, "87 %"), (0.0123, "1.2 %"), (0.0, "0 %"), (-0.2, "−20 %"))),
+        (share(1e-6), "< 0.1 %"),
+        *((unit_text(unit), text) for unit, text in (("kg*m**2", "kg·m²"), ("N*m*s/rad", "N·m·s/rad"), ("1/s", "1/s"))),
+        (unit_text("dimensionless"), ""),
+        (unit_text("V*s**-1"), "V·s⁻¹"),
+        *((listed("abc"[:n]), text) for n, text in enumerate(("", "a", "a and b", "a, b and c"))),
+    ],
 )
-def test_a_number_and_its_unit(value, text):
-    assert plain(number(value, "rad/s", 3)) == text
-
-
-@pytest.mark.parametrize(
-    ("value", "text"), [(0.87, "87 %"), (0.0123, "1.2 %"), (1e-6, "< 0.1 %"), (0.0, "0 %"), (-0.2, "−20 %")]
-)
-def test_a_share(value, text):
-    assert plain(share(value)) == text
-
-
-@pytest.mark.parametrize(
-    ("unit", "text"),
-    [("kg*m**2", "kg·m²"), ("N*m*s/rad", "N·m·s/rad"), ("1/s", "1/s"), ("dimensionless", ""), ("V*s**-1", "V·s⁻¹")],
-)
-def test_a_unit(unit, text):
-    assert unit_text(unit) == text
+def test_a_number_a_share_a_unit_and_names_in_a_row(found, text):
+    assert plain(found) == text
 
 
 def test_labels_of_an_axis_say_their_value():
