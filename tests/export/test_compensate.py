@@ -28,41 +28,36 @@ STEADY = {
     "cogging_torque": lambda v: v["amplitude"] * np.sin(v["harmonic"] * Q + v["phase"]),
     "unbalance": lambda v: v["amplitude"] * np.sin(Q + v["phase"]),
     "torsion_spring": lambda v: v["stiffness"] * (Q - v["reference"]),
-    "torque_offset": lambda v: v["torque"] + 0.0 * Q,
+    "torque_offset": lambda v: v["torque"],
     "quadratic_drag": lambda v: v["quadratic_drag"] * W * np.abs(W),
     "stribeck_friction": lambda v: (
         (v["static_friction"] - K0) * np.exp(-((W / v["stribeck_velocity"]) ** 2)) * np.sign(W)
     ),
     "direction_dependent_friction": lambda v: 0.5 * (v["coulomb_difference"] + v["viscous_difference"] * np.abs(W)),
-    "presliding_friction": lambda v: 0.0 * Q,
-    "friction_warmup": lambda v: 0.0 * Q,
-    "load_torque_event": lambda v: 0.0 * Q,
-    "torque_ripple": lambda v: 0.0 * Q,
-    "elastic_coupling": lambda v: 0.0 * Q,
-    "position_dependent_inertia": None,
+    **dict.fromkeys(
+        ("presliding_friction", "friction_warmup", "load_torque_event", "torque_ripple", "elastic_coupling"),
+        lambda v: 0.0,
+    ),
 }
 
 
-@pytest.mark.parametrize("name", [name for name, torque in STEADY.items() if torque is not None])
+@pytest.mark.parametrize("name", STEADY)
 def test_what_resists_is_what_the_equations_say(name):
     expected = KW * W + K0 * np.sign(W) + STEADY[name](VALUES[name])
     np.testing.assert_allclose(resisting_torque(model(name), Q, W), expected, atol=1e-9)
 
 
-def perturbed(values, share):
-    return {key: value if key in ("harmonic", "phase") else value * share for key, value in values.items()}
-
-
 def test_tracking_errors_are_at_least_halved_with_a_model_that_is_off():
     """The axis is the truth; the tables are of a model whose every value is 3 % too large or too small."""
-    effects = [Present.of(name, values) for name, values in HIDDEN.items()]
-    plant = Plant.from_rig(RIG, effects)
-    known = replace(
-        plant.axis.parameters,
-        inertia=0.97 * plant.axis.parameters.inertia,
-        coulomb_friction=1.03 * plant.axis.parameters.coulomb_friction,
-    )
-    off = [Present.of(name, perturbed(values, 0.97)) for name, values in HIDDEN.items()]
+    plant = Plant.from_rig(RIG, [Present.of(name, values) for name, values in HIDDEN.items()])
+    true = plant.axis.parameters
+    known = replace(true, inertia=0.97 * true.inertia, coulomb_friction=1.03 * true.coulomb_friction)
+    off = [
+        Present.of(
+            name, {key: value * (1.0 if key in ("harmonic", "phase") else 0.97) for key, value in values.items()}
+        )
+        for name, values in HIDDEN.items()
+    ]
     guess = replace(plant.model, parameters=known, effects=tuple(off))
     motion = plan("slow_reversals", MotionLimits.from_rig(RIG, known, plant.cascade.control_period))
     tables = feedforward(guess, float(np.abs(motion.velocity).max()), (-10.0, 10.0))
@@ -97,25 +92,32 @@ def test_a_constant_torque_stands_once_over_speed_and_none_over_position():
 
 def test_references_get_the_torque_of_both_tables():
     tables = feedforward(model("cogging_torque"), 20.0, (-1.0, 1.0))
-    speed, place = np.array([5.0, -5.0]), np.array([0.3, 0.9])
-    values = VALUES["cogging_torque"]
+    speed, place, values = np.array([5.0, -5.0]), np.array([0.3, 0.9]), VALUES["cogging_torque"]
     cogging = values["amplitude"] * np.sin(values["harmonic"] * place + values["phase"])
-    still = np.zeros(2)
-    along = tables.along(References(np.array([0.0, 1e-3]), place, speed, still))
+    along = tables.along(References(np.array([0.0, 1e-3]), place, speed, np.zeros(2)))
     np.testing.assert_allclose(along.torque, KW * speed + K0 * np.sign(speed) + cogging, atol=1e-4)
     assert along.feedforward(tables.inertia) == pytest.approx(along.torque)
 
 
+COLUMNS = {"velocity": "Axis.Vel [rpm]", "position": "-Axis.Pos [deg]", "current": "Axis.Iq [mA]"}
+UNITS = DriveUnits.of(
+    Rig.of({"name": "a", "kind": "rotary", "motor": {"torque_constant": "0.5 N*m/A"}, "trace": {"columns": COLUMNS}})
+)
+
+
 def test_the_inertias_feedforward_is_in_the_units_of_the_drive():
     """1e-3 kg*m**2 at 0.5 N*m/A are 2 mA per rad/s**2, of which a rpm/s is 2*pi/60."""
-    columns = {"velocity": "Axis.Vel [rpm]", "current": "Axis.Iq [mA]"}
-    rig = Rig.of(
-        {"name": "axis", "kind": "rotary", "motor": {"torque_constant": "0.5 N*m/A"}, "trace": {"columns": columns}}
-    )
     nothing = TorqueTable(np.zeros(1), np.zeros(1))
-    (_, inertia, unit), (_, current, per) = DriveUnits.of(rig).inertia(Feedforward(1e-3, nothing, nothing, ()))
+    (_, inertia, unit), (_, current, per) = UNITS.inertia(Feedforward(1e-3, nothing, nothing, ()))
     assert (inertia, unit) == (1e-3, "kg*m**2")
     assert (current, per) == (pytest.approx(2.0 * 2.0 * np.pi / 60.0), "mA/(rpm/s)")
+
+
+def test_a_table_is_in_the_units_of_the_drive():
+    table = TorqueTable(np.array([0.0, np.pi]), np.array([0.0, 0.25]))
+    speed, place = UNITS.table("velocity", UNITS.velocity, table), UNITS.table("position", UNITS.position, table)
+    assert speed == "velocity [rpm],torque [N*m],current [mA]\n0,0,0\n30,0.25,500\n"
+    assert place == "position [deg],torque [N*m],current [mA]\n-180,0.25,500\n-0,0,0\n"
 
 
 def test_a_torque_that_does_not_repeat_itself_spans_the_travel():
@@ -124,14 +126,3 @@ def test_a_torque_that_does_not_repeat_itself_spans_the_travel():
     assert tables.cogging.coordinate[0] == -3.0
     slope = np.polyfit(tables.cogging.coordinate, tables.cogging.torque, 1)[0]
     assert slope == pytest.approx(VALUES["torsion_spring"]["stiffness"], rel=1e-6)
-
-
-def test_a_table_is_in_the_units_of_the_drive():
-    columns = {"velocity": "Axis.Vel [rpm]", "position": "-Axis.Pos [deg]", "current": "Axis.Iq [mA]"}
-    motor = {"torque_constant": "0.5 N*m/A"}
-    rig = Rig.of({"name": "axis", "kind": "rotary", "motor": motor, "trace": {"columns": columns}})
-    units = DriveUnits.of(rig)
-    speed = units.table("velocity", units.velocity, TorqueTable(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
-    assert speed == "velocity [rpm],torque [N*m],current [mA]\n0,0,0\n30,0.25,500\n"
-    place = units.table("position", units.position, TorqueTable(np.array([0.0, np.pi]), np.array([0.0, 0.25])))
-    assert place == "position [deg],torque [N*m],current [mA]\n-180,0.25,500\n-0,0,0\n"

@@ -20,7 +20,7 @@ from bench.plant.run import run
 from tests.effects.axes import CASCADE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant
 from tests.export.arms import ARM, stored
 
-MOTION = Reversals(0.4, 40.0)
+MOTION = Reversals(0.25, 40.0)
 TIME = PERIOD * np.arange(round(MOTION.duration / PERIOD) + 1)
 REFERENCES = References(TIME, *MOTION.at(TIME))
 #: What the drive sees is the drive's own matter, which here is written by hand.
@@ -118,17 +118,15 @@ RIPPLED = (("torque_ripple", {"relative_amplitude": 0.05, "harmonic": 4.0}),)
 
 
 def test_as_mujocos_callback_it_does_the_same():
-    model_ = stored(("stribeck_friction", VALUES["stribeck_friction"]), *RIPPLED)
-    ends = []
+    model_, ends = stored(("stribeck_friction", VALUES["stribeck_friction"]), *RIPPLED), []
     for installed in (False, True):
         simulation = model_.model.spec(PERIOD).compile()
         data, effects = mujoco.MjData(simulation), bench.Effects(model_)
-        step = lambda: effects.step(simulation, data)  # noqa: B023, E731
-        if installed:
-            effects.install()
-            step = lambda: mujoco.mj_step(simulation, data)  # noqa: B023, E731
+        step = mujoco.mj_step if installed else effects.step
         try:
-            pushed(step, data.ctrl, TIME[:800])
+            if installed:
+                effects.install()
+            pushed(lambda step=step, simulation=simulation, data=data: step(simulation, data), data.ctrl, TIME[:800])
         finally:
             mujoco.set_mjcb_control(None)
         ends.append(data.qvel[0])
@@ -151,8 +149,9 @@ def test_torque_of_others_stays_and_a_reset_begins_anew():
         assert seen[-1] == pytest.approx(0.5)
 
 
-def test_a_second_run_of_a_model_begins_with_its_own_inertia():
-    model_ = stored(("position_dependent_inertia", VALUES["position_dependent_inertia"]))
+@pytest.mark.parametrize("names", [("position_dependent_inertia",), ()])
+def test_a_second_run_of_a_model_begins_with_its_own_inertia(names):
+    model_ = stored(*((name, VALUES[name]) for name in names))
     simulation, effects = model_.model.spec(PERIOD).compile(), bench.Effects(model_)
     ends = []
     for _ in range(2):
@@ -160,25 +159,21 @@ def test_a_second_run_of_a_model_begins_with_its_own_inertia():
         pushed(lambda data=data: effects.step(simulation, data), data.ctrl, TIME[:200])
         ends.append(data.qvel[0])
     assert ends[0] == ends[1] != 0.0
+    assert data.time == pytest.approx(200 * PERIOD)
 
 
-def test_a_model_without_effects_steps_a_second_run():
-    model_ = stored()
-    simulation, effects = model_.model.spec(PERIOD).compile(), bench.Effects(model_)
-    for _ in range(2):
-        data = mujoco.MjData(simulation)
-        effects.step(simulation, data)
-        assert data.time == pytest.approx(PERIOD)
+def rippling(actuator):
+    """The arm with an actuator of its elbow whose torque ripples by half; its model, data and effects."""
+    spec = mujoco.MjSpec.from_string(ARM.replace("</actuator>", f"{actuator}</actuator>"))
+    model_ = stored(("torque_ripple", {"relative_amplitude": 0.5, "harmonic": 1.0, "phase": np.pi / 2.0}))
+    onto(spec, "elbow", model_)
+    simulation = spec.compile()
+    return simulation, mujoco.MjData(simulation), bench.Effects(model_, "elbow")
 
 
 def test_a_servo_of_ones_own_is_asked_for_its_torque():
     """A position servo's torque is not its input."""
-    xml = ARM.replace("</actuator>", '<position name="servo" joint="elbow" kp="30" kv="2"/></actuator>')
-    spec = mujoco.MjSpec.from_string(xml)
-    model_ = stored(("torque_ripple", {"relative_amplitude": 0.5, "harmonic": 1.0, "phase": np.pi / 2.0}))
-    onto(spec, "elbow", model_)
-    simulation = spec.compile()
-    data, effects = mujoco.MjData(simulation), bench.Effects(model_, "elbow")
+    simulation, data, effects = rippling('<position name="servo" joint="elbow" kp="30" kv="2"/>')
     data.ctrl[simulation.actuator("servo").id] = 0.05
     for _ in range(20):
         angle = data.qpos[1]
@@ -192,12 +187,7 @@ def test_a_servo_of_ones_own_is_asked_for_its_torque():
 def test_a_motors_torque_is_its_input_within_its_limits(control, torque):
     """Gain 4 and gear 3 make 12 N*m per input; inputs up to 0.1, or forces up to 0.5, behind a ratio of 1."""
     limit = 'ctrlrange="-.1 .1"' if control != 0.25 else 'forcerange="-.5 .5"'
-    xml = ARM.replace("</actuator>", f'<general name="m" joint="elbow" gear="3" gainprm="4" {limit}/></actuator>')
-    spec = mujoco.MjSpec.from_string(xml)
-    model_ = stored(("torque_ripple", {"relative_amplitude": 0.5, "harmonic": 1.0, "phase": np.pi / 2.0}))
-    onto(spec, "elbow", model_)
-    simulation = spec.compile()
-    data, effects = mujoco.MjData(simulation), bench.Effects(model_, "elbow")
+    simulation, data, effects = rippling(f'<general name="m" joint="elbow" gear="3" gainprm="4" {limit}/>')
     data.ctrl[simulation.actuator("m").id] = control
     effects.step(simulation, data)
     assert data.qfrc_applied[1] == pytest.approx(0.5 * torque)

@@ -69,66 +69,47 @@ def pushed(model, data, step, sizes=(0.6, 8.0), count=STEPS):
 MODELS = {"first": FIRST, "second": replace(SECOND, model=replace(SECOND.model, winding=WINDING))}
 
 
-def test_each_of_several_joints_moves_as_it_does_alone(tmp_path):
+def swung(effects=None):
+    """Velocities of the two joints that stand apart, with effects stepped or without."""
     simulation = robot(APART, MODELS)
+    return pushed(simulation, mujoco.MjData(simulation), mujoco.mj_step if effects is None else effects.step)
+
+
+def test_each_of_several_joints_moves_as_it_does_alone(tmp_path):
     write_text(tmp_path / "effects.toml", joints_toml(MODELS))
-    together = pushed(simulation, mujoco.MjData(simulation), bench.Effects(tmp_path / "effects.toml").step)
+    together, without = swung(bench.Effects(tmp_path / "effects.toml")), swung()
     for k, (name, model) in enumerate(MODELS.items()):
-        simulation = robot(APART, MODELS)
-        alone = pushed(simulation, mujoco.MjData(simulation), bench.Effects(model, name).step)
-        simulation = robot(APART, MODELS)
-        without = pushed(simulation, mujoco.MjData(simulation), mujoco.mj_step)
+        alone = swung(bench.Effects(model, name))
         np.testing.assert_allclose(together[:, k], alone[:, k], rtol=1e-12, atol=1e-12)
         assert np.abs(without[:, k] - alone[:, k]).max() > 0.01 * np.abs(alone[:, k]).max()
 
 
 def test_as_a_callback_all_joints_act_and_a_second_callback_is_refused():
-    ends = []
-    for installed in (False, True):
-        simulation = robot(APART, MODELS)
-        effects = bench.Effects(MODELS)
-        try:
-            if installed:
-                effects.install()
-                with pytest.raises(InputError, match=r"one bench\.Effects with the models of all joints"):
-                    bench.Effects(FIRST, "first").install()
-            ends.append(pushed(simulation, mujoco.MjData(simulation), mujoco.mj_step if installed else effects.step))
-        finally:
-            mujoco.set_mjcb_control(None)
+    stepped, effects, simulation = swung(bench.Effects(MODELS)), bench.Effects(MODELS), robot(APART, MODELS)
+    try:
+        effects.install()
+        with pytest.raises(InputError, match=r"one bench\.Effects with the models of all joints"):
+            bench.Effects(FIRST, "first").install()
+        called = pushed(simulation, mujoco.MjData(simulation), mujoco.mj_step)
+    finally:
+        mujoco.set_mjcb_control(None)
     # inertia that varies acts a step later in a callback
-    assert np.abs(ends[1] - ends[0]).max(axis=0) == pytest.approx(0.0, abs=2e-3 * np.abs(ends[0]).max())
+    assert np.abs(called - stepped).max(axis=0) == pytest.approx(0.0, abs=2e-3 * np.abs(stepped).max())
 
 
-def test_copies_with_joints_of_their_own_move_as_each_alone():
+def test_copies_with_joints_of_their_own_move_as_each_alone_and_one_that_is_reset_begins_anew():
     """Not all copies have the same effects."""
-    own = [
-        MODELS,
-        {"first": of("torque_ripple"), "second": MODELS["second"]},
-        {"first": FIRST, "second": of(gear_ratio=12.0)},
-    ]
-    simulation = robot(APART, MODELS)
-    batch = Batch(simulation, len(own))
-    copies = bench.Effects(MODELS).on(batch, own)
-    for k in range(STEPS):
-        batch.ctrl[:] = [0.6 * np.sin(50.0 * k * 0.00025), 8.0 * np.sin(23.0 * k * 0.00025)]
-        copies.step()
-    for k, models in enumerate(own):
-        simulation = robot(APART, MODELS)
-        alone = pushed(simulation, mujoco.MjData(simulation), bench.Effects(models).step)
-        np.testing.assert_allclose(batch.qvel[k], alone[-1], rtol=1e-9)
-
-
-def test_a_copy_that_is_reset_begins_anew():
-    simulation = robot(APART, MODELS)
-    batch = Batch(simulation, 2)
-    copies = bench.Effects(MODELS).on(batch)
-    ends = []
+    own = [MODELS, {**MODELS, "first": of("torque_ripple")}, {"first": FIRST, "second": of(gear_ratio=12.0)}]
+    batch = Batch(robot(APART, MODELS), len(own))
+    copies, ends = bench.Effects(MODELS).on(batch, own), []
     for _ in range(2):
-        for k in range(100):
-            batch.ctrl[:] = 0.5 + 0.01 * k
+        for k in range(STEPS):
+            batch.ctrl[:] = [0.6 * np.sin(50.0 * k * 0.00025), 8.0 * np.sin(23.0 * k * 0.00025)]
             copies.step()
         ends.append(batch.qvel.copy())
         batch.reset([1])
+    for k, models in enumerate(own):
+        np.testing.assert_allclose(ends[0][k], swung(bench.Effects(models))[-1], rtol=1e-9)
     np.testing.assert_array_equal(ends[1][1], ends[0][1])
     assert ends[1][0, 0] != ends[0][0, 0]
 
@@ -310,7 +291,6 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "robot_id.xml").write_text(spec.to_xml())
     write_text(tmp_path / "effects.toml", joints_toml(models))
     monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def test_the_pages_commands_run(folder):

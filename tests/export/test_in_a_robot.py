@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from bench.arrays import rms
-from tests.diagnosis.command import started
+from tests.command import bench
 from tests.docs.pages import PAGES, run_examples
 from tests.export.held import followed
 from tests.export.two_links import HIDDEN, log, motion, ran, write_log
@@ -81,15 +81,15 @@ def test_the_pages_examples_run(folder, monkeypatch):
 def test_a_joint_is_checked_against_what_it_was(folder, monkeypatch):
     """Of one log the baseline, of another motion's and noise's the check; then of a joint with more friction."""
     monkeypatch.chdir(folder)
-    bench = started(folder)
-    beside = ("--mjcf", "robot.xml", "--joint", "elbow", "--baseline", "elbow.toml")
     plain = replace(HIDDEN, cogging=0.0)
-    write_log(Path("new.csv"), log(plain))
-    write_log(Path("again.csv"), log(plain, seed=5))
-    write_log(Path("worn.csv"), log(replace(plain, coulomb=1.3 * HIDDEN.coulomb), seed=6))
-    assert bench("check", "new.csv", *beside, "--update", "--without-names") == 0
-    assert bench("check", "again.csv", *beside) == 0
-    assert bench("check", "worn.csv", *beside) == 3
+    worn, asked = replace(plain, coulomb=1.3 * HIDDEN.coulomb), ("--baseline", "elbow.toml")
+    for hidden, seed, more, status in (
+        (plain, 0, ("--update", "--without-names"), 0),
+        (plain, 5, (), 0),
+        (worn, 6, (), 3),
+    ):
+        write_log(Path("new.csv"), log(hidden, seed=seed))
+        assert bench("check", "new.csv", "--mjcf", "robot.xml", "--joint", "elbow", *asked, *more).status == status
 
 
 #: How several joints are refused where one is meant.
@@ -117,10 +117,7 @@ SEVERAL = "--mjcf robot.xml --joint shoulder --joint elbow --out robot_id`"
         ("export robot.xml --snippet --out x.xml", "not TOML"),
     ],
 )
-def test_wrong_input_is_one_line(folder, monkeypatch, capsys, arguments, says):
+def test_wrong_input_is_one_line(folder, monkeypatch, arguments, says):
     monkeypatch.chdir(folder)
-    bench = started(folder)
-    assert bench(*shlex.split(arguments)) == 2
-    error = capsys.readouterr().err
-    assert says in error
-    assert error.count("\n") == 1
+    done = bench(*shlex.split(arguments))
+    assert (done.status, says in done.err, done.err.count("\n")) == (2, True, 1), done.err

@@ -27,27 +27,30 @@ FOUND = {
 }
 
 
-def written(tmp_path, content):
-    path = tmp_path / "diagnosis.json"
-    path.write_text(content if isinstance(content, str) else json.dumps(content))
-    return path
+@pytest.fixture
+def ranges(tmp_path):
+    """What `export --ranges` writes of a model behind a gear of 10 and a result's content."""
+
+    def read(content=FOUND, **model):
+        path = tmp_path / "diagnosis.json"
+        path.write_text(content if isinstance(content, str) else json.dumps(content))
+        return json.loads(ranges_json(stored(gear_ratio=10.0, **model), path))
+
+    return read
 
 
-def test_a_range_is_the_interval_or_what_the_next_recording_may_tell(tmp_path):
-    found = json.loads(ranges_json(stored(gear_ratio=10.0), written(tmp_path, FOUND)))
+def test_a_range_is_the_interval_or_what_the_next_recording_may_tell_and_a_joint_has_it_behind_its_gear(ranges):
+    """Never below zero where physics has none."""
+    found = ranges()
     inertia, coulomb = (found["parameters"][name] for name in ("moment_of_inertia", "coulomb_friction_torque"))
     assert (inertia["low"], inertia["high"], inertia["from"]) == (0.99e-3, 1.01e-3, "interval of 95 %")
     assert (coulomb["low"], coulomb["high"]) == (0.05, 0.09)
     assert "misalignment" not in found["parameters"]
     (cogging,) = found["effects"]
     assert cogging["parameters"]["amplitude"]["low"] == 0.0
-
-
-def test_a_joint_has_them_behind_its_gear_and_never_below_zero(tmp_path):
-    joint = json.loads(ranges_json(stored(gear_ratio=10.0), written(tmp_path, FOUND)))["joint"]
-    assert joint["frictionloss"] == pytest.approx({"value": 0.8, "low": 0.5, "high": 0.9})
-    assert joint["damping"] == pytest.approx({"value": 0.1, "low": 0.0, "high": 0.21})
-    assert joint["armature"] == pytest.approx({"value": 1e-2, "low": 1e-2, "high": 1e-2})
+    assert found["joint"]["frictionloss"] == pytest.approx({"value": 0.8, "low": 0.5, "high": 0.9})
+    assert found["joint"]["damping"] == pytest.approx({"value": 0.1, "low": 0.0, "high": 0.21})
+    assert found["joint"]["armature"] == pytest.approx({"value": 1e-2, "low": 1e-2, "high": 1e-2})
 
 
 @pytest.mark.parametrize(
@@ -58,11 +61,10 @@ def test_a_joint_has_them_behind_its_gear_and_never_below_zero(tmp_path):
         (0.0, 0.0, "other", (0.0, 0.0, 0.0)),
     ],
 )
-def test_a_joints_armature_is_the_range_of_what_it_is_made_of(tmp_path, motor, links, name, expected):
+def test_a_joints_armature_is_the_range_of_what_it_is_made_of(ranges, motor, links, name, expected):
     """All that moves, on the joint's side; an armature that was found beside the links stands there already."""
-    parameters = {name: FOUND["parameters"]["moment_of_inertia"]}
-    model = stored(parameters=replace(PARAMETERS, motor_inertia=motor), gear_ratio=10.0, link_inertia=links)
-    joint = json.loads(ranges_json(model, written(tmp_path, {**FOUND, "parameters": parameters})))["joint"]
+    content = {**FOUND, "parameters": {name: FOUND["parameters"]["moment_of_inertia"]}}
+    joint = ranges(content, parameters=replace(PARAMETERS, motor_inertia=motor), link_inertia=links)["joint"]
     assert joint["armature"] == pytest.approx(dict(zip(("value", "low", "high"), expected, strict=True)))
 
 
@@ -76,7 +78,7 @@ def test_a_joints_armature_is_the_range_of_what_it_is_made_of(tmp_path, motor, l
         ({**FOUND, "effects": [{"name": "coging_torque", "parameters": {}}]}, "did you mean 'cogging_torque'"),
     ],
 )
-def test_what_is_no_result_is_reported_in_one_line(tmp_path, content, says):
+def test_what_is_no_result_is_reported_in_one_line(ranges, content, says):
     with pytest.raises(InputError, match=says) as error:
-        ranges_json(stored(), written(tmp_path, content))
+        ranges(content)
     assert "\n" not in str(error.value)

@@ -22,7 +22,7 @@ from bench.files import write_text
 from bench.plant.model_file import Mounting, joints_toml, load_joints
 from bench.plant.robot import Robot, rig_within
 from bench.rig.rig import Rig
-from tests.diagnosis.command import started
+from tests.command import bench
 from tests.effects.axes import WINDING
 from tests.export.arms import PARAMETERS, stored
 from tests.export.two_links import MJCF
@@ -178,7 +178,7 @@ def test_isaac_lab_gets_static_and_dynamic_friction(monkeypatch):
     assert "elbow: not carried: load_dependent_friction (bench.Effects steps it)" in lines
 
 
-def test_newton_gets_a_spring(monkeypatch):
+def test_newton_gets_a_spring_unless_it_rests_elsewhere(monkeypatch):
     text, lines = simulator_file("newton", {"elbow": of(SPRING, COGGING)}, None)
     builder = Stub(joint_label=["world/arm/shoulder", "world/arm/elbow"], joint_qd_start=[0, 1])
     for name in ("armature", "friction", "damping", "stiffness"):
@@ -187,9 +187,6 @@ def test_newton_gets_a_spring(monkeypatch):
     assert builder.joint_stiffness == pytest.approx([7.0, 0.5 * RATIO**2])
     assert builder.joint_armature == pytest.approx([7.0, 1e-4 * RATIO**2])
     assert "elbow: not carried: cogging_torque (MuJoCo has it: --mjcf ROBOT)" in lines
-
-
-def test_newton_has_no_spring_that_rests_elsewhere():
     elsewhere = ("torsion_spring", {"stiffness": 0.5, "reference": 0.3})
     text, lines = simulator_file("newton", {"elbow": of(elsewhere)}, None)
     assert "'stiffness': 0" in text
@@ -215,41 +212,42 @@ def test_nothing_of_a_name_becomes_code(monkeypatch):
         ("--snippet", "effects.toml: found several joints; pick one: `--joint shoulder`; the file has shoulder, elbow"),
     ],
 )
-def test_what_no_simulator_takes_is_one_line(tmp_path, arguments, says, monkeypatch, capfd):
+def test_what_no_simulator_takes_is_one_line(tmp_path, arguments, says, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(STRIBECK)}))
-    run = started(tmp_path)
-    assert run("export", "effects.toml", *arguments.split(), "--out", "x.py") == 2
-    assert says in capfd.readouterr().err
-    assert not (tmp_path / "x.py").exists()
+    done = bench("export", "effects.toml", *arguments.split(), "--out", "x.py")
+    assert (done.status, says in done.err, (tmp_path / "x.py").exists()) == (2, True, False), done.err
 
 
-def test_joints_that_are_repeated_are_the_ones_that_are_written(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(STRIBECK), "wrist": of()}))
-    asked = ("--joint", "elbow", "--joint", "wrist", "--out", "x.py")
-    assert started(tmp_path)("export", "effects.toml", "--to", "newton", *asked) == 0
-    text = (tmp_path / "x.py").read_text()
-    assert ("shoulder" in text, "elbow" in text, "wrist" in text) == (False, True, True)
-
-
-def test_the_command_writes_the_file_of_all_joints(tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
-    write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(STRIBECK)}))
-    assert started(tmp_path)("export", "effects.toml", "--to", "newton", "--out", "joints.py") == 0
-    names = loaded((tmp_path / "joints.py").read_text(), monkeypatch)
-    assert set(names["JOINTS"]) == {"shoulder", "elbow"}
-    assert "elbow: not carried: stribeck_friction" in capfd.readouterr().out
-
-
-def test_an_mjcf_gets_all_joints(tmp_path, monkeypatch, capfd):
+@pytest.fixture
+def export(tmp_path, monkeypatch):
+    """Runs `bench export` on a file of three joints in a folder of its own; what it prints."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "robot.xml").write_text(MJCF)
-    write_text(tmp_path / "effects.toml", joints_toml({"shoulder": of(), "elbow": of(COGGING)}))
-    assert started(tmp_path)("export", "effects.toml", "--mjcf", "robot.xml", "--out", "robot_id.xml") == 0
+
+    def run(models, *arguments):
+        write_text(tmp_path / "effects.toml", joints_toml(models))
+        done = bench("export", "effects.toml", *arguments)
+        assert done.status == 0, done.err
+        return done.out
+
+    return run
+
+
+def test_the_command_writes_the_file_of_all_joints_or_of_those_that_are_repeated(export, monkeypatch):
+    models = {"shoulder": of(), "elbow": of(STRIBECK), "wrist": of()}
+    said = export(models, "--to", "newton", "--out", "joints.py")
+    assert set(loaded(Path("joints.py").read_text(), monkeypatch)["JOINTS"]) == set(models)
+    assert "elbow: not carried: stribeck_friction" in said
+    export(models, "--to", "newton", "--joint", "elbow", "--joint", "wrist", "--out", "some.py")
+    assert set(loaded(Path("some.py").read_text(), monkeypatch)["JOINTS"]) == {"elbow", "wrist"}
+
+
+def test_an_mjcf_gets_all_joints(export):
+    said = export({"shoulder": of(), "elbow": of(COGGING)}, "--mjcf", "robot.xml", "--out", "robot_id.xml")
     simulation = mujoco.MjModel.from_xml_path("robot_id.xml")
     np.testing.assert_allclose(simulation.dof_frictionloss, 0.08 * RATIO)
-    assert "elbow: native: cogging_torque" in capfd.readouterr().out
+    assert "elbow: native: cogging_torque" in said
 
 
 MODELS = {"shoulder": of(), "elbow": of(COGGING)}
