@@ -1,9 +1,11 @@
 """The bench runs where the modules and calls of POSIX are missing, as on Windows."""
 
+import json
 import subprocess
 import sys
 
 import matplotlib as mpl
+import pytest
 
 from tests.hostile import ROOT
 
@@ -40,12 +42,23 @@ def without_posix(*arguments, cwd):
     return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=300, check=False)
 
 
-def test_the_demo(tmp_path):
-    done = without_posix("demo", "--out", "shown", cwd=tmp_path)
+def test_the_demo_hides_an_effect_finds_it_and_ends_with_what_is_next(tmp_path):
+    done = without_posix("demo", "--out", "here", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    made = {path.name for path in (tmp_path / "shown").iterdir()}
-    assert {"identify.json", "diagnosis.json", "model.toml", "trace.csv.gz"} <= made
-    assert not any(name.startswith(".bench") for name in made)
+    assert "truth" in done.stdout and "moment of inertia" in done.stdout
+    *lines, page, yours = done.stdout.splitlines()
+    named = [tmp_path / line.removeprefix("wrote ") for line in lines if line.startswith("wrote ")]
+    made = {"trace.csv.gz", "identification.png", "identify.json", "diagnosis.json", "model.toml", "model.xml"}
+    assert {path.name for path in named} >= made
+    assert all(path.stat().st_size > 500 for path in named)
+    assert not [path for path in (tmp_path / "here").iterdir() if path.name.startswith(".bench")]
+    (hidden,) = json.loads((tmp_path / "here" / "trace.csv.gz.truth.json").read_text())["effects"]
+    (found,) = json.loads((tmp_path / "here" / "diagnosis.json").read_text())["effects"]
+    assert found["name"] == hidden["name"]
+    for name, true in hidden["parameters"].items():
+        assert found["parameters"][name]["value"] == pytest.approx(true["value"], rel=0.02), name
+    assert page == "the page: here/report.html"
+    assert yours.startswith("your recording: bench diagnose ")
 
 
 def test_a_worker_process(tmp_path):

@@ -54,10 +54,11 @@ def test_a_name_it_does_not_have_is_an_error():
         bench.identfy  # noqa: B018
 
 
-@pytest.mark.parametrize("name", ["identify", "diagnose", "check", "simulate", "replay"])
-def test_a_function_is_no_package(name):
-    assert not (ROOT / "bench" / name).exists(), "a package of this name would hide the function after its import"
-    assert not (ROOT / "bench" / f"{name}.py").exists()
+def test_a_function_is_no_package_and_it_is_typed():
+    """A package of a function's name would hide the function after its import."""
+    for name in ("identify", "diagnose", "check", "simulate", "replay"):
+        assert not [*(ROOT / "bench").glob(name), *(ROOT / "bench").glob(f"{name}.py")]
+    assert (ROOT / "bench" / "py.typed").exists()
 
 
 LOADED = """
@@ -104,10 +105,6 @@ def test_a_command_on_a_table_loads_only_what_it_needs(tmp_path, command, needed
     heavy = {"mujoco", "glfw", "matplotlib", "jinja2", "pint", "scipy.stats", "scipy.signal", "pandas", "psutil"}
     assert modules & heavy <= needed
     assert not modules & {"pyarrow.parquet", "pyarrow.fs", "rich.progress"}
-
-
-def test_it_says_that_it_is_typed():
-    assert (ROOT / "bench" / "py.typed").exists()
 
 
 def with_cogging(seed):

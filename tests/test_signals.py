@@ -29,7 +29,7 @@ def flush(handle):
     print("writing", flush=True)
     time.sleep(60)
 os.fsync = flush
-sys.argv = ["bench", "demo", "--out", "out"]
+sys.argv = ["bench", "lab", "--notebooks", "out"]
 from bench.__main__ import main
 main()
 """
@@ -57,8 +57,9 @@ SWALLOWING = IMPORTING.replace("            os.kill", "            try: os.kill"
 )
 
 
-@pytest.mark.parametrize("code", [IMPORTING, SWALLOWING], ids=["as it is", "swallowed"])
-@pytest.mark.parametrize("number", STATUS, ids=lambda number: number.name)
+@pytest.mark.parametrize(
+    ("code", "number"), [*((IMPORTING, number) for number in STATUS), (SWALLOWING, signal.SIGINT)], ids=range(4)
+)
 def test_while_importing(tmp_path, number, code):
     process = start(code.format(number=int(number)), tmp_path)
     _, err = process.communicate(timeout=120)
