@@ -25,7 +25,6 @@ from bench.trace.choose import GivenOptions
 from bench.trace.inspect import inspect_recording
 from bench.trace.read import read_recording
 from tests.export.two_links import HIDDEN, MJCF, log, write_log
-from tests.shared import SHARED, needs_shared
 from tests.trace.formats import bag
 
 JOINTS = ("shoulder", "elbow")
@@ -310,14 +309,6 @@ def test_a_urdf_is_taken_without_the_meshes_that_are_not_there(tmp_path):
     assert "meshes that do not exist are omitted from arm.urdf: upper" in trace.notes
 
 
-def test_an_inertia_made_of_a_mesh_that_is_not_there_is_none(tmp_path):
-    path = tmp_path / "arm.xml"
-    body = '<body name="b"><joint name="j"/><geom type="mesh" mesh="m"/></body>'
-    path.write_text(f'<mujoco><asset><mesh name="m" file="m.stl"/></asset><worldbody>{body}</worldbody></mujoco>')
-    with pytest.raises(InputError, match="mesh 'm' does not exist, and the inertia of 'b' is computed from it"):
-        Robot.of(path, "j")
-
-
 def test_outputs_stay_out_of_a_dataset(tmp_path):
     root = lerobot(tmp_path / "log")
     before = sha256(root)
@@ -350,16 +341,6 @@ def test_a_broken_dataset_is_one_line(tmp_path, file, content, says):
     with pytest.raises(InputError, match=says) as error:
         read_recording(root)
     assert "\n" not in str(error.value)
-
-
-@needs_shared
-@pytest.mark.parametrize("name", ["velocity_ramp", "backlash_detection"])
-def test_lists_in_cells_as_sage_writes_them(name):
-    recording = read_recording(SHARED / "data" / "robots" / "so101" / f"{name}.state_motor.csv.gz")
-    joints = {channel.axis: channel for channel in recording.channels if channel.signal == "torque"}
-    assert list(joints) == ["0", "1", "2", "3", "4", "5"]
-    assert all(channel.values.size == 6000 for channel in joints.values())
-    assert joints["2"].values[0] == pytest.approx(0.57 if name == "velocity_ramp" else 0.5, abs=0.01)
 
 
 def test_inspect_says_which_column_is_what_and_begins_a_rig(tmp_path):
