@@ -7,15 +7,29 @@ import pytest
 
 from bench.errors import BenchError, InputError
 from bench.fit.identify import identify
-from bench.gate import effort, repairs, signals, throughout, timing, velocity
+from bench.gate import repairs
 from bench.gate.check import Seen
+from bench.gate.effort import follows_motion, has_sign
 from bench.gate.gate import UnanswerableError, gate, passed
+from bench.gate.signals import clips, moves, resolution
+from bench.gate.throughout import holds
+from bench.gate.timing import rate, regular
+from bench.gate.velocity import is_derivative
 from bench.trace.trace import Trace
 from tests.gate.damage import changed, keeping, losing, with_samples
 
 
 def rng():
     return np.random.default_rng(0)
+
+
+def current(values):
+    """The recording with a current made of it."""
+    return lambda trace: changed(trace, current=values(trace))
+
+
+def speed(change):
+    return lambda trace: changed(trace, velocity=change(trace["velocity"]))
 
 
 def foreign(trace):
@@ -26,7 +40,7 @@ def foreign(trace):
 def of_one_sign(trace, least):
     rectified = least + np.abs(foreign(trace))
     rectified[rectified < least + 0.2] = least
-    return changed(trace, current=rectified)
+    return rectified
 
 
 def standing(trace):
@@ -34,118 +48,98 @@ def standing(trace):
     return changed(trace, current=foreign(trace), **noise)
 
 
-def stuck(trace, name):
-    moving = int(np.argmax(np.convolve(np.abs(trace["velocity"]), np.ones(200), "valid")))
-    values = trace[name].copy()
-    values[moving : moving + 200] = values[moving]
-    return changed(trace, **{name: values})
+def stuck(name):
+    def damaged(trace):
+        moving = int(np.argmax(np.convolve(np.abs(trace["velocity"]), np.ones(200), "valid")))
+        values = trace[name].copy()
+        values[moving : moving + 200] = values[moving]
+        return changed(trace, **{name: values})
+
+    return damaged
 
 
-def coasting(trace):
-    current = trace["current"].copy()
-    current[2000:2300] = 0.0
-    return changed(trace, current=current)
+def stepped(steps):
+    def values(trace):
+        step = np.std(trace["current"]) / steps
+        return np.round(trace["current"] / step) * step
+
+    return current(values)
 
 
-def rounded(trace, steps):
-    step = np.std(trace["current"]) / steps
-    return changed(trace, current=np.round(trace["current"] / step) * step)
+def zero_where(chosen):
+    return current(lambda trace: np.where(chosen(trace), 0.0, trace["current"]))
 
 
-def dropped_out(trace):
-    """Zeros that the motion contradicts."""
-    gaps = np.isin(np.arange(len(trace)) // 60, np.arange(2, 80, 8))
-    return changed(trace, current=np.where(gaps, 0.0, trace["current"]))
+def switched_off(trace):
+    return np.isin(np.arange(len(trace)), np.arange(2000, 2300))
 
 
-def idle(trace):
-    current = trace["current"]
-    return changed(trace, current=np.where(abs(current) < 0.05 * abs(current).max(), 0.0, current))
+def in_gaps(trace):
+    return np.isin(np.arange(len(trace)) // 60, np.arange(2, 80, 8))
 
 
-def filtered(trace, lag):
-    alpha, late = np.exp(-trace.sample_period / lag), np.zeros(len(trace))
-    for k in range(1, len(trace)):
-        late[k] = alpha * late[k - 1] + (1.0 - alpha) * trace["velocity"][k]
-    return changed(trace, velocity=late)
+def where_it_coasts(trace):
+    return abs(trace["current"]) < 0.05 * abs(trace["current"]).max()
 
 
-def jittering(trace, resampled):
+def filtered(lag):
+    def damaged(trace):
+        alpha, late = np.exp(-trace.sample_period / lag), np.zeros(len(trace))
+        for k in range(1, len(trace)):
+            late[k] = alpha * late[k - 1] + (1.0 - alpha) * trace["velocity"][k]
+        return changed(trace, velocity=late)
+
+    return damaged
+
+
+def still(trace):
+    return changed(trace, velocity=0.02 * rng().normal(size=len(trace)), position=np.zeros(len(trace)))
+
+
+def jittering(trace):
     time = trace.time + rng().uniform(-2e-4, 2e-4, len(trace))
-    if resampled:
-        return Trace.from_arrays({"time": time, **trace.signals}, {"time": "s", **trace.units})
     return Trace(time, trace.signals, trace.units, trace.origin)
 
 
-def late(trace, samples):
-    return changed(trace, current=np.roll(trace["current"], samples))
+def resampled(trace):
+    return Trace.from_arrays({"time": jittering(trace).time, **trace.signals}, {"time": "s", **trace.units})
 
 
-def speed(change):
-    return lambda trace: changed(trace, velocity=change(trace["velocity"]))
+def heavy(trace):
+    return changed(keeping(trace, ["velocity", "current"]), velocity=1e-3 * trace["velocity"])
+
+
+def late(samples):
+    return current(lambda trace: np.roll(trace["current"], samples))
 
 
 #: A check, the damage, its status, and words of what it finds and advises.
 FOUND = {
-    "another axis' current": (effort.follows_motion, lambda s: changed(s, current=foreign(s)), "fail", "another axis"),
-    "noise as a current": (
-        effort.follows_motion,
-        lambda s: changed(s, current=rng().normal(size=len(s))),
-        "warn",
-        "no torque signal",
-    ),
-    "gravity": (
-        effort.follows_motion,
-        lambda s: changed(s, current=s["current"] + 8.0 * np.sin(s["position"])),
-        "pass",
-        "gravity",
-    ),
-    "an axis that stands": (effort.follows_motion, standing, "fail", "^the speed hardly changes.*move it$"),
-    "what presses on an axis": (effort.has_sign, lambda s: of_one_sign(s, 0.5), "pass", ""),
-    "a lost sign": (effort.has_sign, lambda s: of_one_sign(s, 0.0), "fail", ""),
-    **{
-        f"a stuck {name}": (signals.moves, lambda s, name=name: stuck(s, name), "fail", name)
-        for name in ("position", "velocity", "current")
-    },
-    "a drive switched off": (signals.moves, coasting, "pass", ""),
-    "half a step": (signals.resolution, lambda s: rounded(s, 0.5), "fail", ""),
-    "few steps": (signals.resolution, lambda s: rounded(s, 4.0), "warn", ""),
-    "many steps": (signals.resolution, lambda s: rounded(s, 50.0), "pass", ""),
-    "zeros in motion": (signals.clips, dropped_out, "fail", "exactly 0 A.*dropped out"),
-    "a motor that coasts": (signals.clips, idle, "pass", ""),
-    "1 % of scale": (velocity.is_derivative, speed(lambda w: 0.99 * w), "pass", ""),
-    "5 % of scale": (velocity.is_derivative, speed(lambda w: 1.05 * w), "warn", ""),
-    "-6 % of scale": (velocity.is_derivative, speed(lambda w: 0.94 * w), "warn", ""),
-    "an offset, no other scale": (velocity.is_derivative, speed(lambda w: w + 2.0), "pass", ""),
-    "another axis' speed": (velocity.is_derivative, speed(lambda w: w[::-1].copy()), "fail", ""),
-    **{
-        f"a filter of {lag} s, no other scale": (velocity.is_derivative, lambda s, t=lag: filtered(s, t), "pass", "")
-        for lag in (0.5e-3, 2e-3, 20e-3)
-    },
-    "a standstill": (
-        velocity.is_derivative,
-        lambda s: changed(s, velocity=0.02 * rng().normal(size=len(s)), position=np.zeros(len(s))),
-        "not_applicable",
-        "",
-    ),
-    "jitter, resampled": (timing.regular, lambda s: jittering(s, True), "warn", ""),
-    "jitter, as it came": (timing.regular, lambda s: jittering(s, False), "fail", ""),
-    "an axis thousands of times as heavy as its rotor": (
-        timing.rate,
-        lambda s: changed(keeping(s, ["velocity", "current"]), velocity=1e-3 * s["velocity"]),
-        "fail",
-        "times the motor's own",
-    ),
-    "noise, no undersampling": (
-        timing.rate,
-        lambda s: changed(s, velocity=s["velocity"] + rng().normal(scale=200.0, size=len(s))),
-        "pass",
-        "",
-    ),
-    **{
-        f"a delay of {k} ms, as drives have": (throughout.holds, lambda s, k=k: late(s, k), "pass", "")
-        for k in (1, 5, -5)
-    },
+    "another axis' current": (follows_motion, current(foreign), "fail", "another axis"),
+    "noise": (follows_motion, current(lambda s: rng().normal(size=len(s))), "warn", "no torque signal"),
+    "gravity": (follows_motion, current(lambda s: s["current"] + 8.0 * np.sin(s["position"])), "pass", "gravity"),
+    "an axis that stands": (follows_motion, standing, "fail", "^the speed hardly changes.*move it$"),
+    "what presses on an axis": (has_sign, current(lambda s: of_one_sign(s, 0.5)), "pass", ""),
+    "a lost sign": (has_sign, current(lambda s: of_one_sign(s, 0.0)), "fail", ""),
+    **{f"a stuck {name}": (moves, stuck(name), "fail", name) for name in ("position", "velocity", "current")},
+    "a drive switched off": (moves, zero_where(switched_off), "pass", ""),
+    "half a step": (resolution, stepped(0.5), "fail", ""),
+    "few steps": (resolution, stepped(4.0), "warn", ""),
+    "many steps": (resolution, stepped(50.0), "pass", ""),
+    "zeros that the motion contradicts": (clips, zero_where(in_gaps), "fail", "exactly 0 A.*dropped out"),
+    "a motor that coasts": (clips, zero_where(where_it_coasts), "pass", ""),
+    "1 % of scale": (is_derivative, speed(lambda w: 0.99 * w), "pass", ""),
+    "5 % of scale": (is_derivative, speed(lambda w: 1.05 * w), "warn", ""),
+    "-6 % of scale": (is_derivative, speed(lambda w: 0.94 * w), "warn", ""),
+    "an offset, no other scale": (is_derivative, speed(lambda w: w + 2.0), "pass", ""),
+    "another axis' speed": (is_derivative, speed(lambda w: w[::-1].copy()), "fail", ""),
+    **{f"a filter of {lag} s": (is_derivative, filtered(lag), "pass", "") for lag in (0.5e-3, 2e-3, 20e-3)},
+    "a standstill": (is_derivative, still, "not_applicable", ""),
+    "jitter, resampled": (regular, resampled, "warn", ""),
+    "jitter, as it came": (regular, jittering, "fail", ""),
+    "thousands of times the rotor": (rate, heavy, "fail", "times the motor's own"),
+    "noise, no undersampling": (rate, speed(lambda w: w + 200.0 * rng().normal(size=w.size)), "pass", ""),
+    **{f"a delay of {k} ms, as drives have": (holds, late(k), "pass", "") for k in (1, 5, -5)},
 }
 
 
@@ -168,19 +162,19 @@ PAIR, ALL, BLIND = ("velocity", "current"), ("position", "velocity", "current"),
 #: The damage, the error and its words.
 REFUSED = {
     "a turned current": (
-        lambda s: changed(s, current=-s["current"]),
+        current(lambda s: -s["current"]),
         InputError,
         r"effort_follows_motion.*opposite signs.*\[trace.columns\]",
     ),
     "a current that never changes": (
-        lambda s: changed(s, current=np.full(len(s), 0.3)),
+        current(lambda s: np.full(len(s), 0.3)),
         UnanswerableError,
         r"signal_moves.*current.*record instead",
     ),
     "many losses": (lambda s: losing(s, 0.03), InputError, "lost_samples"),
     "jumps of no one period": (jumping, InputError, r"position_wraps.*jumps 2 times"),
     **{
-        f"time by {factor} in {len(names)} signals": (
+        f"time by {factor} of {', '.join(names)}": (
             lambda s, n=names, f=factor: with_samples(keeping(s, n), np.arange(len(s)), f * s.sample_period),
             BenchError,
             r"unit of (the )?time",
@@ -189,7 +183,7 @@ REFUSED = {
         for factor in (1e3, 1e-3, 1e6)
     },
     **{
-        f"ten hertz of {len(names)} signals": (
+        f"ten hertz of {', '.join(names)}": (
             lambda s, n=names: keeping(with_samples(s, np.tile(np.arange(0, len(s), 100), 20), 0.1), n),
             BenchError,
             "velocity_is_derivative_of_position|sampling_rate_plausible|effort_follows_motion",
@@ -228,7 +222,7 @@ def test_what_is_wrong_for_a_while_is_named_with_its_time(sound, rig, fault):
     bad = changed(sound, current=during(sound, *fault))
     with pytest.raises(BenchError, match=FOR_A_WHILE[fault]):
         passed(bad, rig)
-    begin, end = map(float, re.findall(r"([\d.]+) s", throughout.holds(Seen(bad, rig)).found))
+    begin, end = map(float, re.findall(r"([\d.]+) s", holds(Seen(bad, rig)).found))
     assert (begin, end) == (pytest.approx(2.0, abs=0.35), pytest.approx(3.5, abs=0.35))
 
 
@@ -236,32 +230,32 @@ def test_what_is_wrong_for_a_while_is_named_with_its_time(sound, rig, fault):
 @pytest.mark.parametrize("factor", [1e-3, 1e3])
 def test_the_answer_does_not_depend_on_the_unit_of_the_effort(sound, rig, fault, factor):
     current = during(sound, *fault)
-    once, other = (throughout.holds(Seen(changed(sound, current=by * current), rig)) for by in (1.0, factor))
+    once, other = (holds(Seen(changed(sound, current=by * current), rig)) for by in (1.0, factor))
     assert other == once
 
 
 @pytest.mark.parametrize("delay", [20, -20, 60])
 def test_a_delay_is_named_with_its_size(sound, rig, delay):
-    found = throughout.holds(Seen(late(sound, delay), rig))
+    found = holds(Seen(late(delay)(sound), rig))
     (milliseconds,) = re.findall(rf"([\d.]+) ms {'late' if delay > 0 else 'early'}", found.found)
     assert found.status == "fail" and float(milliseconds) == pytest.approx(abs(delay), abs=3.0)
 
 
 @pytest.mark.parametrize("factor", [0.16, 0.5, 0.6, 6.0, -1.0, 0.88, 1.12, 180.0 / np.pi, 1e-20, 1e20])
 def test_a_speed_of_another_scale_fails_with_that_scale(sound, rig, factor):
-    found = velocity.is_derivative(Seen(changed(sound, velocity=factor * sound["velocity"]), rig))
+    found = is_derivative(Seen(changed(sound, velocity=factor * sound["velocity"]), rig))
     assert found.status == "fail"
     assert float(found.found.split()[2]) == pytest.approx(factor, rel=1e-3)
 
 
 def test_a_current_clipped_by_its_sensor_fails_and_at_the_drives_own_limit_is_true(sound, rig):
     limit = 0.4 * np.abs(sound["current"]).max()
-    found = signals.clips(Seen(changed(sound, current=np.clip(sound["current"], -limit, limit)), rig))
+    found = clips(Seen(changed(sound, current=np.clip(sound["current"], -limit, limit)), rig))
     assert found.status == "fail"
     assert f"exactly {limit:.4g} A" in found.found or f"exactly {-limit:.4g} A" in found.found
     peak = rig.motor.peak_current
     driven = np.where(np.arange(len(sound)) % 50 < 10, peak, np.minimum(sound["current"], 0.9 * peak))
-    assert signals.clips(Seen(changed(sound, current=driven), rig)).status == "pass"
+    assert clips(Seen(changed(sound, current=driven), rig)).status == "pass"
 
 
 def runs_on(trace, rig):
