@@ -40,7 +40,7 @@ from bench.names import nearest, plain
 from bench.plant.axis_model import NO_MASS, STICKING_IMPEDANCE, AxisModel, disk_inertia
 from bench.plant.mjcf_file import read_mjcf
 from bench.plant.model_file import StoredModel
-from bench.plant.robot import AddedBody, add_body, link_about_centre
+from bench.plant.robot import Change, Counting, add_body, count_as, link_about_centre
 from bench.plant.silenced import silenced
 from bench.structured import json_text, parse_json
 
@@ -121,7 +121,7 @@ def robot_with(
     path: Path,
     models: Mapping[str, tuple[StoredModel, Armature | None]],
     out: Path,
-    added: Sequence[AddedBody] = (),
+    added: Sequence[Change] = (),
     kept: Sequence[str] = (),
     with_assets: bool = False,
     stand: bool = False,
@@ -199,12 +199,16 @@ def _copied(source: Path, target: Path) -> str:
     return place.name
 
 
-def _beside(spec: mujoco.MjSpec, one: AddedBody, path: Path) -> str:
-    """Give a robot a payload, or a link's body the inertia that it has more about its joint's axis; in a sentence.
+def _beside(spec: mujoco.MjSpec, one: Change, path: Path) -> str:
+    """Give a robot a payload, a joint the way its log counts, or a link's body the inertia that it has more about its
+    joint's axis; in a sentence.
 
     A payload is a body of its own, which can be taken off again. A link's own inertia, about its centre, becomes larger
     in its proportions: no log of its one joint determines more, and any tensor that was one stays one.
     """
+    if isinstance(one, Counting):
+        count_as(spec, one)
+        return f"{one.joint}: counts as its log does" + (", the other way" if one.reversed else f", {one.zero:.4g} on")
     if not one.joint:
         add_body(spec, PAYLOAD, one, path)
         return f"{one.body}: with a payload of {one.mass:.4g} kg, the body '{PAYLOAD}'"

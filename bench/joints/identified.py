@@ -30,7 +30,7 @@ from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
-from bench.plant.robot import AddedBody, Poses, Robot, Twist, joint_rig, read_along
+from bench.plant.robot import Change, Poses, Robot, Twist, joint_rig, read_along
 from bench.rig.rig import Rig
 from bench.servos.breakaway import StaticFriction
 from bench.servos.commanded import Coefficients, Gains
@@ -77,7 +77,7 @@ class JointLogs:
     rig: Rig | None = None
     stated: Mapping[str, float] = field(default_factory=dict)
     excluded: frozenset[str] = frozenset()
-    added: tuple[AddedBody, ...] = ()
+    added: tuple[Change, ...] = ()
     stand: bool = False
     mjcfs: Mapping[Path, Path] = field(default_factory=dict)
     goals: bool = False

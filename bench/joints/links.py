@@ -30,7 +30,7 @@ from bench.fit.rows import Rows
 from bench.joints.identified import JointLogs, of_each
 from bench.joints.weight import LEAST, OWN, own_columns
 from bench.parameter import Parameter
-from bench.plant.robot import AddedBody, joint_rig, logs_of
+from bench.plant.robot import AddedBody, Change, Counting, joint_rig, logs_of
 
 #: Stretches that the rows of a log are cut into, equally many in each.
 STRETCHES = 24
@@ -42,8 +42,12 @@ ASIDE = 0.1
 SILENT = 1e-9
 #: A link's inertia is doubted where this many errors and this share of all joints' residuals require it.
 SURE, TAKES = 6.0, 0.2
-#: Links at most whose inertia is doubted.
+#: Links and zeros at most that are doubted.
 MOST = 3
+#: Step of a zero - rad (m) -, and logarithm by which the squares of two joints at least have to fall for it.
+SHIFT, SEVERAL = 1e-3, 0.7
+#: Share of a joint's squares that remain where it may be counted the other way; logarithm by which all have to fall.
+UNLIKE, TURNED = 0.1, 2.0
 
 
 @dataclass(frozen=True)
@@ -71,21 +75,34 @@ class DoubtedLink:
 
 
 @dataclass(frozen=True)
+class DoubtedZero:
+    """A joint whose zero is not the MJCF's: what is added to the log's position for that of the MJCF - rad (m)."""
+
+    joint: str
+    zero: Parameter
+
+
+@dataclass(frozen=True)
 class Common:
     """Strengths (k,) common to all joints.
 
     Attributes:
         strengths, deviations: those and their standard errors (k,).
         reach: of an interval of 95 % in standard errors.
-        left: logarithms of what the joints leave, summed.
+        lefts: logarithms of the squares that the joints leave (j,).
         open: which strengths no joint shows (k,).
     """
 
     strengths: Array
     deviations: Array
     reach: float
-    left: float
+    lefts: Array
     open: NDArray[np.bool_]
+
+    @property
+    def left(self) -> float:
+        """Their sum."""
+        return float(self.lefts.sum())
 
     def parameter(self, value: float, deviation: float, unit: str) -> Parameter:
         """A value with its interval."""
@@ -93,7 +110,7 @@ class Common:
         return Parameter(float(value), unit, float(deviation), (float(value - half), float(value + half)))
 
 
-def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
+def gathered(asked: JointLogs, changes: Sequence[Change]) -> Array | None:
     """Products of a joint's own columns, those of changes of the robot, and its effort, by stretch (s, n, n).
 
     None of a joint that the logs do not determine.
@@ -114,7 +131,7 @@ def gathered(asked: JointLogs, changes: Sequence[AddedBody]) -> Array | None:
 
 
 def of_joints(
-    work: Sequence[JointLogs], changes: Sequence[AddedBody], progress: Callable[[float], None] = lambda share: None
+    work: Sequence[JointLogs], changes: Sequence[Change], progress: Callable[[float], None] = lambda share: None
 ) -> list[Array]:
     """Those products of all joints that the logs determine, each on a process."""
     every = of_each(partial(gathered, changes=tuple(changes)), work, progress)
@@ -142,8 +159,8 @@ def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
     covariance = inverse @ (summed.T @ summed) @ inverse * stretches / degrees
     power = np.einsum("jkk->k", reduced[:, :-1, :-1])
     silent = power <= SILENT * power.max()
-    reach, left = float(special.stdtrit(degrees, 0.975)), float(np.log(lefts).sum())
-    return Common(strengths, np.sqrt(np.diag(covariance)), reach, left, silent)
+    reach = float(special.stdtrit(degrees, 0.975))
+    return Common(strengths, np.sqrt(np.diag(covariance)), reach, np.log(lefts), silent)
 
 
 def _solved(reduced: Array, lefts: Sequence[float]) -> tuple[Array, Array, Array]:
@@ -234,33 +251,103 @@ def _without_each(products: Sequence[Array], mix: Array, strengths: Array) -> Ar
     return np.max(np.abs(np.array([strengths, *others]) - strengths), axis=0)
 
 
-def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink]:
-    """Links whose inertia the logs of other joints contradict, the clearest first."""
-    products = of_joints(work, [AddedBody(joint=asked.joint, inertia=1.0) for asked in work])
+def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink | DoubtedZero]:
+    """Inertias of links and zeros of joints of the MJCF that the logs contradict, the clearest first."""
+    names = [asked.joint for asked in work]
+    inertias: list[Change] = [AddedBody(joint=name, inertia=1.0) for name in names]
+    zeros: list[Change] = [Counting(name, SHIFT) for name in names]
+    products = of_joints(work, [*inertias, *zeros])
     if len(products) < 2:
         return []
-    determined = [k for k in range(len(work)) if _tells(products, k)]
+    chosen = _contradicted(products, [asked.robot().link_inertia for asked in work])
+    if not chosen:
+        return []
+    found, doubts = shared(products, chosen), list[DoubtedLink | DoubtedZero]()
+    for k, more, deviation in zip(chosen, found.strengths, found.deviations, strict=True):
+        name = names[k % len(names)]
+        if k < len(names):
+            own = work[k].robot().link_inertia
+            factor = found.parameter(1.0 + more / own, deviation / own, "dimensionless")
+            doubts.append(DoubtedLink(name, factor, float(more)))
+        else:
+            unit = work[0].robot().unit(name)
+            doubts.append(DoubtedZero(name, found.parameter(SHIFT * more, SHIFT * deviation, unit)))
+    return doubts
+
+
+def _contradicted(products: Sequence[Array], own: Sequence[float]) -> list[int]:
+    """Numbers of the columns that the residuals of all joints require: of links' inertias, and then of zeros.
+
+    A zero turns all links that follow: it has to explain what more than one joint leaves. An unbalance is of one.
+    """
+    links, every = len(own), products[0].shape[1] - OWN - 1
+    determined = [k for k in range(every) if _tells(products, k)]
     chosen: list[int] = []
-    left = sum(float(np.log(_scores(_only(one, []), np.zeros(0))[1])) for one in products)
+    lefts = np.array([np.log(_scores(_only(one, []), np.zeros(0))[1]) for one in products])
     while len(chosen) < MOST:
         tried = {k: shared(products, [*chosen, k]) for k in determined if k not in chosen}
         # a link whose inertia would be negative explains something else that is missing
-        tried = {k: one for k, one in tried.items() if one.strengths[-1] > -work[k].robot().link_inertia}
+        tried = {
+            k: one
+            for k, one in tried.items()
+            if (one.strengths[-1] > -own[k] if k < links else np.sum(lefts - one.lefts > SEVERAL) > 1)
+        }
         best = min(tried, key=lambda k: tried[k].left, default=None)
-        if best is None or left - tried[best].left < TAKES:
+        if best is None or float(lefts.sum()) - tried[best].left < TAKES:
             break
         found = tried[best]
         if np.abs(found.strengths[-1]) < SURE * found.deviations[-1]:
             break
-        chosen, left = [*chosen, best], found.left
-    if not chosen:
-        return []
-    found, links = shared(products, chosen), []
-    for k, more, deviation in zip(chosen, found.strengths, found.deviations, strict=True):
-        own = work[k].robot().link_inertia
-        factor = found.parameter(1.0 + more / own, deviation / own, "dimensionless")
-        links.append(DoubtedLink(work[k].joint, factor, float(more)))
-    return links
+        chosen, lefts = [*chosen, best], found.lefts
+    return chosen
+
+
+def reversed_joints(work: Sequence[JointLogs]) -> list[Counting]:
+    """Joints that the first log counts the other way than the MJCF: what all joints leave falls if they are turned."""
+    first = [replace(asked, logs=asked.logs[:1]) for asked in work]
+    found, left, unlike = list[Counting](), *_left(first)
+    while unlike and len(found) < len(work):
+        known = {one.joint for one in found}
+        more = [Counting(asked.joint, reversed=True) for asked in work if asked.joint not in known]
+        tried = {one: _left(carrying(first, [*found, one])) for one in more}
+        best = min(tried, key=lambda one: tried[one][0])
+        if left - tried[best][0] < TURNED:
+            break
+        found, (left, unlike) = [*found, best], tried[best]
+    return found
+
+
+def _left(work: Sequence[JointLogs]) -> tuple[float, bool]:
+    """Logarithms of the squares that all joints leave, summed, and whether one leaves most of what its own terms and
+    the links should explain."""
+    wholes = [_only(one, []).sum(axis=0) for one in of_joints(work, [])]
+    lefts = [float(_reduced(whole)[0, 0]) for whole in wholes]
+    unlike = any(left > UNLIKE * whole[-1, -1] for left, whole in zip(lefts, wholes, strict=True))
+    return float(np.log(np.maximum(lefts, 1e-300)).sum()), unlike
+
+
+def doubted(work: Sequence[JointLogs]) -> tuple[list[JointLogs], list[DoubtedLink], list[DoubtedZero]]:
+    """The logs of the robot as they show it, and what that is; zeros settle first, as they turn the links."""
+    work, steps = list(work), dict[str, float]()
+    at, zeros, links = dict[str, float](), list[DoubtedZero](), list[DoubtedLink]()
+    for _ in range(MOST):
+        doubts = doubt_links(work)
+        links = [one for one in doubts if isinstance(one, DoubtedLink)]
+        more = {one.joint: one.zero.value for one in doubts if isinstance(one, DoubtedZero)}
+        if not more:
+            break
+        steps = more
+        for _ in range(ROUNDS):
+            work = carrying(work, [Counting(joint, step) for joint, step in steps.items()])
+            at = {joint: at.get(joint, 0.0) + steps.get(joint, 0.0) for joint in {**at, **steps}}
+            found = shared(of_joints(work, [Counting(joint, SHIFT) for joint in at]), range(len(at)))
+            steps = dict(zip(at, (SHIFT * found.strengths).tolist(), strict=True))
+            errors = dict(zip(at, (SHIFT * found.deviations).tolist(), strict=True))
+            units = {joint: work[0].robot().unit(joint) for joint in at}
+            zeros = [DoubtedZero(z, found.parameter(at[z] + steps[z], errors[z], units[z])) for z in at]
+    changes: list[Change] = [Counting(joint, step) for joint, step in steps.items()]
+    changes += [AddedBody(joint=one.joint, inertia=one.inertia) for one in links]
+    return carrying(work, changes), links, zeros
 
 
 def _only(product: Array, kept: Sequence[int]) -> Array:
@@ -275,6 +362,6 @@ def _tells(products: Sequence[Array], k: int) -> bool:
     return any(whole[-2, -2] > 0.0 and _reduced(whole)[0, 0] > LEAST * whole[-2, -2] for whole in wholes)
 
 
-def carrying(work: Sequence[JointLogs], added: Sequence[AddedBody]) -> list[JointLogs]:
-    """The same logs of a robot with something added."""
+def carrying(work: Sequence[JointLogs], added: Sequence[Change]) -> list[JointLogs]:
+    """The same logs of a robot with changes."""
     return [replace(asked, added=(*asked.added, *added)) for asked in work]

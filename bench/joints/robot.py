@@ -15,10 +15,18 @@ from bench.jobs.process import Failure
 from bench.joints.goals import GivenGain, by_goals, drive_of, with_gains, with_one_delay
 from bench.joints.grade import GradedJoint, graded
 from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
-from bench.joints.links import DoubtedLink, FoundPayload, carrying, doubt_links, seek_payload
+from bench.joints.links import (
+    DoubtedLink,
+    DoubtedZero,
+    FoundPayload,
+    carrying,
+    doubted,
+    reversed_joints,
+    seek_payload,
+)
 from bench.names import meant, nearest, with_known_arguments
 from bench.plant.model_file import StoredModel
-from bench.plant.robot import AddedBody, joint_units
+from bench.plant.robot import AddedBody, Change, Counting, joint_units
 from bench.presented import Shown
 from bench.rig.given import GivenRig, rig_of
 
@@ -40,6 +48,7 @@ class IdentifiedRobot(Shown):
         warnings: what concerns no joint alone.
         added: what the joints were identified with in addition to the MJCF.
         stand: whether a floating base was fixed.
+        zeros: of joints that are not the MJCF's.
     """
 
     mjcf: Path
@@ -47,8 +56,9 @@ class IdentifiedRobot(Shown):
     payload: FoundPayload | None = None
     links: tuple[DoubtedLink, ...] = ()
     warnings: tuple[str, ...] = ()
-    added: tuple[AddedBody, ...] = ()
+    added: tuple[Change, ...] = ()
     stand: bool = False
+    zeros: tuple[DoubtedZero, ...] = ()
 
     def __getitem__(self, joint: str) -> IdentifiedJoint:
         return meant(joint, self.joints)
@@ -181,14 +191,36 @@ def _answered(
         if max(gains, default=0.0) <= 0.0:
             break
         work, found = tried[gains.index(max(gains))]
-    open_ = [one for one in found.values() if one.diagnosis and one.diagnosis.verdict == "unexplained_remainder"]
+    turned = reversed_joints(work) if (open_ := _open(found)) else []
+    if turned:
+        work = carrying(work, turned)
+        found = _identified(work, progress)
+        open_ = _open(found)
     # behind a soft gear the lag of a link looks like more of its inertia, or of its neighbours'
-    links = doubt_links(work) if open_ and not any(one.twists for one in found.values()) else []
-    if links:
-        work = carrying(work, [AddedBody(joint=one.joint, inertia=one.inertia) for one in links])
+    links, zeros = list[DoubtedLink](), list[DoubtedZero]()
+    if open_ and not any(one.twists for one in found.values()):
+        work, links, zeros = doubted(work)
+    if links or zeros:
         found = _identified(work, progress)
     added = work[0].added if work else ()
-    return IdentifiedRobot(of_all.mjcf, found, sought, tuple(links), tuple(warnings), added, of_all.stand)
+    warnings += [_counted_otherwise(one) for one in (*turned, *zeros)]
+    return IdentifiedRobot(of_all.mjcf, found, sought, tuple(links), tuple(warnings), added, of_all.stand, tuple(zeros))
+
+
+def _counted_otherwise(one: Counting | DoubtedZero) -> str:
+    """What a user should know of a joint that the log counts in another way."""
+    if isinstance(one, DoubtedZero):
+        zero = f"{one.zero.value:.4g} ± {one.zero.half_width:.2g} {one.zero.unit}"
+        return f"{one.joint}: the log's position plus {zero} is the MJCF's; identified so, and its `ref` moved"
+    return (
+        f"{one.joint}: the log counts it the other way than the MJCF; identified so, with its axis turned; to keep the "
+        f"MJCF's axis, put `sign = -1` under [joints.{one.joint}] in a rig"
+    )
+
+
+def _open(found: Mapping[str, IdentifiedJoint]) -> list[IdentifiedJoint]:
+    """Joints with a residual that no effect explains."""
+    return [one for one in found.values() if one.diagnosis and one.diagnosis.verdict == "unexplained_remainder"]
 
 
 def _loose(found: Mapping[str, IdentifiedJoint], work: Sequence[JointLogs]) -> list[str]:

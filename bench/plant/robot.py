@@ -85,6 +85,25 @@ class AddedBody:
     inertia: float = 0.0
 
 
+@dataclass(frozen=True)
+class Counting:
+    """How a log counts a joint, where that is not as the MJCF does.
+
+    Attributes:
+        joint: its name.
+        zero: what is added to its position for that of the MJCF - rad (m).
+        reversed: whether position, speed and torque are counted the other way.
+    """
+
+    joint: str
+    zero: float = 0.0
+    reversed: bool = False
+
+
+#: In what a robot is not as its MJCF has it.
+Change = AddedBody | Counting
+
+
 def joint_units(path: Path) -> dict[str, str]:
     """Names of the hinges and slides of an MJCF file with the units of their positions; InputError as `Robot.of`."""
     model, _ = _loaded(path)
@@ -92,15 +111,29 @@ def joint_units(path: Path) -> dict[str, str]:
     return {name: unit for name, unit in found.items() if name and unit is not None}
 
 
-def _loaded(path: Path, added: Sequence[AddedBody] = (), stand: bool = False) -> tuple[mujoco.MjModel, tuple[str, ...]]:
+def _loaded(path: Path, changes: Sequence[Change] = (), stand: bool = False) -> tuple[mujoco.MjModel, tuple[str, ...]]:
     spec, notes = read_mjcf(path, stand)
-    for k, one in enumerate(added):
-        add_body(spec, f"added {k}", one, path)
+    added = {f"added {k}": one for k, one in enumerate(changes) if isinstance(one, AddedBody)}
+    for name, one in added.items():
+        add_body(spec, name, one, path)
+    for one in changes:
+        if isinstance(one, Counting):
+            count_as(spec, one)
     with silenced():
         model = spec.compile()
-    for k, one in enumerate(added):  # a compiler wants inertias as bodies have them, and a change may be of either sign
-        model.body_inertia[model.body(f"added {k}").id] = 0.0, 0.0, one.inertia
+    for name, one in added.items():  # a compiler wants inertias as bodies have them, and a change may be of either sign
+        model.body_inertia[model.body(name).id] = 0.0, 0.0, one.inertia
     return model, notes
+
+
+def count_as(spec: mujoco.MjSpec, one: Counting) -> None:
+    """Have a joint of a robot count as its log does."""
+    joint = spec.joint(one.joint)
+    sign = -1.0 if one.reversed else 1.0
+    zero = np.degrees(one.zero) if spec.compiler.degree and joint.type == mujoco.mjtJoint.mjJNT_HINGE else one.zero
+    joint.axis = sign * joint.axis
+    joint.ref, joint.springref = sign * joint.ref - zero, sign * joint.springref - zero
+    joint.range = np.sort(sign * joint.range) - zero * bool(joint.range.any())
 
 
 def add_body(spec: mujoco.MjSpec, name: str, one: AddedBody, path: Path) -> None:
@@ -145,7 +178,7 @@ class Robot:
     twists: Mapping[str, Twist] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, path: Path, joint: str | None, added: Sequence[AddedBody] = (), stand: bool = False) -> Robot:
+    def of(cls, path: Path, joint: str | None, added: Sequence[Change] = (), stand: bool = False) -> Robot:
         """From an MJCF or URDF file, with what its robot has in addition; `stand` fixes a floating base.
 
         InputError if there is no such file or joint; if a joint of its tree has more than one coordinate; if a loop, a
@@ -274,8 +307,32 @@ class Robot:
         own = axes[:, self._dof]
         return np.sum(own * _spatial_momentum(inertias[:, self._carried].sum(axis=1), own), axis=1)
 
-    def asked(self, added: Sequence[AddedBody], position: Array, velocity: Array) -> list[tuple[Array, Array]]:
-        """The load of each of some additions on the joint in addition to that, r and p as `rest` has them.
+    def asked(self, changes: Sequence[Change], position: Array, velocity: Array) -> list[tuple[Array, Array]]:
+        """The load of each of some changes on the joint in addition to that, r and p as `rest` has them."""
+        borne = iter(self._borne([one for one in changes if isinstance(one, AddedBody)], position, velocity))
+        still = self.rest(position, velocity) if any(isinstance(one, Counting) for one in changes) else None
+        found = list[tuple[Array, Array]]()
+        for one in changes:
+            if isinstance(one, Counting) and still is not None:
+                moved = self._recounted(one, position, velocity) if self._feels(one.joint) else still
+                found.append((moved[0] - still[0], moved[1] - still[1]))
+            else:
+                found.append(next(borne))
+        return found
+
+    def _feels(self, joint: str) -> bool:
+        """Whether a joint is in one chain with this one."""
+        if joint not in self.names:
+            return False
+        own, other = (int(self.model.joint(name).bodyid[0]) for name in (self.joint, joint))
+        return bool(self._carried[other] or _carried(self.model, other)[own])
+
+    def _recounted(self, one: Counting, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """`rest` with another zero of a joint."""
+        return self.rest(position + one.zero * (np.array(self.names) == one.joint), velocity)
+
+    def _borne(self, added: Sequence[AddedBody], position: Array, velocity: Array) -> list[tuple[Array, Array]]:
+        """The same of what is added to bodies.
 
         Of a point of mass m that a joint moves by a column J of its Jacobian, with speed v,
 
@@ -493,14 +550,14 @@ def is_commanded(path: Path, rig: Rig, robot: Robot) -> bool:
 
 
 def logs_of(
-    path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], changes: Sequence[AddedBody] = ()
+    path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], changes: Sequence[Change] = ()
 ) -> list[Trace]:
     """The same, and then of the robot with each of some changes."""
     return _known(_moved(path, rig, robot, stated), rig, robot, changes)
 
 
 def _known(
-    moved: tuple[Trace, Array, Array, list[str]], rig: Rig, robot: Robot, changes: Sequence[AddedBody]
+    moved: tuple[Trace, Array, Array, list[str]], rig: Rig, robot: Robot, changes: Sequence[Change]
 ) -> list[Trace]:
     """What `_moved` returns with the torque of the rest of the robot, as it is and with each change."""
     own = rig.of_joint(robot.joint)
@@ -552,8 +609,8 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
     recording = named(read_recording(path), list(filter(None, every)))
     own, load = rig.of_joint(robot.joint), rig.of_joint(robot.joint).load or Load()
     known = own.trace.columns or own.trace.axis or _holds(recording, robot.joint)
-    if not known and any(_holds(recording, name) for name in robot.units):
-        allowed = f"allowed: a column '{robot.joint}.position [rad]' and so on, or [trace.columns] in a rig"
+    if not known and (any(_holds(recording, name) for name in robot.units) or len(axes_of(recording.channels)) > 1):
+        allowed = f"allowed: a column '{robot.joint}.position [rad]' and so on{_which(recording, robot.joint)}"
         raise InputError(f"{path}: joint '{robot.joint}'", "has no column of its own", allowed)
     trace, ratio = _joint_of(recording, robot.joint, own, robot), load.gear_ratio
     if load.behind_rotor and own.axis_kind.effort in trace:
@@ -569,9 +626,7 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
     for name in robot.names:
         found = motion.get(name) or robot.follows(name, motion)
         if found is None:
-            allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0"
-            if among := ", ".join(axes_of(recording.channels)):
-                allowed += f', or which one of the log it is ({among}): axis = "..." under [joints.{name}] in a rig'
+            allowed = f"allowed: a column '{name}.position [rad]', or --at {name}=0{_which(recording, name)}"
             raise InputError(f"{path}: joint '{name}'", "is neither in the log nor stated", allowed)
         motion[name] = found
         if name in robot.twists:
@@ -580,6 +635,14 @@ def _moved(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> t
         _require_within(found[0], name, robot, path)
     position, velocity = (np.column_stack([motion[name][k] for name in robot.names]) for k in (0, 1))
     return trace, position, velocity, stand
+
+
+def _which(recording: Recording, joint: str) -> str:
+    """What to write where the log has another name for a joint, behind what else is allowed."""
+    axes = axes_of(recording.channels)
+    if not axes:
+        return f", or columns under [joints.{joint}.columns] in a rig"
+    return f', or which one of the log it is ({", ".join(axes)}): `axis = "{axes[0]}"` under [joints.{joint}] in a rig'
 
 
 def _twisted(robot: Robot, joint: str, trace: Trace) -> tuple[Array, Array]:

@@ -58,6 +58,7 @@ def robot_json(
         "links": [
             {"joint": one.joint, "inertia_factor": one.factor.value, "ci95": one.factor.ci95} for one in found.links
         ],
+        "zeros": [{"joint": one.joint, **as_json(one.zero)} for one in found.zeros],
         "model": {"mjcf": MJCF, "effects": EFFECTS_FILE},
         "warnings": found.warnings,
         "provenance": provenance,
@@ -182,7 +183,14 @@ def _verdict(found: IdentifiedRobot) -> str:
         return f"None of {whole} joints could be answered."
     if not found.models:
         return f"No model of {whole} joints: neither armature nor friction is determined."
-    rest = "all residuals are noise" if settled == answered else f"the residuals of {settled} are noise"
+    some = (
+        "no residual is"
+        if settled == 0
+        else "the residual of one is"
+        if settled == 1
+        else f"the residuals of {settled} are"
+    )
+    rest = "all residuals are noise" if settled == answered else f"{some} noise"
     return f"{answered} of {whole} joints are identified; {rest}."
 
 
@@ -224,6 +232,9 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
         rows = ((one.joint, f"{interval(one.factor)} times the MJCF's") for one in found.links)
         caption = "Links whose inertia about their joint's axis is not the MJCF's"
         tables.append(doc.table(caption, ("joint", "inertia~"), rows))
+    if found.zeros:
+        rows = ((one.joint, interval(one.zero)) for one in found.zeros)
+        tables.append(doc.table("Zeros that are not the MJCF's", ("joint", "MJCF's position less the log's>"), rows))
     lacking = [(name, why, motion) for name, joint in found.joints.items() for why, motion in _open(joint)]
     if lacking:
         tables.append(doc.table("Not determined by the logs", ("joint", "what~", "record instead~"), lacking))
