@@ -13,7 +13,7 @@ from xdist.scheduler import LoadScopeScheduling
 SOUND = ("docs", "export", "faults", "gate", "joints", "plant", "report", "servos", "trace", "view")
 #: Files that share a fixture of the session, by its name; every other file goes its own way.
 TOGETHER = {
-    "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "follow", "model_file", "soft_tracking")),
+    "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "model_file")),
     "lab": ("tests/course/",),
 }
 

@@ -12,7 +12,7 @@ from bench.validation.independent.references import random_motion
 from tests.outside import OUTSIDE
 from tests.recorded import PLAIN
 
-NAMED = ("cogging_torque", "unbalance", "stribeck_friction")
+NAMED = ("cogging_torque", "stribeck_friction")
 HIDDEN = ((), *((name,) for name in NAMED), ("vibration",))
 
 
@@ -55,7 +55,7 @@ def test_physics_outside_the_catalogue_stays_unnamed(found):
 
 
 def test_where_points_at_the_coordinate(found):
-    assert found[("unbalance",)].where[0].coordinate == "position"
+    assert found[("cogging_torque",)].where[0].coordinate == "position"
     assert found[("vibration",)].where[0].coordinate == "frequency"
     assert {found[("stribeck_friction",)].where[k].coordinate for k in range(2)} & {"velocity", "reversal", "direction"}
 

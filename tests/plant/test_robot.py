@@ -11,7 +11,7 @@ from bench.errors import InputError
 from bench.plant.robot import AddedBody, Robot, read_log, rig_within
 from bench.rig.rig import Rig
 from bench.trace.trace import less_known
-from tests.export.two_links import C2, HIDDEN, I2, M2, MJCF, elbow_torque, log, motion, shoulder_torque, write_log
+from tests.export.two_links import HIDDEN, MJCF, elbow_torque, log, motion, write_log
 
 ELBOW = Rig.of({"name": "elbow", "kind": "rotary"})
 
@@ -21,21 +21,6 @@ def arm(tmp_path):
     path = tmp_path / "arm.xml"
     path.write_text(MJCF)
     return path
-
-
-@pytest.mark.parametrize(("joint", "torque", "place"), [("elbow", elbow_torque, 1), ("shoulder", shoulder_torque, 0)])
-def test_it_is_that_of_lagranges_equations(arm, joint, torque, place):
-    robot = Robot.of(arm, joint)
-    _, shoulder, elbow = motion(2.0, 1e-4)
-    moved = shoulder, elbow
-    r, p = robot.rest(*(np.column_stack([each[k] for each in moved]) for k in (0, 1)))
-    asked = torque(*shoulder, *elbow)
-    found = r + np.gradient(p, 1e-4) + robot.inertia * moved[place][2]
-    np.testing.assert_allclose(found[2:-2], asked[2:-2], atol=1e-5 * np.abs(asked).max())
-
-
-def test_its_own_inertia_is_that_where_the_mjcf_stands(arm):
-    assert Robot.of(arm, "elbow").inertia == pytest.approx(I2 + M2 * C2**2, rel=1e-12)
 
 
 def test_a_spring_of_the_robot_is_taken_off_with_its_sign(tmp_path, arm):

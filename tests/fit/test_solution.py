@@ -1,11 +1,49 @@
-"""Covariance and reach of intervals, against closed forms and against fits without each part of the rows."""
+"""Least squares: within bounds, their covariance and reach, and from which share on a quantity is determined."""
 
 import numpy as np
 import pytest
 from scipy import special
+from scipy.optimize import lsq_linear
 from scipy.signal import lfilter
 
-from bench.fit.solution import estimated, left_out, long_run_covariance, misfit
+from bench.axis_kind import COULOMB, INERTIA, OFFSET, ROTARY, VISCOUS
+from bench.errors import UndeterminedError
+from bench.fit.determined import left_open, require_inertia
+from bench.fit.hypothesis import BASE
+from bench.fit.solution import NormalEquations, bounded, estimated, left_out, long_run_covariance, misfit, solved
+
+
+@pytest.mark.parametrize("correlated", [0.0, 0.9, 0.99])
+def test_least_squares_within_bounds_is_that_of_a_general_solver(correlated):
+    """Strongly correlated columns, where a bound that binds at first has to be released later."""
+    rng, held = np.random.default_rng(1), 0
+    for _ in range(250):
+        size = int(rng.integers(2, 8))
+        columns = rng.normal(size=(40, size)) * (1.0 - correlated) + correlated * rng.normal(size=(40, 1))
+        columns *= 10.0 ** rng.uniform(-3.0, 3.0, size)
+        effort = columns @ (rng.normal(size=size) / np.linalg.norm(columns, axis=0)) + rng.normal(scale=0.1, size=40)
+        places = rng.permutation(size)[: int(rng.integers(1, size + 1))].tolist()
+        scale = 1.0 / np.linalg.norm(columns, axis=0)
+        limits = np.sort(rng.normal(size=(size, 2)), axis=1) * scale[:, None]
+        low, high = np.full(size, -np.inf), np.full(size, np.inf)
+        low[places], high[places] = limits[places].T
+        gram, noise = columns.T @ columns, np.zeros((size, size))
+        bounds = dict(zip(places, zip(low[places].tolist(), high[places].tolist(), strict=True), strict=True))
+        theta, at = bounded(gram, columns.T @ effort, noise, bounds)
+        best = lsq_linear(columns * scale, effort, (low / scale, high / scale), method="bvls", tol=1e-14)
+        assert (theta >= low).all() and (theta <= high).all()
+        assert np.sum((effort - columns @ theta) ** 2) <= 2.0 * best.cost * (1.0 + 1e-9)
+        assert all(theta[place] in bounds[place] for place in at)
+        held += bool(at)
+    assert held > 100
+
+
+def test_a_column_whose_squares_underflow_explains_nothing():
+    columns = np.random.default_rng(0).standard_normal((100, 2)) * [1.0, 1e-160]
+    effort = 3.0 * columns[:, 0]
+    theta, _ = solved(columns.T @ columns, columns.T @ effort, np.zeros((2, 2)))
+    assert theta == pytest.approx([3.0, 0.0])
+
 
 #: 97.5 % quantile of Student's t by degrees of freedom, from a printed table.
 STUDENT = {1: 12.7062, 3: 3.18245, 7: 2.36462, 10: 2.22814, 26: 2.05553}
@@ -120,3 +158,72 @@ def test_intervals_of_means_cover(correlation):
 def test_students_table_is_scipys():
     for degrees, value in STUDENT.items():
         assert special.stdtrit(degrees, 0.975) == pytest.approx(value, rel=1e-5)
+
+
+NAMES = (*BASE, OFFSET)
+PLACES = len(NAMES)
+
+
+def equations(gram, rows=1000, noise=None):
+    """Normal equations of one block: `gram` (5, 5) a row."""
+    whole = np.asarray(gram, dtype=float)[None] * rows
+    none = np.zeros((PLACES, PLACES))
+    return NormalEquations(
+        NAMES, whole, np.zeros((1, PLACES)), np.ones(1), np.array([rows]), none if noise is None else noise
+    )
+
+
+def alike(first, second, share):
+    """Columns of unit power, of which two share all but `share` of their power, and the direction is even."""
+    gram = np.eye(PLACES)
+    gram[first, second] = gram[second, first] = np.sqrt(1.0 - share)
+    return gram
+
+
+@pytest.mark.parametrize("share", [0.5, 0.02, 0.008])
+def test_the_share_is_what_the_others_do_not_explain(share):
+    assert equations(alike(0, 1, share)).independent_shares((INERTIA, VISCOUS))[0] == pytest.approx(share)
+
+
+def test_noise_of_a_column_is_no_share_of_it():
+    noise = np.diag([0.75, 0.0, 0.0, 0.0, 0.0])
+    assert equations(np.eye(PLACES), noise=noise).independent_shares((INERTIA, VISCOUS))[0] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(("share", "sure"), [(0.0105, True), (0.0095, False)])
+def test_a_quantity_needs_one_per_cent_of_its_own(share, sure):
+    found = equations(alike(0, 1, share))
+    assert left_open(found, ROTARY) == (frozenset() if sure else {INERTIA, VISCOUS, COULOMB, OFFSET})
+    friction = equations(alike(1, 2, share))
+    assert left_open(friction, ROTARY) == (frozenset() if sure else {VISCOUS, COULOMB})
+
+
+def test_what_is_not_shown_has_its_plain_reason_first():
+    with pytest.raises(UndeterminedError, match=r": it hardly accelerates: only 0\.9\d? % of what would show it"):
+        require_inertia(equations(alike(0, 1, 0.009)), ROTARY)
+
+
+def test_noise_is_the_reason_where_it_alone_hides_the_acceleration():
+    noise = np.diag([1.0, 0.0, 0.0, 0.0, 0.0])
+    with pytest.raises(UndeterminedError, match=r"100 % of the measured acceleration's power is noise") as refused:
+        require_inertia(equations(np.eye(PLACES), noise=noise), ROTARY)
+    assert "hardly accelerates" not in str(refused.value) and "finer" in refused.value.record
+
+
+@pytest.mark.parametrize(("rows", "sure"), [(100, True), (99, False)])
+def test_it_takes_twenty_rows_a_column(rows, sure):
+    found = equations(np.eye(PLACES), rows=rows)
+    if sure:
+        require_inertia(found, ROTARY)
+    else:
+        with pytest.raises(UndeterminedError, match=r"only 99 filtered samples .* 100 are needed"):
+            require_inertia(found, ROTARY)
+
+
+@pytest.mark.parametrize(
+    ("weaker", "side"), [(0.021, None), (0.019, "forward"), (0.981, "backward"), (0.979, None), (0.5, None)]
+)
+def test_one_way_is_less_than_two_per_cent_the_other_way(weaker, side):
+    gram = np.eye(PLACES)
+    gram[2, 4] = gram[4, 2] = 1.0 - 2.0 * weaker
+    assert equations(gram).one_way == side
