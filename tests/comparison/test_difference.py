@@ -123,6 +123,15 @@ def test_what_lies_outside_of_a_range_does_so_by_more_than_its_errors(value, out
     assert Difference(value, 0.1).outside(-0.3, 0.5, errors=3.0) is outside
 
 
+def test_several_differences_count_by_the_likeliest_if_they_have_one_sign():
+    two, opposite = ([Difference(3.0, 1.0), Difference(sign * 4.0, 1.0)] for sign in (1.0, -1.0))
+    found = Comparison("x", "N*m", 1.0, 4.0, tuple(two), 1.0)
+    assert found.tested().chance == two[0].chance(1.0) > two[1].chance(1.0)
+    assert found.tested(least_chance=0.9).chance == 0.9
+    assert replace(found, differences=tuple(opposite)).tested().chance == 1.0
+    assert replace(found, held_back="the rig is another").tested().chance == 1.0
+
+
 @pytest.mark.parametrize(
     ("differences", "chance", "reason"),
     [
