@@ -5,7 +5,7 @@ import pytest
 import scipy.signal
 
 from bench.errors import UndeterminedError
-from bench.trace.motion import _coherence, condition, known_column, moving
+from bench.trace.motion import _coherence, condition, known_column, measured_velocity, moving
 from bench.trace.trace import Trace, less_known, with_known
 
 
@@ -139,3 +139,11 @@ def test_coherence_is_that_of_what_is_not_known():
     known = with_known(trace, torque, np.zeros(TIME.size), "N*m")
     assert condition(known, effort + torque).coherence == pytest.approx(condition(trace, effort).coherence, abs=1e-6)
     assert condition(trace, effort + torque).coherence < 0.5
+
+
+def test_a_lone_sample_between_holes_goes_as_fast_as_its_neighbours_say():
+    """x = t**2: a mean speed between two times is their sum."""
+    time = 1e-3 * np.array([0.0, 1.0, 2.0, 3.0, 20.0, 40.0, 41.0, 42.0, 43.0])
+    speed = measured_velocity(Trace(time, {"position": time**2}, {"position": "rad"}, "a parabola"))
+    assert speed[4] == pytest.approx(0.043)
+    np.testing.assert_allclose(speed[[1, 2, 6, 7]], 2.0 * time[[1, 2, 6, 7]], rtol=1e-9)

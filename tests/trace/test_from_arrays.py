@@ -1,5 +1,8 @@
 """Samples in memory take the way of samples in a file: the same trace comes out, the same faults are refused."""
 
+import pickle
+from dataclasses import replace
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -140,3 +143,14 @@ def test_a_few_values_that_are_none_are_holes(nothing):
     trace = Trace.from_arrays({**columns(), "velocity": speed}, UNITS)
     assert len(trace) == 1999 and len(trace.segments) == 2
     assert any("1 cell is empty or no number, the first at arrays: sample 700" in note for note in trace.notes)
+
+
+def test_a_trace_travels_to_another_process():
+    """All of it, and read-only again."""
+    trace = replace(Trace.from_arrays(columns(), UNITS), metadata={"drive": "x"}, notes=("y",), continues=True)
+    copy = pickle.loads(pickle.dumps(trace))
+    assert_same(copy, trace)
+    for name in ("metadata", "origin", "notes", "continues", "wraps"):
+        assert getattr(copy, name) == getattr(trace, name)
+    with pytest.raises(TypeError):
+        copy.signals["velocity"] = np.zeros(3)
