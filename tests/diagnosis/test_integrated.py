@@ -1,5 +1,7 @@
 """Soft couplings, bristles and gaps: by their equations integrated elsewhere, and in simulated recordings."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 import scipy.integrate
@@ -31,13 +33,33 @@ from tests.recorded import QUIET
 
 ELASTIC = catalogue()["elastic_coupling"]
 PERIOD = 1e-3
-COUPLING, BRISTLES = ElasticCoupling(14.0, 2.5e-3), PreslidingFriction(4.0, 5e-3)
+COUPLING, BRISTLES, LOOSE = ElasticCoupling(14.0, 2.5e-3), PreslidingFriction(4.0, 5e-3), PreslidingFriction(3.0, 8e-3)
+
+
+FRICTIONS = [
+    (),
+    (StribeckFriction(0.16, 3.0),),
+    (DirectionDependentFriction(0.05),),
+    (PositionDependentFriction(0.5, 1.0),),
+]
+#: A contact of 80 Hz against the load, of a fifth of critical damping.
+STIFFNESS, DAMPING = 6.5e-4 * (2.0 * np.pi * 80.0) ** 2, 0.2 * 2.0 * 6.5e-4 * 2.0 * np.pi * 80.0
+GAPS = (0.003, 0.012, 0.08, 0.25)
+#: Effects of an axis and seconds, all integrated together; those of slow tests by themselves.
+TOGETHER = [((), 4.0), ((COUPLING,), 4.0), ((LOOSE,), 4.0), *(((BRISTLES, *beside), 6.0) for beside in FRICTIONS)]
+TOGETHER += [((Backlash(GAPS[2], STIFFNESS, DAMPING),), 5.0)]
+
+
+@cache
+def recordings(*cases):
+    motions = {case: random_motion(QUIET.axis, np.random.default_rng(5), case[1]) for case in cases}
+    return QUIET.record({case: case[0] for case in cases}, motions, 5, dict.fromkeys(cases, 0))
 
 
 def bare_of(*effects, seconds=4.0):
     """The bare fit of a recording of the axis with effects."""
-    motion = random_motion(QUIET.axis, np.random.default_rng(5), seconds)
-    return fit_bare(Rows.of(QUIET.record({0: effects}, motion, 5)[0], QUIET.rig))
+    case = effects, seconds
+    return fit_bare(Rows.of(recordings(*(TOGETHER if case in TOGETHER else [case]))[case], QUIET.rig))
 
 
 def searched(bare):
@@ -76,7 +98,7 @@ def test_a_soft_coupling_leaves_noise_alone():
     assert fitted.strengths(0)[0] == pytest.approx(QUIET.axis.inertia - QUIET.axis.rotor_inertia, rel=5e-4)
 
 
-@pytest.mark.parametrize("effect", [COUPLING, PreslidingFriction(3.0, 8e-3)])
+@pytest.mark.parametrize("effect", [COUPLING, LOOSE])
 def test_no_coupling_is_proposed_without_a_load_behind_it(effect):
     """Beside what is hidden still the load of most shapes comes out negative; one of these was in place of all."""
     bare = bare_of(effect)
@@ -107,13 +129,7 @@ def test_bristles_slide_at_the_level_of_the_other_frictions():
 
 @pytest.mark.parametrize(
     "beside",
-    [
-        (),
-        (StribeckFriction(0.16, 3.0),),
-        (DirectionDependentFriction(0.05),),
-        (PositionDependentFriction(0.5, 1.0),),
-        pytest.param((StribeckFriction(0.16, 3.0), FrictionWarmup(0.5, 2.0)), marks=pytest.mark.slow),
-    ],
+    [*FRICTIONS, pytest.param((StribeckFriction(0.16, 3.0), FrictionWarmup(0.5, 2.0)), marks=pytest.mark.slow)],
     ids=lambda effects: " and ".join(effect.name for effect in effects) or "by themselves",
 )
 def test_bristles_are_named_beside_other_frictions(beside):
@@ -127,9 +143,6 @@ def test_bristles_are_named_beside_other_frictions(beside):
     assert fitted.theta[:3] == pytest.approx([QUIET.axis.inertia, QUIET.axis.viscous, QUIET.axis.coulomb], rel=0.03)
 
 
-#: A contact of 80 Hz against the load, of a fifth of critical damping.
-STIFFNESS, DAMPING = 6.5e-4 * (2.0 * np.pi * 80.0) ** 2, 0.2 * 2.0 * 6.5e-4 * 2.0 * np.pi * 80.0
-GAPS = (0.003, 0.012, 0.08, 0.25)
 #: By the gap beside which they are: in a narrow one, or with a clean recording, impacts reach most of the rows.
 BESIDE = {
     0.012: CoggingTorque(0.03, 8.0, 1.0),
