@@ -16,6 +16,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from bench.export.actuator import isaaclab_actuators, mjlab_actuators
 from bench.export.mjcf import ArmatureShare, armature_of, onto
 from bench.export.simulators import simulator_file
 from bench.files import write_text
@@ -55,13 +56,34 @@ def loaded(text, monkeypatch):
     """What a module for another simulator defines, whose classes keep what they are given."""
     for name in ("mjlab", "mjlab.actuator", "isaaclab", "isaaclab.actuators", "newton"):
         monkeypatch.setitem(sys.modules, name, ModuleType(name))
-    for kind in ("BuiltinDcMotorActuatorCfg", "DcMotorPhysicalParams"):
+    for kind in ("BuiltinDcMotorActuatorCfg", "DcMotorPhysicalParams", "BuiltinPositionActuatorCfg"):
         setattr(sys.modules["mjlab.actuator"], kind, Stub)
     sys.modules["mjlab.actuator"].DcMotorInputMode = SimpleNamespace(VOLTAGE=0)
+    sys.modules["isaaclab.actuators"].DelayedPDActuatorCfg = Stub
     sys.modules["isaaclab.actuators"].ImplicitActuatorCfg = sys.modules["newton"].ModelBuilder = Stub
     names = {}
     exec(compile(text, "exported", "exec"), names)
     return names
+
+
+SERVO = {"kp": 40.0, "kv": 1.5, "delay": 0.0123, "damping": 0.2, "frictionloss": 0.3, "armature": 0.01}
+SERVOS = {"hip.joint": {**SERVO, "forcerange": 23.7}, "calf": {**SERVO, "delay": 0.0}}
+
+
+def test_servos_have_gains_delay_and_friction(monkeypatch):
+    """As `bench servo` and `bench robot` write them."""
+    hip, calf = loaded(mjlab_actuators(SERVOS), monkeypatch)["ACTUATORS"]
+    assert hip.target_names_expr == (r"hip\.joint",)
+    assert (hip.stiffness, hip.damping, hip.effort_limit) == (40.0, 1.5, 23.7)
+    assert (hip.armature, hip.frictionloss, hip.viscous_damping) == (0.01, 0.3, 0.2)
+    assert (hip.delay_min_lag, hip.delay_max_lag, calf.delay_max_lag) == (2, 2, 0)
+    assert not hasattr(calf, "effort_limit")
+    actuators = loaded(isaaclab_actuators(SERVOS), monkeypatch)["ACTUATORS"]
+    hip, calf = actuators["hip.joint"], actuators["calf"]
+    assert hip.joint_names_expr == [r"hip\.joint"]
+    assert (hip.friction, hip.dynamic_friction, hip.viscous_friction) == (0.3, 0.3, 0.2)
+    assert (calf.friction, calf.dynamic_friction) == (0.3, 0.3)
+    assert (hip.min_delay, hip.max_delay) == (2, 2)
 
 
 def test_mjlab_gets_torque_cogging_and_bristles(monkeypatch):
@@ -174,8 +196,8 @@ def test_isaac_lab_gets_static_and_dynamic_friction(monkeypatch):
     assert wrist.friction == wrist.dynamic_friction == pytest.approx(0.08 * RATIO)
     assert wrist.viscous_friction == pytest.approx(1.1e-3 * RATIO**2)
     assert wrist.joint_names_expr == [r"my\ wrist"]
-    assert "elbow: carried: stribeck_friction" in lines
-    assert "elbow: not carried: load_dependent_friction (bench.Effects steps it)" in lines
+    said = ["carried: stribeck_friction", "not carried: load_dependent_friction (bench.Effects steps it)"]
+    assert {f"elbow: {one}" for one in said} <= {*lines}
 
 
 def test_newton_gets_a_spring_unless_it_rests_elsewhere(monkeypatch):

@@ -16,6 +16,11 @@ __all__ = ["bench"]
 RIG_NAME, TRACE_NAME = "<script>alert(1)</script>", "<script>alert(1)<img src=x onerror=alert(2)>.csv"
 
 
+def blocks(page, kind):
+    """Parts of a page that are of a kind."""
+    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
+
+
 @pytest.fixture(scope="session")
 def found(tmp_path_factory):
     """Folder that `bench diagnose --out` wrote of an axis with an unbalance and a holdout, all of hostile names."""

@@ -12,13 +12,10 @@ from bench.report.document import Chart, Intervals, Paragraph, Points, Table
 from bench.report.html import html
 from tests.baseline.states import named, state
 from tests.baseline.test_compare import checked
+from tests.report.conftest import blocks
 from tests.report.test_page import HOSTILE
 
 COGGING = named("cogging_torque", 0.03, amplitude=0.05, harmonic=6.0)
-
-
-def blocks(page, kind):
-    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
 
 
 @pytest.mark.parametrize(

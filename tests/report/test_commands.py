@@ -11,14 +11,11 @@ from bench.report.document import Chart, TimeGraph
 from bench.report.publish import read_document
 from bench.trace.write import write
 from tests.diagnosis.test_commands import run_of
+from tests.report.conftest import blocks
 
 
 def text_of(page):
     return page.read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
-
-
-def blocks(page, kind):
-    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
 
 
 def test_identify_leaves_a_page_and_figures_with_estimates_and_the_floor(bench, tmp_path):

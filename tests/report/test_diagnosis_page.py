@@ -22,6 +22,7 @@ from bench.report.verdict import reason
 from bench.rig.rig import Rig
 from tests.diagnosis.test_commands import run_of, with_unbalance
 from tests.fit.motions import recording
+from tests.report.conftest import blocks
 
 RIG = {"name": "axis", "kind": "rotary", "motor": {"torque_constant": "0.8 N*m/A", "rotor_inertia": "2 kg*cm**2"}}
 
@@ -34,10 +35,6 @@ def diagnosed():
 @pytest.fixture(scope="module")
 def page(found):
     return read_document(found / "report.json")
-
-
-def blocks(page, kind):
-    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
 
 
 def rms(values):

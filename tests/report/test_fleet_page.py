@@ -20,6 +20,7 @@ from bench.report.fleet import AXES, CHARTS, DOTS, ROWS, SKETCHED, fleet_documen
 from bench.report.html import html
 from bench.report.publish import write_html
 from tests.fleet.test_summary import JOB, found
+from tests.report.conftest import blocks
 from tests.report.test_page import HOSTILE
 
 BASIS = {"version": "0.1.0", "manifest_sha256": "abc", "options": {"diagnose": False}}
@@ -61,6 +62,12 @@ def page_of(fleet):
     return fleet_document(fleet, BASIS)
 
 
+def drawn(fleet):
+    """Series of the one chart of a fleet's page, by their style, and its axes."""
+    (axes,) = blocks(page_of(fleet), Chart)[0].panels
+    return [[one for one in axes.series if one.style == style] for style in ("band", "dots")], axes
+
+
 def write_pages(fleet, folder, results=True):
     """All pages of a fleet, and a manifest and results as old as they are."""
     fleet = dataclasses.replace(fleet, manifest=dataclasses.replace(fleet.manifest, path=folder / "fleet.csv"))
@@ -71,10 +78,6 @@ def write_pages(fleet, folder, results=True):
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text("{}")
     write_fleet(folder, fleet, BASIS)
-
-
-def blocks(page, kind):
-    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
 
 
 def refused(reason):
@@ -109,36 +112,26 @@ def test_where_nothing_changed_the_page_says_so(fleet, verdict, tone):
 
 def test_a_change_is_drawn_over_time_outside_of_what_was_expected_before():
     values = stepped(3, 10, [1])
-    (chart,) = blocks(page_of(fleet_of(values)), Chart)
-    (axes,) = chart.panels
-    before, after = (series for series in axes.series if series.style == "band")
-    (dots,) = (series for series in axes.series if series.style == "dots")
+    ((before, after), (dots,)), axes = drawn(fleet_of(values))
     assert (axes.x_label, axes.x_unit) == ("time since 2026-03-02 06:00:00", "d")
-    assert dots.x == tuple(range(10))
-    assert dots.y == pytest.approx(values[1])
+    assert (dots.x, dots.y) == (tuple(range(10)), pytest.approx(values[1]))
     assert all(before.low[0] < value < before.high[0] for value in dots.y[:5])
     assert all(value > before.high[0] for value in dots.y[5:])
     assert all(after.low[0] < value < after.high[0] for value in dots.y[5:])
     assert after.x == (5.0, 9.0)
-
-
-def test_times_that_are_numbers_are_given_as_they_are():
-    (chart,) = blocks(page_of(fleet_of(stepped(3, 10, [1]), dated=False)), Chart)
-    assert (chart.panels[0].x_label, chart.panels[0].x_unit) == ("time", "")
+    _, undated = drawn(fleet_of(values, dated=False))
+    assert (undated.x_label, undated.x_unit) == ("time", "")
 
 
 @pytest.mark.parametrize("after", [1, 3])
-def test_the_band_holds_the_next_recording_in_95_of_100(after):
-    rng, trials, held = np.random.default_rng(2), 4000, 0
+def test_the_band_holds_the_next_recording_in_95_of_100_and_is_never_narrower_than_its_error(after):
+    rng, trials, inside = np.random.default_rng(2), 4000, 0
     for _ in range(trials):
         values = rng.normal(1.0, 0.02, 5 + after)
         values[5:] += 0.5
         (low, high), _ = expected(values, np.full(values.size, 1e-4), 5)
-        held += low <= rng.normal(1.0, 0.02) <= high
-    assert held / trials == pytest.approx(0.95, abs=0.014)  # four standard deviations
-
-
-def test_the_band_is_never_narrower_than_the_recordings_own_errors():
+        inside += low <= rng.normal(1.0, 0.02) <= high
+    assert inside / trials == pytest.approx(0.95, abs=0.014)  # four standard deviations
     (low, high), _ = expected(np.array([1.0, 1.0, 2.0, 2.0]), np.full(4, 0.1), 2)
     assert high - low > 2.0 * 1.96 * 0.1
 
@@ -163,18 +156,19 @@ def test_a_large_fleet_is_a_small_page_that_says_what_it_leaves_out():
 
 
 def test_of_an_axis_recorded_a_thousand_times_those_around_the_change_are_drawn():
-    page = page_of(fleet_of(stepped(1, 1000, [0])))
-    (chart,) = blocks(page, Chart)
-    (dots,) = (series for series in chart.panels[0].series if series.style == "dots")
-    assert len(dots.x) == DOTS
-    assert (dots.x[0], dots.x[-1]) == (400.0, 599.0)
-    assert f"Of 1000 recordings the {DOTS} nearest" in chart.alternative
+    fleet = fleet_of(stepped(1, 1000, [0]))
+    (_, (dots,)), _ = drawn(fleet)
+    assert (len(dots.x), dots.x[0], dots.x[-1]) == (DOTS, 400.0, 599.0)
+    page = page_of(fleet)
+    assert f"Of 1000 recordings the {DOTS} nearest" in blocks(page, Chart)[0].alternative
     assert len(html(page).encode()) < 1e6
 
 
-def test_the_page_is_the_same_however_many_were_evaluated_now():
+def test_the_page_is_the_same_however_many_were_evaluated_now_and_leads_to_the_table():
     values = stepped(3, 10, [1])
-    assert html(page_of(fleet_of(values))) == html(page_of(fleet_of(values, evaluated=30)))
+    made = html(page_of(fleet_of(values)))
+    assert made == html(page_of(fleet_of(values, evaluated=30)))
+    assert '<a href="fleet.parquet">fleet.parquet</a>' in made
 
 
 def test_every_axis_has_a_row_by_how_much_it_needs_a_person():
@@ -239,7 +233,3 @@ def test_rows_with_the_words_are_shown_of_a_thousand_axes(opened, tmp_path):
     assert shown[:1] == ["axis 700"]
     assert page.locator(".seek output").inner_text() == "1 of 1000"
     print(f"\n1000 axes: {took:.0f} ms from a key to the frame")
-
-
-def test_the_table_is_one_step_away():
-    assert '<a href="fleet.parquet">fleet.parquet</a>' in html(page_of(fleet_of(stepped(1, 3, []))))

@@ -11,6 +11,7 @@ from bench.report.validation import confusion as matrix_of
 from bench.report.validation import validation
 from bench.validation.coverage import LEVELS, Coverage, Naming, Share
 from bench.validation.validate import Validation
+from tests.report.conftest import blocks
 from tests.report.test_page import HOSTILE
 
 NONE = Share(0, 0)
@@ -36,10 +37,6 @@ def named(false, of, confusion=None):
 
 def page_of(coverage, naming=None, command="bench validate"):
     return validation(Validation((), tuple(coverage), naming), provenance(None, [], {"seed": 1}), command, own=False)
-
-
-def blocks(page, kind):
-    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
 
 
 @pytest.mark.parametrize(

@@ -94,16 +94,19 @@ def test_keys_step_leap_slow_and_return(player):
     for key, time in (("ArrowRight", 0.001), ("Shift+ArrowRight", 0.101), ("ArrowLeft", 0.1), ("0", 0.0)):
         page.keyboard.press(key)
         assert readout(page)[0] == pytest.approx(time, abs=1e-9)
-    assert page.locator("output.slowed").inner_text() == "real time"
-    page.keyboard.press("-")
-    assert page.locator("output.slowed").inner_text() == "2 times slower"
-    page.keyboard.press("+")
-    assert page.locator("output.slowed").inner_text() == "real time"
+    slowed = [page.locator("output.slowed").inner_text()]
+    for key in "-+":
+        page.keyboard.press(key)
+        slowed.append(page.locator("output.slowed").inner_text())
+    assert slowed == ["real time", "2 times slower", "real time"]
 
 
 def test_a_disk_and_its_ghost_stand_where_the_signals_say(player):
     page = player()
     page.get_by_label("time", exact=True).fill("500")
+    for one in page.locator(".time .readout").all_inner_texts():  # of the graphs
+        (at,) = re.findall(r"at ([\d.]+) s", one)
+        assert float(at) == pytest.approx(0.5, abs=2e-3)
     time, ghost, simulated, apart = readout(page)
     assert (time, ghost, apart) == pytest.approx((0.5, 1.5, AHEAD))
     assert simulated == pytest.approx(1.52)
@@ -156,14 +159,3 @@ def test_it_plays_as_slow_as_it_says_and_halts_at_the_end(player):
     page.evaluate("pass(60000)")
     assert readout(page)[0] == pytest.approx(2.0)
     assert page.get_by_role("button", name="play", exact=True).is_visible()
-
-
-def test_the_graphs_tell_the_instant_that_is_shown(player):
-    page = player()
-    for instant in ("500", "1400"):
-        page.get_by_label("time", exact=True).fill(instant)
-        readouts = page.locator(".time .readout").all_inner_texts()
-        assert len(readouts) == 4
-        for one in readouts:
-            (at,) = re.findall(r"at ([\d.]+) s", one)
-            assert float(at) == pytest.approx(float(instant) * 1e-3, abs=2e-3)
