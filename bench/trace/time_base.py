@@ -188,7 +188,9 @@ def interpolate(at: Array, time: Array, values: Array) -> Array:
     They do not overshoot at the steps of a current and leave noise nearly as it is, which linear interpolation lessens
     and splines do not respect: measured in `tests/trace/test_time_base.py`.
     """
-    if time.size < _AKIMA:
+    with np.errstate(over="ignore", divide="ignore"):
+        steepest = 8.0 * np.ptp(values) / np.diff(time).min(initial=np.inf) ** 3  # no coefficient is larger
+    if time.size < _AKIMA or not np.isfinite(steepest):
         return np.interp(at, time, values)
     from scipy.interpolate import Akima1DInterpolator  # 0.15 s, which regular recordings need not pay
 

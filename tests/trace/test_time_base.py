@@ -123,6 +123,13 @@ def test_why_interpolation_is_by_akima():
     assert abs(kept["akima"] - 1.0) < abs(kept["pchip"] - 1.0) < abs(kept["linear"] - 1.0)
 
 
+@pytest.mark.parametrize(("unit", "largest"), [(1.0, 1e308), (1e-60, 1e200)])
+def test_numbers_near_the_largest_of_a_float_stay_finite(unit, largest):
+    time = unit * np.cumsum(1.0 + 0.5 * np.random.default_rng(0).random(50))
+    values = np.where(np.arange(50) % 10 == 5, largest, 0.0)
+    assert np.isfinite(interpolate(np.linspace(time[0], time[-1], 300), time, values)).all()
+
+
 def _speed(time):
     return 100.0 * np.sin(2 * np.pi * 3.0 * time) + 5.0 * np.sin(2 * np.pi * 40.0 * time)
 
