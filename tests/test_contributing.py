@@ -77,29 +77,19 @@ def test_the_examples_are_what_they_declare(extras):
     assert " passed" in done.stdout
 
 
-def test_the_examples_are_listed_with_the_catalogue(extras):
+def test_the_examples_are_listed_with_the_catalogue_and_among_the_formats_that_a_refusal_lists(extras):
     done = run(extras, "-m", "bench", "effects")
-    for name in OFFERED["effects"]:
-        assert name in done.stdout
-
-
-def test_a_reader_is_among_the_formats_that_a_refusal_lists(extras):
+    assert not [name for name in OFFERED["effects"] if name not in done.stdout]
     (extras / "what.bin").write_bytes(bytes(range(256)))
     done = run(extras, "-m", "bench", "inspect", "what.bin")
-    assert done.returncode == 2
-    assert "drive's memory, CSV table" in done.stderr
+    assert (done.returncode, "drive's memory, CSV table" in done.stderr) == (2, True)
 
 
-@pytest.mark.parametrize(
-    ("value", "said"),
-    [
-        ("builtins:sum", r"found <built-in function sum>; allowed: a reader with format, endings, recognises and read"),
-        (
-            "nowhere:READER",
-            r"cannot be imported \(ModuleNotFoundError: .*nowhere.*\); update that package, or remove it: pip",
-        ),
-    ],
-)
+IMPORTED = r"cannot be imported \(ModuleNotFoundError: .*nowhere.*\); update that package, or remove it: pip"
+READER = r"found <built-in function sum>; allowed: a reader with format, endings, recognises and read"
+
+
+@pytest.mark.parametrize(("value", "said"), [("builtins:sum", READER), ("nowhere:READER", IMPORTED)])
 def test_what_is_no_reader_is_refused(tmp_path, monkeypatch, value, said):
     installed = tmp_path / "other-1.0.dist-info"
     installed.mkdir()
@@ -112,9 +102,7 @@ def test_what_is_no_reader_is_refused(tmp_path, monkeypatch, value, said):
 
 def test_the_page_refers_to_what_exists():
     found = re.findall(r"`((?:bench|tests|docs)/[a-z_/]+(?:\.[a-z]+)?)`", PAGE)
-    assert found
-    for path in found:
-        assert (ROOT / path).exists(), path
+    assert found and not [path for path in found if not (ROOT / path).exists()]
 
 
 def test_a_fault_of_another_package_is_attributed_to_it(extras):
