@@ -7,14 +7,13 @@ from scipy.signal import lfilter
 from bench.diagnosis.policy import POLICY
 from bench.diagnosis.search import search
 from bench.effects.catalogue import catalogue
-from bench.effects.current_loop_lag import EFFECT as TORQUE_LAG
 from bench.effects.velocity_filter_lag import EFFECT
 from bench.plant.run import run
 from bench.plant.sensing import reported_states
 from bench.rig.rig import load_rig
 from bench.trace.trace import Trace
 from tests.diagnosis.constructed import RIG, bare, moved, recorded, wave
-from tests.effects.axes import PERIOD, Reversals, model, plant
+from tests.effects.axes import Reversals, model, plant
 
 #: The rig with a drive of 250 us.
 TICKING = RIG.model_copy(update={"drive": load_rig("sh30701p").drive})
@@ -25,26 +24,6 @@ def test_the_axis_does_not_feel_the_filter_of_its_recorder():
     states = run(plant("current_filter_lag"), references)
     np.testing.assert_array_equal(states.velocity, run(plant(), references).velocity)
     assert np.abs(reported_states(model("current_filter_lag"), states).torque - states.torque).max() > 0.01
-
-
-def test_along_a_recording_as_step_by_step():
-    """A sine at the middles of steps: both are second order in the step, and halving it shows that."""
-    time_constant, omega = 3e-3, 120.0
-    off = []
-    for step in (PERIOD, PERIOD / 2.0):
-        time = np.arange(round(0.2 / step)) * step
-        reported = np.sin(omega * time)
-        before, middles = reported[:1], []
-        for value in reported:
-            middle, before = TORQUE_LAG.stepped({"time_constant": time_constant}, np.array([value]), before, step)
-            middles.append(middle[0])
-        along = TORQUE_LAG.lagging({"time_constant": time_constant}, reported, step)
-        settled = time > 30.0 * time_constant
-        phase = np.arctan(omega * time_constant)
-        exact = np.cos(phase) * np.sin(omega * time - phase)
-        off.append([np.abs(found - exact)[settled].max() for found in (np.array(middles), along)])
-    assert (np.array(off[0]) < 2e-4).all()
-    assert (np.array(off[1]) < 0.3 * np.array(off[0])).all()
 
 
 def first_order_of(lag):
