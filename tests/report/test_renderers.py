@@ -28,7 +28,7 @@ from bench.report.document import (
     series,
     table,
 )
-from bench.report.html import Ruler, drawn, line
+from bench.report.html import MARGIN, Ruler, drawn, line
 from bench.report.publish import markdown
 from bench.report.serial import known, picked, serialised
 from bench.report.terminal import rendered, show, writable
@@ -92,6 +92,9 @@ def test_a_rulers_ends_and_middle():
     log = Ruler(1.0, 100.0, 100.0, 200.0, log=True)
     assert [log(value) for value in (1.0, 10.0, 100.0)] == [100.0, 150.0, 200.0]
     assert [label for _, label in Ruler(0.5, 2000.0, 0.0, 1.0, log=True).ticks()] == ["1", "10", "100", "1000"]
+    for values, ends in (((1.0, 100.0), (100.0**-MARGIN, 100.0 * 100.0**MARGIN)), ((3.0,), (1.5, 6.0))):
+        found = Ruler.around(values, 0.0, 1.0, log=True)
+        assert (found.low, found.high) == pytest.approx(ends)
 
 
 def places(path):

@@ -84,6 +84,8 @@ def test_what_is_reported_in_the_place_of_a_name_is_reported_most_frequent_first
     confusion = next(table for table in blocks(page, Table) if "is hidden, or none" in table.caption)
     assert confusion.rows == (("backlash", "backlash 8, refused 1"), ("nothing", "nothing missing 5"))
     assert page.verdict.startswith("No run determines a quantity; 1 of 9")
+    (by_effect,) = (table for table in blocks(page, Table) if table.caption == "By effect")
+    assert [(row[0], row[2:]) for row in by_effect.rows] == [("backlash", ("8/9", "0"))]
 
 
 def test_names_given_are_a_matrix_whose_right_answers_lie_on_its_diagonal():
