@@ -12,13 +12,13 @@ from bench.jobs.process import Failure, Limits, WorkerProcess
 from tests.jobs import pieces
 from tests.jobs.pieces import work
 
-LIMITS = Limits(deadline=3.0, memory=300 * 2**20)
+LIMITS = Limits(deadline=5.0, memory=300 * 2**20)
 REFUSAL = f"ValueError: 7 is not for me (at pieces.py:{pieces.refuse.__code__.co_firstlineno + 1})"
 #: What is done, and its outcome.
 OUTCOMES = {
     (pieces.square, 3): 9,
     (pieces.refuse, 7): Failure("failed", REFUSAL),
-    (pieces.hang, 0): Failure("timed_out", "no result within 3 s"),
+    (pieces.hang, 0): Failure("timed_out", "no result within 5 s"),
     (pieces.crash, 0): Failure("failed", "its worker was killed (SIGSEGV)"),
     (pieces.killed, 0): Failure("failed", "its worker was killed (SIGKILL)"),
     (pieces.fill, 400): Failure("failed", "its worker was killed (it took more than 300 MB)"),

@@ -6,7 +6,6 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from bench.errors import InputError
 from bench.trace.read import read
 from bench.trace.readers.arrow import seconds
 
@@ -59,9 +58,11 @@ def test_what_is_no_date_is_no_moment(date):
     assert seconds(pa.array([f"{date} 10:00:00", f"{date} 10:00:01"])) is None
 
 
-def test_an_earlier_date_later_in_a_file_runs_backwards(tmp_path):
+def test_an_earlier_date_later_in_a_file_is_sorted_and_reported(tmp_path):
     path = tmp_path / "log.csv"
     stamps = [f"2024-03-{5 if k < 50 else 1:02d} 10:00:{k * 0.01:06.3f}" for k in range(100)]
     path.write_text("time,velocity [rad/s]\n" + "".join(f"{one},{np.sin(k)}\n" for k, one in enumerate(stamps)))
-    with pytest.raises(InputError, match="back"):
-        read(path)
+    trace = read(path)
+    np.testing.assert_allclose(trace["velocity"], np.sin(np.r_[50:100, 0:50]))
+    assert np.diff(trace.time).max() == pytest.approx(4.0 * DAY - 0.99)
+    assert any("earlier than the one before; sorted by time" in note for note in trace.notes)
