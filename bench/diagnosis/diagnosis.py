@@ -444,8 +444,9 @@ def considered(added: Added, probabilities: Probabilities) -> tuple[Considered, 
             reason = Reason("accepted", kept[effect].evidence)
         else:
             reason = Reason("alike", {"effect": same.name}) if same is not None else against(effect, added)
-        shares = suspects.of_gap.get(effect), None if accepted else suspects.of_residual.get(effect)
-        found[effect] = Considered(effect, accepted, likely, *shares, reason)
+        every = suspects.of_gap.get(effect), None if accepted else suspects.of_residual.get(effect)
+        gap, left = (None if one is None else min(one, 1.0) for one in every)  # rescaled torque has no bound
+        found[effect] = Considered(effect, accepted, likely, gap, left, reason)
     first = [found.pop(effect) for effect in kept]
     return (*first, *sorted(found.values(), key=lambda one: -(one.of_gap or 0.0)))
 

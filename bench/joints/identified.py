@@ -25,7 +25,7 @@ from bench.gate.gate import passed, warnings_of
 from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
 from bench.joints.friction_models import FrictionModel, friction_models
-from bench.joints.weight import constant_of, counted_differently, needs_constant, with_constant
+from bench.joints.weight import constant_of, counted_differently, needs_constant, require_counted, with_constant
 from bench.names import words
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
@@ -249,12 +249,12 @@ def identified(asked: JointLogs) -> IdentifiedJoint:
 
 def diagnosed(asked: JointLogs, rig: Rig, logs: Read, holdout: Callable[[], Read]) -> IdentifiedJoint:
     """The joint by what was read of its logs, with efforts; raises where it moves in none of them."""
-    used, left_out = _moving(*logs, rig)
+    used, left_out = _moving(*logs, rig, asked.joint)
     traces, poses = [trace for trace, _ in used.values()], next(iter(used.values()))[1]
     unseen: dict[Path, tuple[Trace, Poses]] = {}
     if asked.holdout is not None:
         try:
-            unseen, _ = _moving(*holdout(), rig)
+            unseen, _ = _moving(*holdout(), rig, asked.joint)
         except BenchError as error:
             left_out[asked.holdout.name] = str(error)
     try:
@@ -380,7 +380,7 @@ def _with_constant(joint: str, rig: Rig, traces: Sequence[Trace]) -> tuple[Rig, 
 
 
 def _moving(
-    read: Mapping[Path, tuple[Trace, Poses]], refused: Mapping[Path, BenchError], rig: Rig
+    read: Mapping[Path, tuple[Trace, Poses]], refused: Mapping[Path, BenchError], rig: Rig, joint: str
 ) -> tuple[dict[Path, tuple[Trace, Poses]], dict[str, str]]:
     """Recordings in which the joint moves, with the robot's poses along each, and why the others are none.
 
@@ -391,12 +391,24 @@ def _moving(
         try:
             trace = passed(recorded, rig).trace
             Rows.of(trace, rig)
+            require_counted(joint, trace, rig)
             traces[log] = trace, poses
         except (InputError, UndeterminedError) as error:
-            reasons[log] = error
+            reasons[log] = _explained(error, joint, recorded, rig)
     if not traces:
         raise next(iter(reasons.values()))
     return traces, {log.name: str(error) for log, error in reasons.items()}
+
+
+def _explained(error: BenchError, joint: str, recorded: Trace, rig: Rig) -> BenchError:
+    """What is wrong with a log: that its effort is in another unit, if so; else the error."""
+    try:
+        require_counted(joint, recorded, rig)
+    except InputError as cause:
+        return cause
+    except UndeterminedError:  # the log determines no more than the error says
+        return error
+    return error
 
 
 def _without_effects(

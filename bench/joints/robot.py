@@ -191,11 +191,12 @@ def _answered(
         if max(gains, default=0.0) <= 0.0:
             break
         work, found = tried[gains.index(max(gains))]
-    turned = reversed_joints(work) if (open_ := _open(found)) else []
+    unlike = _open(found) or any(one.failed for one in found.values())
+    turned = reversed_joints(work) if unlike else []
     if turned:
         work = carrying(work, turned)
         found = _identified(work, progress)
-        open_ = _open(found)
+    open_ = _open(found)
     # behind a soft gear the lag of a link looks like more of its inertia, or of its neighbours'
     links, zeros = list[DoubtedLink](), list[DoubtedZero]()
     if open_ and not any(one.twists for one in found.values()):

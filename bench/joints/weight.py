@@ -19,7 +19,7 @@ import numpy as np
 from bench.arrays import Array, rms
 from bench.comparison.spread import ALARM, excess
 from bench.effects.signals import Signals
-from bench.errors import UndeterminedError
+from bench.errors import InputError, UndeterminedError
 from bench.fit.hypothesis import BASE, lay_out, plain
 from bench.fit.rows import Rows, effort_of, known_of
 from bench.fit.solution import block_edges, equations, estimated, solved
@@ -35,6 +35,8 @@ SLOW = (0.1, 0.4)
 OWN = len(BASE) + 1 + len(SLOW)
 #: Least share of a column's power that the joint's own terms must leave.
 LEAST = 0.01
+#: By how much an effort may count the known torque: what `torque_scale` may be.
+POSSIBLE = 0.2, 5.0
 #: Share of the known torque by which logs may count it differently: masses are weighed and lengths measured as well.
 WEIGHED = 0.01
 
@@ -94,6 +96,23 @@ def counted_differently(traces: Mapping[Path, Trace], rig: Rig) -> Iterator[str]
         counts = (f"{one.value:.3f} ± {one.half_width:.2g} in {readable(log.name)}" for log, one in shares.items())
         which = "check the payload in the MJCF of the one that differs"
         yield f"the known weight counts {', '.join(counts)} times: {which}"
+
+
+def require_counted(joint: str, trace: Trace, rig: Rig) -> None:
+    """InputError where the effort of a joint surely is no torque (force) on it: it counts the known one otherwise."""
+    share, (least, most) = _counted(trace, rig), POSSIBLE
+    if share is None or (share.ci95[1] > least and share.ci95[0] < most):
+        return
+    effort, unit = rig.axis_kind.effort, rig.effort_unit
+    found = f"its {effort} counts the known weight of the links {share.value:.3g} ± {share.half_width:.2g} times"
+    notes = f"under [joints.{joint}] in a rig"
+    allowed = (
+        f"allowed: {least:g} to {most:g} times; behind a motor before a gear, `gear_ratio = 50` {notes}; "
+        f'in another unit, or a share, what one of it is, as `{effort} = "COLUMN [0.15 {unit}]"` in its columns; '
+        "of a command, with what compensates the weight"
+    )
+    other = f"; counted the other way, a leading - in its columns {notes}" if share.ci95[1] < 0.0 else ""
+    raise InputError(f"{trace.origin}: joint '{joint}'", found, allowed + other)
 
 
 def _counted(trace: Trace, rig: Rig) -> Parameter | None:

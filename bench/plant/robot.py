@@ -34,7 +34,7 @@ from bench.trace.choose import GivenOptions, axes_of
 from bench.trace.joints import named
 from bench.trace.motion import slope, stretches_of
 from bench.trace.read import read_recording
-from bench.trace.signals import STANDING, STANDING_ASK, signal_of
+from bench.trace.signals import RELATIVE, STANDING, STANDING_ASK, signal_of
 from bench.trace.time_base import interpolate
 from bench.trace.trace import Trace, assemble, with_known
 
@@ -564,7 +564,11 @@ def _known(
     trace, position, velocity, stand = moved
     unit = own.effort(trace)[1]
     if unit != own.effort_unit:
-        allowed = f"allowed: {own.effort_unit}, or its torque_constant under [joints.{robot.joint}] in a rig"
+        if unit == RELATIVE:
+            column = f'`{own.axis_kind.effort} = "COLUMN [1.5 {own.effort_unit}]"` for 1 % of 150 {own.effort_unit}'
+            allowed = f"allowed: {own.effort_unit}, as {column} under [joints.{robot.joint}.columns] in a rig"
+        else:
+            allowed = f"allowed: {own.effort_unit}, or its torque_constant under [joints.{robot.joint}] in a rig"
         where = f"{trace.origin}: joint '{robot.joint}'"
         raise InputError(where, f"found an effort in {unit}, with links in kg", allowed)
     torque, momentum = robot.rest(position, velocity)

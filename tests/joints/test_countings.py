@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import bench
-from bench.joints.identified import JointLogs
+from bench.joints.identified import JointLogs, identified
 from bench.joints.links import doubt_links, doubted, reversed_joints
 from bench.plant.robot import Counting, count_as
 from tests.sines import sines
@@ -101,3 +101,12 @@ def test_an_arm_that_counts_as_its_log_stands_where_it_did(unit):
     other = spec.compile()
     np.testing.assert_allclose(place(other, [-0.9 - 0.2, 0.5]), place(original, [0.9, 0.5]), atol=1e-12)
     np.testing.assert_allclose(other.jnt_range[0], -original.jnt_range[0][::-1] - 0.2, atol=1e-12)
+
+
+@pytest.mark.parametrize("scale", [0.02, 40.0, -1.0])
+def test_an_effort_in_another_unit_is_refused_by_the_weight_that_it_counts(motion, tmp_path, scale):
+    time, (q, v, a, torque) = motion
+    counted = time, np.stack([q, v, a, scale * torque])
+    first, _ = asked(counted, tmp_path)
+    found = identified(first)
+    assert f"counts the known weight of the links {scale:.3g} " in found.failed and "gear_ratio" in found.failed
