@@ -131,7 +131,11 @@ def test_gravity_on_known_links_gives_the_scale_and_the_actuator_loads(of_arm):
     assert model.actuator_delay[0] == pytest.approx(values["dead_time"], rel=1e-4)
 
 
-@pytest.mark.parametrize("stated", ['armature="0"', 'armature="0.001"'], ids=["no armature", "a wrong one"])
+@pytest.mark.parametrize(
+    "stated",
+    [pytest.param('armature="0"', marks=pytest.mark.slow), 'armature="0.001"'],
+    ids=["no armature", "a wrong one"],
+)
 def test_an_inertia_that_is_not_the_joint_s_gives_no_scale(tmp_path, stated):
     """With the link alone kp was 3.3 +- 0.1 of 12, as nobody states the armature of a hobby servo."""
     armature, goal = 0.02, 0.08 * goals(np.random.default_rng(3), 100.0, 12.0)
