@@ -406,7 +406,7 @@ def _explained(error: BenchError, joint: str, recorded: Trace, rig: Rig) -> Benc
         require_counted(joint, recorded, rig)
     except InputError as cause:
         return cause
-    except UndeterminedError:  # the log determines no more than the error says
+    except UndeterminedError:  # no more than the error
         return error
     return error
 

@@ -89,7 +89,7 @@ class Common:
     Attributes:
         strengths, deviations: those and their standard errors (k,).
         reach: of an interval of 95 % in standard errors.
-        lefts: logarithms of the squares that the joints leave (j,).
+        lefts: logarithms of the joints' squared residuals (j,).
         open: which strengths no joint shows (k,).
     """
 
@@ -278,7 +278,7 @@ def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink | DoubtedZero]:
 def _contradicted(products: Sequence[Array], own: Sequence[float]) -> list[int]:
     """Numbers of the columns that the residuals of all joints require: of links' inertias, and then of zeros.
 
-    A zero turns all links that follow: it has to explain what more than one joint leaves. An unbalance is of one.
+    A zero turns all links that follow: it has to explain residuals of more than one joint. An unbalance is of one.
     """
     links, every = len(own), products[0].shape[1] - OWN - 1
     determined = [k for k in range(every) if _tells(products, k)]
@@ -303,7 +303,7 @@ def _contradicted(products: Sequence[Array], own: Sequence[float]) -> list[int]:
 
 
 def reversed_joints(work: Sequence[JointLogs]) -> list[Counting]:
-    """Joints that the first log counts the other way than the MJCF: what all joints leave falls if they are turned."""
+    """Joints that the first log counts the other way than the MJCF: the residuals of all fall if they are turned."""
     first = [replace(asked, logs=asked.logs[:1]) for asked in work]
     found, left, unlike = list[Counting](), *_left(first)
     while unlike and len(found) < len(work):
@@ -318,8 +318,7 @@ def reversed_joints(work: Sequence[JointLogs]) -> list[Counting]:
 
 
 def _left(work: Sequence[JointLogs]) -> tuple[float, bool]:
-    """Logarithms of the squares that all joints leave, summed, and whether one leaves most of what its own terms and
-    the links should explain."""
+    """Logarithms of the squared residuals of all joints, summed, and whether one of them is large."""
     wholes = [_only(one, []).sum(axis=0) for one in of_joints(work, [])]
     lefts = [float(_reduced(whole)[0, 0]) for whole in wholes]
     unlike = any(left > UNLIKE * whole[-1, -1] for left, whole in zip(lefts, wholes, strict=True))
