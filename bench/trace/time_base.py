@@ -138,7 +138,7 @@ def _in_order(clock: Clock, values: Mapping[str, Array]) -> tuple[Clock, Mapping
     return by_time, {name: array[order] for name, array in values.items()}, note
 
 
-def _from(order: Array, place: int | None) -> int | None:
+def _from(order: NDArray[np.intp], place: int | None) -> int | None:
     """Where a sample was before it was sorted."""
     return None if place is None else int(order[place])
 
