@@ -133,8 +133,9 @@ def with_law(found: Quantities, law: Law, kind: AxisKind, link: float) -> None:
 def _unknown_scale(model: JointModel | None, kind: AxisKind) -> str:
     """What would give the scale of torques, in a sentence."""
     if model is None:
-        known = "state the inertia (an MJCF, or rotor and load in the rig), or move a known mass against gravity "
-        return f"{known}([load] eccentric_mass)."
+        own = "[motor] rotor_inertia and [load] moment_of_inertia" if kind.turns else "[motor] moving_mass"
+        known = f"state the inertia (an MJCF, or {own} in the rig)"
+        return f"{known}, or move a known mass against gravity ([load] eccentric_mass)."
     known = "the MJCF states no armature"
     if model.armature:
         known = f"the link's weight contradicts the armature of {model.armature:.3g} {kind.inertia_unit} in the MJCF"

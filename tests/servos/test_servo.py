@@ -43,11 +43,12 @@ def quick():
     """A servo without a limit, as it is found from 12 s at 100 Hz and 12 bit."""
     truth = Truth(rate=100.0, control_period=50e-6, coulomb=0.02)
     goal = goals(np.random.default_rng(5), truth.rate, 12.0)
-    return truth, bench.servo(log(goal, motion(truth, goal), truth.rate))
+    trace = log(goal, motion(truth, goal), truth.rate)
+    return truth, bench.servo(trace), trace
 
 
 def test_ratios_are_found_and_their_parts_are_not_stated(quick):
-    truth, found = quick
+    truth, found, trace = quick
     expected = truth.effective
     of = found.found.inseparable
     assert of["kp/moment_of_inertia"].value == pytest.approx(expected["kp"], rel=0.03)
@@ -57,10 +58,14 @@ def test_ratios_are_found_and_their_parts_are_not_stated(quick):
     assert found.parameters["dead_time"].value == pytest.approx(expected["dead_time"], abs=1e-3)
     assert {"kp", "kv"}.isdisjoint(found.parameters)
     assert not found.found.actuator
+    advised = re.findall(r"\[(\w+)\] (rotor_inertia|moment_of_inertia)", " ".join(found.found.advice))
+    half = f"{0.5 * truth.inertia} kg*m**2"
+    known = bench.servo(trace, bench.Rig(**{table: {key: half} for table, key in advised}))
+    assert covers(known.parameters["kp"], truth.kp)
 
 
 def test_the_residual_is_noise_and_a_limit_never_reached_is_a_lower_bound(quick):
-    _, found = quick
+    _, found, _ = quick
     assert found.verdict == "nothing_missing"
     assert found.gaps["identify"].after < 0.2 * found.gaps["identify"].before
     assert re.search(r"not reached; it is at least [\d.]+", found.found.refused["force_limit"])
