@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench.trace.write import DEFINITION
 from tests.docs.pages import PAGES, bench_commands, run_commands
 from tests.fit.motions import NAMES, Truth, recording
-from tests.trace.test_containers import JOINT_STATE
 
 SECTIONS = dict(re.findall(r"^## (.*?)\n(.*?)(?=^## |\Z)", PAGES["docs/recordings.md"], re.MULTILINE | re.DOTALL))
 TORQUE_CONSTANT = 0.8
@@ -47,7 +47,7 @@ def ros2(axis):
     writers = pytest.importorskip("mcap_ros2.writer")
     with Path("bag.mcap").open("wb") as file:
         writer = writers.Writer(file)
-        schema = writer.register_msgdef("sensor_msgs/msg/JointState", JOINT_STATE)
+        schema = writer.register_msgdef("sensor_msgs/msg/JointState", DEFINITION)
         for t, p, v, c in zip(*(column.tolist() for column in axis), strict=True):
             stamp = 1_700_000_000_000_000_000 + round(t * 1e9)
             sec, nanosec = divmod(stamp, 10**9)

@@ -36,7 +36,7 @@ WRITTEN = frozenset({"out", "json", "junit", "draft", "synthetic", "notebooks", 
 #: Those of them that name folders, which may be there.
 FOLDERS = frozenset({"out", "synthetic", "notebooks"})
 #: Parameters of commands that are the recordings which a result is of.
-RECORDINGS = frozenset({"file", "trace", "traces", "log", "logs"})
+RECORDINGS = frozenset({"file", "trace", "traces", "logs"})
 #: Notes on the recordings of this run, in order. Bad input is one line, without them.
 NOTES: dict[str, None] = {}
 #: Parameters of commands whose file is read, and replaced with `--update`.

@@ -208,7 +208,9 @@ def _beside(spec: mujoco.MjSpec, one: Change, path: Path) -> str:
     """
     if isinstance(one, Counting):
         count_as(spec, one)
-        return f"{one.joint}: counts as its log does" + (", the other way" if one.reversed else f", {one.zero:.4g} on")
+        return f"{one.joint}: as its log counts, " + (
+            "axis reversed" if one.reversed else f"zero moved by {one.zero:.4g}"
+        )
     if not one.joint:
         add_body(spec, PAYLOAD, one, path)
         return f"{one.body}: with a payload of {one.mass:.4g} kg, the body '{PAYLOAD}'"

@@ -394,13 +394,13 @@ def _moving(
             require_counted(joint, trace, rig)
             traces[log] = trace, poses
         except (InputError, UndeterminedError) as error:
-            reasons[log] = _explained(error, joint, recorded, rig)
+            reasons[log] = _cause(error, joint, recorded, rig)
     if not traces:
         raise next(iter(reasons.values()))
     return traces, {log.name: str(error) for log, error in reasons.items()}
 
 
-def _explained(error: BenchError, joint: str, recorded: Trace, rig: Rig) -> BenchError:
+def _cause(error: BenchError, joint: str, recorded: Trace, rig: Rig) -> BenchError:
     """What is wrong with a log: that its effort is in another unit, if so; else the error."""
     try:
         require_counted(joint, recorded, rig)

@@ -327,24 +327,22 @@ def _left(work: Sequence[JointLogs]) -> tuple[float, bool]:
 
 def doubted(work: Sequence[JointLogs]) -> tuple[list[JointLogs], list[DoubtedLink], list[DoubtedZero]]:
     """The logs of the robot as they show it, and what that is; zeros settle first, as they turn the links."""
-    work, steps = list(work), dict[str, float]()
-    at, zeros, links = dict[str, float](), list[DoubtedZero](), list[DoubtedLink]()
+    shown, at, links, zeros = list(work), dict[str, float](), list[DoubtedLink](), list[DoubtedZero]()
     for _ in range(MOST):
-        doubts = doubt_links(work)
+        doubts = doubt_links(shown)
         links = [one for one in doubts if isinstance(one, DoubtedLink)]
-        more = {one.joint: one.zero.value for one in doubts if isinstance(one, DoubtedZero)}
-        if not more:
+        steps = {one.joint: one.zero.value for one in doubts if isinstance(one, DoubtedZero)}
+        if not steps:
             break
-        steps = more
         for _ in range(ROUNDS):
-            work = carrying(work, [Counting(joint, step) for joint, step in steps.items()])
             at = {joint: at.get(joint, 0.0) + steps.get(joint, 0.0) for joint in {**at, **steps}}
-            found = shared(of_joints(work, [Counting(joint, SHIFT) for joint in at]), range(len(at)))
+            shown = carrying(work, [Counting(joint, zero) for joint, zero in at.items()])
+            found = shared(of_joints(shown, [Counting(joint, SHIFT) for joint in at]), range(len(at)))
             steps = dict(zip(at, (SHIFT * found.strengths).tolist(), strict=True))
-            errors = dict(zip(at, (SHIFT * found.deviations).tolist(), strict=True))
-            units = {joint: work[0].robot().unit(joint) for joint in at}
-            zeros = [DoubtedZero(z, found.parameter(at[z] + steps[z], errors[z], units[z])) for z in at]
-    changes: list[Change] = [Counting(joint, step) for joint, step in steps.items()]
+            units = {joint: shown[0].robot().unit(joint) for joint in at}
+            values = zip(at, (SHIFT * found.deviations).tolist(), strict=True)
+            zeros = [DoubtedZero(j, found.parameter(at[j] + steps[j], error, units[j])) for j, error in values]
+    changes: list[Change] = [Counting(one.joint, one.zero.value) for one in zeros]
     changes += [AddedBody(joint=one.joint, inertia=one.inertia) for one in links]
     return carrying(work, changes), links, zeros
 

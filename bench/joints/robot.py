@@ -212,10 +212,14 @@ def _counted_otherwise(one: Counting | DoubtedZero) -> str:
     """What a user should know of a joint that the log counts in another way."""
     if isinstance(one, DoubtedZero):
         zero = f"{one.zero.value:.4g} ± {one.zero.half_width:.2g} {one.zero.unit}"
-        return f"{one.joint}: the log's position plus {zero} is the MJCF's; identified so, and its `ref` moved"
+        return (
+            f"{one.joint}: the log has another zero than the MJCF, whose position is the log's + ({zero}). "
+            "The joint is identified with it, and `robot_id.xml` has it as `ref`"
+        )
     return (
-        f"{one.joint}: the log counts it the other way than the MJCF; identified so, with its axis turned; to keep the "
-        f"MJCF's axis, put `sign = -1` under [joints.{one.joint}] in a rig"
+        f"{one.joint}: the log counts position, speed and torque in the opposite direction to the MJCF. The joint is "
+        "identified with its axis reversed; to keep the MJCF's axis, put `sign = -1` under "
+        f"[joints.{one.joint}] in a rig"
     )
 
 

@@ -99,19 +99,20 @@ def counted_differently(traces: Mapping[Path, Trace], rig: Rig) -> Iterator[str]
 
 
 def require_counted(joint: str, trace: Trace, rig: Rig) -> None:
-    """InputError where the effort of a joint surely is no torque (force) on it: it counts the known one otherwise."""
+    """InputError where the effort of a joint is surely not the one on it - N*m (N) -, by the weight of the links."""
     share, (least, most) = _counted(trace, rig), POSSIBLE
     if share is None or (share.ci95[1] > least and share.ci95[0] < most):
         return
-    effort, unit = rig.axis_kind.effort, rig.effort_unit
-    found = f"its {effort} counts the known weight of the links {share.value:.3g} ± {share.half_width:.2g} times"
-    notes = f"under [joints.{joint}] in a rig"
+    effort, notes = rig.axis_kind.effort, f"[joints.{joint}"
+    times = f"{share.value:.3g} ± {share.half_width:.2g} times"
+    found = f"its {effort} is {times} what the known weight of the links requires"
     allowed = (
-        f"allowed: {least:g} to {most:g} times; behind a motor before a gear, `gear_ratio = 50` {notes}; "
-        f'in another unit, or a share, what one of it is, as `{effort} = "COLUMN [0.15 {unit}]"` in its columns; '
-        "of a command, with what compensates the weight"
+        f"allowed: {least:g} to {most:g} times. On the motor's side of a gear: state `gear_ratio = 50` under {notes}] "
+        "in a rig. In another unit, or a share: state what one of it is, "
+        f'`{effort} = "COLUMN [0.15 {rig.effort_unit}]"` under {notes}.columns]. '
+        "A command without gravity compensation: add that to it"
     )
-    other = f"; counted the other way, a leading - in its columns {notes}" if share.ci95[1] < 0.0 else ""
+    other = ". In the opposite direction: put a - in front of its column there" if share.ci95[1] < 0.0 else ""
     raise InputError(f"{trace.origin}: joint '{joint}'", found, allowed + other)
 
 

@@ -142,7 +142,7 @@ def _implausible(name: str, top: float, counted: bool, si: str) -> str | None:
 
 def _instead(name: str, top: float, counted: bool, usual: Sequence[str]) -> str:
     """A unit to state: of an encoder's counts, or the first usual one in which the largest value is reached."""
-    if counted and usual[-1] in _USUAL["position"][0]:
+    if counted and usual[-1] == "turn":
         return _COUNTED
     reached = (unit for unit in usual[1:] if top * _factor(name, unit) <= _reached(name))
     return next(reached, usual[-1])

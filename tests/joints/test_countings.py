@@ -109,4 +109,5 @@ def test_an_effort_in_another_unit_is_refused_by_the_weight_that_it_counts(motio
     counted = time, np.stack([q, v, a, scale * torque])
     first, _ = asked(counted, tmp_path)
     found = identified(first)
-    assert f"counts the known weight of the links {scale:.3g} " in found.failed and "gear_ratio" in found.failed
+    assert f"its torque is {scale:.3g} ± " in found.failed and "known weight of the links" in found.failed
+    assert "gear_ratio" in found.failed

@@ -15,6 +15,7 @@ from mcap_ros2.writer import Writer
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
+from bench.trace.write import DEFINITION
 from tests.trace.recordings import machine_expert_xml
 
 #: What a user states of a format whose columns have no unit or another name.
@@ -24,21 +25,6 @@ COLUMNS = {
 }
 for name in ("MAT", "NPZ", "HDF5", "TDMS", "Parquet"):
     COLUMNS[name] = {"time": "time [ms]", "velocity": "velocity [rad/s]", "current": "current [A]"}
-
-
-JOINT_STATE = """std_msgs/Header header
-string[] name
-float64[] position
-float64[] velocity
-float64[] effort
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec"""
 
 
 def bag(path, time, joints, states, stamped=True, topics=()):
@@ -53,7 +39,7 @@ def bag(path, time, joints, states, stamped=True, topics=()):
     """
     with path.open("wb") as file:
         writer = Writer(file)
-        kind = writer.register_msgdef("sensor_msgs/msg/JointState", JOINT_STATE)
+        kind = writer.register_msgdef("sensor_msgs/msg/JointState", DEFINITION)
         number = writer.register_msgdef("std_msgs/msg/Float64", "float64 data")
         for k, t in enumerate(time):
             stamp = 1_700_000_000_000_000_000 + round(t * 1e9)

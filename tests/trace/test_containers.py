@@ -21,10 +21,9 @@ from bench.trace.choose import GivenOptions
 from bench.trace.read import read, read_recording
 from bench.trace.readers.containers import apart
 from bench.trace.source import Source
-from tests.trace.formats import JOINT_STATE, bag, content
+from tests.trace.formats import bag, content
 from tests.trace.recordings import current, velocity
 
-__all__ = ["JOINT_STATE"]
 TIME = np.arange(400) * 2e-3
 SPEED, AMPS = np.deg2rad(velocity(TIME)), current(TIME) * 1e-3
 MAPPED = {"time": "log.t [s]", "velocity": "log.w [rad/s]", "current": "log.i [A]"}
