@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
-from importlib.metadata import entry_points
+from functools import cache
+from importlib.metadata import EntryPoints, entry_points
 from traceback import walk_tb
 from types import TracebackType
 from typing import TypeVar
@@ -20,6 +22,13 @@ GROUPS = EFFECTS_GROUP, READERS_GROUP, COMMANDS_GROUP = (
 )
 
 
+@cache
+def _entry_points(_path: tuple[str, ...]) -> dict[str, EntryPoints]:
+    """Entry points of each group from packages on this path, read once per process: that costs 7 ms."""
+    installed = entry_points()
+    return {group: installed.select(group=group) for group in GROUPS}
+
+
 def offered(group: str, kind: type[T], what: str) -> Iterator[tuple[str, T]]:
     """Everything of a group, under the name that it is offered by.
 
@@ -31,7 +40,7 @@ def offered(group: str, kind: type[T], what: str) -> Iterator[tuple[str, T]]:
     Raises:
         InputError: one of them cannot be imported, or is something else; names its package.
     """
-    for entry in entry_points(group=group):
+    for entry in _entry_points((*sys.path,))[group]:
         package = entry.dist.name if entry.dist else entry.module
         place = f"{group}: {entry.value} of {package}"
         try:
@@ -50,5 +59,5 @@ def offered(group: str, kind: type[T], what: str) -> Iterator[tuple[str, T]]:
 def at_fault(trace: TracebackType | None) -> str:
     """The package that offers what an exception passed through; empty if none of them does."""
     passed = {str(frame.f_globals.get("__name__")).split(".")[0] for frame, _ in walk_tb(trace)}
-    others = (entry for group in GROUPS for entry in entry_points(group=group))
+    others = (entry for group in GROUPS for entry in _entry_points((*sys.path,))[group])
     return next((entry.dist.name for entry in others if entry.dist and entry.module.split(".")[0] in passed), "")
