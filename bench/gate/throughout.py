@@ -13,8 +13,9 @@ from bisect import bisect_left
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bench.arrays import Array, rms
+from bench.arrays import Array
 from bench.gate.check import Balanced, Check, Seen, absent, basis_of
 from bench.names import percent
 from bench.trace.trace import Trace
@@ -22,8 +23,12 @@ from bench.trace.trace import Trace
 NAME = "balance_holds_throughout"
 #: Blocks of a recording, and windows that one has at least.
 BLOCKS, WINDOWS = 32, 6
-#: Share of the effort that the balance explains, with the gains' signs taken out, from which on they are meaningful.
+#: Share of the effort that the balance explains, with the fault undone, from which on it is one.
 EXPLAINED = 0.6
+#: Share of the effort that one balance of all blocks explains, from which on no other is sought.
+EXPLAINED_BY_ALL = 0.95
+#: Share of the blocks that the balance of most need not explain, stretches omitted to begin with, and steps from there.
+OMITTED, STARTS, ROUNDS = 0.4, 7, 20
 #: Share of the demand's RMS that a block has at least.
 DEMANDED = 0.3
 #: Effort of a signal that dropped out, as share of the demand, and gain over the median one of another scale.
@@ -47,43 +52,89 @@ def holds(seen: Seen) -> Check:
     if seen.effort is None or fitted is None:
         return absent(NAME, seen.unbalanced, ALLOWED)
     _, name = seen.effort
-    for found, advice in _in_blocks(fitted, name, seen.trace):
-        return Check(NAME, "fail", found, ALLOWED, advice)
+    if (fault := _in_blocks(fitted, name, seen.trace)) is not None:
+        return Check(NAME, "fail", fault[0], ALLOWED, fault[1])
     for found, advice, left in _delayed(fitted, name, seen.trace):
         return Check(NAME, "fail" if left <= DELAYED else "warn", found, ALLOWED, advice)
     return Check(NAME, "pass", "one balance is valid", ALLOWED)
 
 
-def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> Iterator[tuple[str, str]]:
-    """What is wrong with the effort for a stretch of time, and what to do."""
+def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> tuple[str, str] | None:
+    """What is wrong with the effort for a stretch of time, and what to do; None where nothing is."""
+    likeliest = None
     effort, count = fitted.effort, min(BLOCKS, fitted.effort.size // WINDOWS)
     edges = np.linspace(0, effort.size, count + 1).astype(int)
     basis, sizes = basis_of(fitted.columns), np.diff(edges)
     along = np.add.reduceat(basis * effort[:, None], edges[:-1]).T
-    signs = _signs(along)
-    demand = basis @ (along @ signs)
-    if float(demand @ demand) < EXPLAINED * float(effort @ effort):
-        return
-    products = np.stack([demand, effort, demand * demand, effort * effort, demand * effort])
-    mean_asked, mean, asked, had, both = np.add.reduceat(products, edges[:-1], axis=1) / sizes
-    varies = np.maximum((asked - mean_asked**2) * (had - mean**2), 0.0)
-    demanding = np.sqrt(asked) > DEMANDED * rms(demand)
-    gains = both / np.maximum(asked, 1e-300)
-    scale = np.abs(gains) / np.median(np.abs(gains[demanding])) + 1e-300
-    alike = np.abs(both - mean_asked * mean) > ALIKE * np.sqrt(varies)
+    power, signs = np.add.reduceat(effort * effort, edges[:-1]), _signs(along)
+    demands = np.stack([basis @ _of_most(basis, along * each, power, edges) for each in (np.ones(count), signs)])
+    turned = np.add.reduceat(demands[1] * effort, edges[:-1]) < 0.0
+    asked = np.add.reduceat(demands**2, edges[:-1], axis=1) / sizes
+    demanding = asked > DEMANDED**2 * np.mean(demands**2, axis=1, keepdims=True)
+    quiet, scaled = _rescaled(demands[0], effort, edges)
     faults = (
-        (had < QUIET**2 * asked, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
-        (alike & (np.abs(np.log(scale)) > np.log(SCALED)), 0.0, f"{name} has another scale", "a unit changed"),
-        (gains < 0.0, -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
+        (quiet, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
+        (scaled, 0.0, f"{name} has another scale", "a unit changed"),
+        (turned & demanding[1], -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
     )
+    least, plain = 1.0 - EXPLAINED, _left(fitted, np.ones(effort.size))
     for wrong, factor, found, why in faults:
-        at = np.flatnonzero(demanding & wrong)
-        each = np.repeat(np.where(demanding & wrong, factor, signs if factor else 1.0), sizes)
-        most = LEFT_BY_SIGNS if factor else LEFT
-        if at.size and _left(fitted, each) < most * _left(fitted, np.ones(effort.size)):
+        borders = np.convolve(wrong, np.ones(3), "same") > 0.0  # the fault may begin or end within them
+        each = np.where(wrong, factor, np.where(borders, 0.0, signs if factor else 1.0))
+        at, left = np.flatnonzero(wrong & demanding[int(factor)]), _left(fitted, np.repeat(each, sizes))
+        if at.size and left < min((LEFT_BY_SIGNS if factor else LEFT) * plain, least):
             first, last = fitted.starts[edges[at[0]]], fitted.starts[edges[at[-1] + 1] - 1] + fitted.length
             begins, ends = (float(trace.time[min(k, len(trace) - 1)] - trace.time[0]) for k in (first, last))
-            yield f"{found} from about {begins:.3g} s to {ends:.3g} s", f"likeliest {why}: cut the recording there"
+            likeliest = (
+                f"{found} from about {begins:.3g} s to {ends:.3g} s",
+                f"likeliest {why}: cut the recording there",
+            )
+            least = left
+    return likeliest
+
+
+def _rescaled(demand: Array, effort: Array, edges: NDArray[np.intp]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Blocks whose effort is nearly zero, and whose effort and its changes follow the demand by another scale than
+    most."""
+    products = np.stack([demand, effort, demand * demand, effort * effort, demand * effort])
+    mean_asked, mean, asked, had, both = np.add.reduceat(products, edges[:-1], axis=1) / np.diff(edges)
+    asks, has, vary = asked - mean_asked**2, had - mean**2, both - mean_asked * mean
+    alike = np.abs(vary) > ALIKE * np.sqrt(np.maximum(asks * has, 0.0))
+    scales = np.log(np.abs([both / np.maximum(asked, 1e-300), vary / np.maximum(asks, 1e-300)]) + 1e-300)
+    off = scales - np.median(scales, axis=1, keepdims=True)
+    return had < QUIET**2 * asked, alike & (np.abs(off).min(axis=0) > np.log(SCALED)) & (off[0] * off[1] > 0.0)
+
+
+def _of_most(basis: Array, along: Array, power: Array, edges: NDArray[np.intp]) -> Array:
+    """Balance (r,) that most blocks have: least trimmed squares of their residuals over their effort (P. J. Rousseeuw,
+    J. Am. Stat. Assoc. 79, 1984, 871-880).
+
+    It is that of all blocks if this explains their effort, and else sought from the blocks outside a stretch of time.
+
+    Args:
+        basis: (n, r).
+        along, power: its products with the effort (r, blocks), and the effort's with itself, in each block.
+        edges: of the blocks.
+    """
+    if np.sum(along.sum(axis=1) ** 2) > EXPLAINED_BY_ALL * power.sum():
+        return along.sum(axis=1)
+    size, place = np.maximum(power, 1e-2 * np.median(power)), np.linspace(0.0, 1.0, power.size)
+    grams = np.add.reduceat(basis[:, :, None] * basis[:, None], edges[:-1]) / size[:, None, None]
+    starts = (abs(place - middle) > OMITTED / 2.0 for middle in np.linspace(0.0, 1.0, STARTS))
+    found = [_trimmed(used, grams, along / size, power / size) for used in starts]
+    return min(found, key=lambda one: one[0])[1]
+
+
+def _trimmed(used: NDArray[np.bool_], grams: Array, along: Array, power: Array) -> tuple[float, Array]:
+    """Residual of the blocks that fit best, and their balance, from some blocks to start from."""
+    count, left, balance = round((1.0 - OMITTED) * power.size), power, np.zeros(len(along))
+    for _ in range(ROUNDS):
+        balance = np.linalg.lstsq(grams[used].sum(axis=0), along[:, used].sum(axis=1))[0]
+        left = power - 2.0 * balance @ along + np.einsum("i,kij,j->k", balance, grams, balance)
+        before, used = used, left <= np.partition(left, count - 1)[count - 1]
+        if np.array_equal(used, before):
+            break
+    return float(left[used].sum()), balance
 
 
 def _left(fitted: Balanced, factors: Array) -> float:

@@ -208,12 +208,15 @@ def during(trace, factor, noise=0.0):
     return np.where(bad, factor * trace["current"] + noise * rng().normal(size=len(trace)), trace["current"])
 
 
-#: By factor and noise; a fifth is more than what passes for a signal that dropped out.
+#: By factor and noise; a fifth is more than what passes for a signal that dropped out, and of a hundred times the
+#: stretch makes nearly all of the effort.
 FOR_A_WHILE = {
     (-1.0, 0.0): "the sign of current is turned",
     (0.0, 3e-3): "current is nearly zero while the motion takes effort",
     (0.1, 0.0): "current is nearly zero while the motion takes effort",
     (0.2, 0.0): "current has another scale",
+    (5.0, 0.0): "current has another scale",
+    (100.0, 0.0): "current has another scale",
 }
 
 
@@ -232,6 +235,13 @@ def test_the_answer_does_not_depend_on_the_unit_of_the_effort(sound, rig, fault,
     current = during(sound, *fault)
     once, other = (holds(Seen(changed(sound, current=by * current), rig)) for by in (1.0, factor))
     assert other == once
+
+
+def test_a_load_for_a_while_is_no_other_scale(sound, rig):
+    """It changes the effort, and not how that follows the motion."""
+    acts = (sound.time >= 2.0) & (sound.time < 3.5)
+    loaded = changed(sound, current=sound["current"] + np.where(acts, np.ptp(sound["current"]), 0.0))
+    assert "another scale" not in holds(Seen(loaded, rig)).found
 
 
 @pytest.mark.parametrize("delay", [20, -20, 60])
