@@ -96,7 +96,7 @@ def main() -> None:
         warn(NOTES if error.exit_status == 1 else ())
         sys.exit(_failed(str(error), error.exit_status))
     except TyperException as error:
-        sys.exit(_failed(error.format_message(), 2))
+        sys.exit(_failed(_misused(error), 2))
     except (KeyboardInterrupt, typer.Abort):
         sys.exit(_failed("interrupted", 130))
     except (BrokenPipeError, SystemExit) as end:
@@ -117,6 +117,15 @@ def main() -> None:
             sys.exit(_failed(f"the system: {fault.strerror}; raise its limit (ulimit -n, -u), or run less at once", 2))
         sys.exit(_failed(_fault(fault), 70))
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _misused(error: TyperException) -> str:
+    """What is wrong with the words after `bench`, what was meant, and where to see what is allowed."""
+    context, parameter = (getattr(error, name, None) for name in ("ctx", "param"))
+    of = f"bench {context.info_name}" if context is not None and context.parent is not None else "bench"
+    found, meaning = error.format_message().rstrip("."), getattr(parameter, "help", None)
+    found += f" ({meaning.rstrip('.')})" if meaning else ""
+    return f"{found}{' See' if found.endswith('?') else '; see'} `{of} --help`"
 
 
 @cache

@@ -337,7 +337,7 @@ def limits(
 
 
 def fleet(
-    manifest: Annotated[Path, Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time, ...")],
+    manifest: Annotated[Path, Argument(metavar="MANIFEST", help="CSV or Parquet: file, rig, axis, time and others")],
     out: Annotated[Path, Option(help="Folder for results, table, summary and page.")],
     diagnose: Annotated[bool, Option("--diagnose", help="Name missing effects too.")] = False,
     retry: Annotated[bool, Option("--retry", help="Do again what failed or timed out.")] = False,

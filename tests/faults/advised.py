@@ -66,6 +66,9 @@ MADE = [
 
 #: Each leads to a message that advises something.
 CASES = [
+    "bench identify",
+    "bench check log.csv",
+    "bench chek log.csv",
     "bench identify no_time.csv",
     "bench identify no_effort.csv --rig rig.toml",
     "bench identify per_second.csv",
