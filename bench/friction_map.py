@@ -1,11 +1,11 @@
-"""Friction over steady speeds: several recordings, each at one speed, determine how friction depends on it, without
-inertia.
+"""Friction over steady speeds: recordings at one speed each, or of several speeds one after the other, determine how
+friction depends on speed, without inertia.
 
     M(omega) = K_w*omega + K_0*sgn(omega) + M_0 (+ an effect of speed alone)
 
-Each recording gives one point, the means of its speed and torque: at a steady speed inertia takes no torque, and what
-repeats with position averages out. An effect is named where an F-test over all shapes tried shows that chance would not
-save as many squares. A single recording at one speed determines none of this, and no such map determines the inertia.
+Each steady stretch gives one point, the means of its speed and torque: at a steady speed inertia takes no torque, and
+what repeats with position averages out. An effect is named where an F-test over all shapes tried shows that chance
+would not save as many squares. A lone speed determines none of this, and no such map determines the inertia.
 """
 
 from __future__ import annotations
@@ -38,6 +38,9 @@ LEAST = 8
 #: Parts of a recording whose mean speeds show whether it keeps one, and how far they may differ, as share of it: a
 #: screw drive at its slowest, published as steady, has 0.35, a ramp from rest 1.75.
 PARTS, STEADY = 8, 0.5
+#: Lengths of the windows that show where a recording of several speeds keeps one - s; samples of the shortest; and how
+#: far the means of a window's quarters, and of a stretch's, differ at most, as share of the speed.
+WINDOWS, SAMPLES, KEPT = (0.05, 0.1, 0.2, 0.4, 0.8), 8, 0.01
 #: Share of all squares due to rounding in a map without scatter.
 ROUNDING = 1e-24
 
@@ -72,7 +75,7 @@ class FrictionMap:
     """What a map of friction over speed shows.
 
     Attributes:
-        velocity, effort: a point for each recording - rad/s (m/s), N*m (N) - (n,).
+        velocity, effort: a point for each steady stretch - rad/s (m/s), N*m (N) - (n,).
         effort_unit: N*m, N, or what the rig allows.
         kind: of the axis.
         plain, best: curves without an effect and with the one that explains most; the same where physics allows none.
@@ -102,7 +105,7 @@ class FrictionMap:
 
 
 def friction_map(recordings: Sequence[Given], rig: GivenRig | None = None, units: Units | None = None) -> FrictionMap:
-    """Friction over the speeds of recordings at one speed each; arguments as `identify` takes them.
+    """Friction over the steady speeds of recordings, one or several in each; arguments as `identify` takes them.
 
     Raises:
         UndeterminedError: fewer than LEAST speeds in a direction, or none twice as fast as another.
@@ -145,16 +148,18 @@ def friction_map(recordings: Sequence[Given], rig: GivenRig | None = None, units
 
 
 def _points(recordings: Sequence[Trace], rig: Rig) -> tuple[Array, Array, str]:
-    """Mean speed and effort of each recording, and the unit of the efforts."""
+    """Mean speed and effort of each steady stretch, and the unit of the efforts."""
     points: dict[tuple[float, float], str] = {}
     units: dict[str, str] = {}
     for trace in recordings:
         effort, unit = rig.effort(trace)
         units[unit] = trace.origin
-        point = (_steady_speed(trace), float(effort.mean()))
-        if point in points:
-            raise InputError(trace.origin, f"found the recording {points[point]} again", "allowed: each once")
-        points[point] = trace.origin
+        velocity = measured_velocity(trace)
+        for part in _steady(trace, velocity):
+            point = float(velocity[part].mean()), float(effort[part].mean())
+            if point in points:
+                raise InputError(trace.origin, f"found the recording {points[point]} again", "allowed: each once")
+            points[point] = trace.origin
     if len(units) > 1:
         found = ", ".join(f"{unit} in {origin}" for unit, origin in units.items())
         raise InputError(rig.source, f"gives efforts in different units ({found})", "allowed: one unit")
@@ -170,15 +175,38 @@ def _points(recordings: Sequence[Trace], rig: Rig) -> tuple[Array, Array, str]:
     return velocity, table[:, 1], next(iter(units))
 
 
-def _steady_speed(trace: Trace) -> float:
-    velocity = measured_velocity(trace)
+def _steady(trace: Trace, velocity: Array) -> list[slice]:
+    """All of a recording that keeps one speed; else the stretches that do."""
     parts = [float(part.mean()) for part in np.array_split(velocity, min(PARTS, velocity.size))]
-    mean = float(velocity.mean())
-    if not max(parts) - min(parts) < STEADY * abs(mean):
+    if max(parts) - min(parts) < STEADY * abs(float(velocity.mean())):
+        return [slice(None)]
+    found = max((_stretches(trace, velocity, window) for window in WINDOWS), key=_samples)
+    if not found:
         unit = trace.axis_kind.speed_unit
-        found = f"keeps no speed: parts of it have means from {min(parts):.3g} to {max(parts):.3g} {unit}"
-        raise InputError(trace.origin, found, "allowed: one steady speed, cut from where the axis speeds up")
-    return mean
+        keeps = f"keeps no speed: parts of it have means from {min(parts):.3g} to {max(parts):.3g} {unit}"
+        allowed = f"allowed: steady speeds, each kept for well over {WINDOWS[0]:g} s, or recordings of one each"
+        raise InputError(trace.origin, keeps, allowed)
+    return found
+
+
+def _samples(parts: Sequence[slice]) -> int:
+    return sum(part.stop - part.start for part in parts)
+
+
+def _stretches(trace: Trace, velocity: Array, window: float) -> list[slice]:
+    """Windows whose quarters have the same mean speed, joined where they overlap, if that keeps one speed, too."""
+    size, found = max(SAMPLES, round(window / trace.sample_period)) // 4, []
+    for part in (part for part in trace.segments if part.stop - part.start >= 4 * size):
+        sums = np.concatenate([[0.0], np.cumsum(velocity[part])])
+        means = np.lib.stride_tricks.sliding_window_view(sums[size:] - sums[:-size], 3 * size + 1)[:, ::size] / size
+        kept = np.ptp(means, axis=1) < KEPT * np.abs(means.mean(axis=1))
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]])))
+        for first, last in edges.reshape(-1, 2) + part.start:
+            one = slice(int(first) + size, int(last) + 3 * size - 1)
+            quarters = [float(each.mean()) for each in np.array_split(velocity[one], 4)]
+            if np.ptp(quarters) < KEPT * abs(float(np.mean(quarters))):
+                found.append(one)
+    return found
 
 
 def _different(speeds: Array) -> int:

@@ -281,7 +281,9 @@ def _moving(found: bench.Diagnosis, of: Subject, log: Path, trace: bench.Trace) 
 
 
 def friction(
-    traces: Annotated[list[Path], Argument(metavar="TRACE", help="Recordings, each at one steady speed.")],
+    traces: Annotated[
+        list[Path], Argument(metavar="TRACE", help="Recordings of steady speeds, one or several in each.")
+    ],
     rig: common.BesideRigOption = None,
     json: common.JsonOption = None,
     out: Annotated[
@@ -291,7 +293,7 @@ def friction(
     report: common.ReportOption = None,
     draft: common.DraftOption = None,
 ) -> None:
-    """Measure friction over speed from recordings at one steady speed each, and find the effect that curves it."""
+    """Measure friction over speed from recordings of steady speeds, and find the effect that curves it."""
     from bench.friction_map import friction_map
     from bench.report.friction import SCHEMA, friction_json
     from bench.report.friction import friction as document_of

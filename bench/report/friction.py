@@ -1,6 +1,6 @@
 """Friction over steady speeds: the curve, the effect that bends it, and how sure that is.
 
-As JSON (`bench.friction/1`) and as a document; its picture has the recordings, the curves, and their residuals.
+As JSON (`bench.friction/1`) and as a document; its picture has the steady speeds, the curves, and their residuals.
 """
 
 from __future__ import annotations
@@ -115,13 +115,13 @@ def _answers(found: FrictionMap) -> dict[str, str]:
     return {
         "Friction?": friction,
         "How sure?": f"{sentence(chance)}; named below {CHANCE:g}.",
-        "From what?": f"{found.velocity.size} recordings, {between}.",
+        "From what?": f"{found.velocity.size} steady speeds, {between}.",
         "What is open?": left,
     }
 
 
 def _charts(found: FrictionMap) -> tuple[doc.Chart, doc.Chart]:
-    """The recordings and the curves fitted to them, and the residuals of each curve."""
+    """The steady speeds and the curves fitted to them, and the residuals of each curve."""
     effort, curves = effort_word(found.effort_unit), [("no effect", found.plain)]
     if found.name is not None:
         curves.append((words(found.name), found.best))
@@ -135,9 +135,9 @@ def _charts(found: FrictionMap) -> tuple[doc.Chart, doc.Chart]:
                 x = np.sort(direction * np.geomspace(np.abs(speeds).min(), np.abs(speeds).max(), DRAWN))
                 drawn.append(doc.series(label, "line", colour, x, curve.effort(x)))
                 label = ""
-    drawn.append(doc.series("recordings", "dots", "ink", found.velocity, found.effort))
+    drawn.append(doc.series("steady speeds", "dots", "ink", found.velocity, found.effort))
     over = ("speed", found.kind.speed_unit)
-    alternative = f"{sentence(effort)} of each recording at its steady speed, and the curves fitted to them."
+    alternative = f"{sentence(effort)} at each steady speed, and the curves fitted to them."
     return (
         one_panel("Friction.", alternative, over, (effort, found.effort_unit), drawn),
         one_panel("Residual.", "Residual of each curve.", over, ("residual", found.effort_unit), left),

@@ -210,7 +210,7 @@ NEAREST, WORTH = 2, 0.01
 #: By coordinate: what to record, and the command for it.
 DECIDES = {
     "position": ("the whole travel slowly, both ways: what stays at its place is the axis'", "diagnose slow.csv"),
-    "velocity": ("steady speeds, a recording each: they draw friction over speed", "friction at*.csv"),
+    "velocity": ("steady speeds, eight or more both ways: they draw friction over speed", "friction speeds.csv"),
     "reversal": ("slow reversals with the position, sampled faster: they show how it breaks away", "diagnose slow.csv"),
     "time": ("the same motion cold and warm: what comes back is no warming", "diagnose cold.csv warm.csv"),
     "direction": ("the same motion with the axis turned over: what turns with it is gravity", "diagnose turned.csv"),

@@ -38,7 +38,7 @@ def test_stribeck_friction_is_named_with_its_values_drawn_and_written(bench, tmp
     names = steady(rise=STATIC - COULOMB)
     status, out, err = bench("friction", *names, "--rig", "rig.toml", "--json", "f.json", "--out", "f.png")
     assert (status, err) == (0, "")
-    for words in ("Stribeck friction (static friction", "viscous friction coefficient", "28 recordings", "f.png"):
+    for words in ("Stribeck friction (static friction", "viscous friction coefficient", "28 steady speeds", "f.png"):
         assert words in out
     assert (tmp_path / "f.png").stat().st_size > 10_000
     found = json.loads((tmp_path / "f.json").read_text())
@@ -52,6 +52,29 @@ def test_stribeck_friction_is_named_with_its_values_drawn_and_written(bench, tmp
     assert found["chance"] < 1e-9
     assert found["unexplained"]["after"] < 0.2 * found["unexplained"]["before"]
     assert len(found["velocity"]["values"]) == len(found["effort"]["values"]) == SPEEDS.size
+
+
+@pytest.mark.parametrize("dwell", [0.1, 1.0])
+def test_one_recording_of_all_speeds_is_cut_where_it_keeps_one(bench, dwell):
+    """Ramps of 400 rad/s**2 between them, whose inertia takes five times the friction."""
+    steps = np.concatenate([np.geomspace(2.0, 60.0, 10), -np.geomspace(2.0, 60.0, 10), [0.0]])
+    ramps = np.abs(np.diff(steps, prepend=0.0)) / 400.0
+    ends = np.cumsum(ramps + dwell)
+    knots = np.column_stack([ends - dwell, ends]).ravel()
+    time = np.arange(0.0, ends[-1], 1e-3)
+    velocity = np.interp(time, knots, np.repeat(steps, 2), left=0.0)
+    torque = friction(velocity, 0.0) + 1.5e-3 * np.gradient(velocity, time)
+    rng = np.random.default_rng(8)
+    noisy = {"velocity": velocity + rng.normal(scale=0.01, size=time.size)}
+    noisy["current"] = (torque + rng.normal(scale=2e-3, size=time.size)) / 0.8
+    write(Trace(time, noisy, UNITS, "closed form"), "all.csv")
+    status, out, err = bench("friction", "all.csv", "--rig", "rig.toml", "--json", "-")
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert found["effect"] is None and len(found["velocity"]["values"]) == 20
+    np.testing.assert_allclose(np.sort(found["velocity"]["values"]), np.sort(steps[:-1]), rtol=0.01)
+    assert found["parameters"]["viscous_friction_coefficient"]["value"] == pytest.approx(VISCOUS, rel=0.02)
+    assert found["parameters"]["coulomb_friction_torque"]["value"] == pytest.approx(COULOMB, rel=0.01)
 
 
 def test_friction_without_an_effect_is_given_no_name(bench):
@@ -105,7 +128,7 @@ def test_too_few_speeds_are_status_one_with_what_to_record(bench, tmp_path, spee
 @pytest.mark.parametrize(
     ("changes", "arguments", "words"),
     [
-        ({"speeds": SPEEDS[:4], "ramp": 5.0}, (), ["at0.csv", "keeps no speed"]),
+        ({"speeds": SPEEDS[:4], "ramp": 5.0}, (), ["at0.csv", "keeps no speed", "steady speeds, each kept for"]),
         ({"turned": -1.0}, (), ["opposite signs", "[trace.columns]"]),
         ({"speeds": SPEEDS[:4]}, ("at3.csv",), ["at3.csv", "again"]),
         ({"speeds": SPEEDS[:4]}, ("nowhere.csv",), ["nowhere.csv", "no such file"]),
