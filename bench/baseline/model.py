@@ -48,7 +48,7 @@ def modelled(path: str | Path, baseline: State | None = None) -> State:
 
     InputError: no such model. SimulationError: the model diverged.
     """
-    stored = load_model(path)
+    stored = load_model(path, scaled=True)
     kind, effects = stored.model.parameters.kind, []
     for present in stored.model.effects:
         values = effect_values(present, kind)

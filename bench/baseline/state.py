@@ -35,7 +35,7 @@ from bench.comparison.difference import Measured
 from bench.effects.effect import Effect
 from bench.effects.present import named
 from bench.errors import InputError
-from bench.files import write_text
+from bench.files import read_bytes, write_text
 from bench.structured import read_toml
 from bench.validated import input_error, refused
 
@@ -264,7 +264,10 @@ _FILE = TypeAdapter(State)
 
 
 def write_baseline(path: str | Path, state: State) -> None:
-    """Write a state, whole or not at all; InputError where the place cannot be written to."""
+    """Write a state, whole or not at all; InputError where the place cannot be written to, or has another file."""
+    if Path(path).is_file() and SCHEMA.encode() not in read_bytes(path, "a baseline", replaced=True):
+        found = "is no baseline, and would be lost"
+        raise InputError(path, found, "allowed: a new file, or a baseline that bench check wrote")
     tables = _FILE.dump_python(state, by_alias=True)
     given = {key: table for key, table in tables.items() if table not in ("", {}) or key == "provenance"}
     write_text(path, HEAD + tomli_w.dumps(_without_none({"schema": SCHEMA, **given})))

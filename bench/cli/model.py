@@ -205,7 +205,7 @@ def export(
     out = common.file_in(out, _file_name(to, mjcf, ranges))
     if with_assets and mjcf is None:
         raise InputError("--with-assets", "found without --mjcf", "allowed: with a robot's MJCF, `--mjcf ROBOT.xml`")
-    models, lines = load_models(model, joint or ()), []
+    models, lines = load_models(model, joint or (), scaled=True), []
     if (alone or ranges is not None) and len(models) > 1:
         one = f"pick one: `--joint {next(iter(models))}`; the file has {', '.join(models)}"
         raise InputError(model, "found several joints", one)
@@ -279,7 +279,7 @@ def _feedforward(model: Path, rig: Path | None, out: Path, profile: str) -> None
     from bench.report.drive import tracking_table
     from bench.report.terminal import progress
 
-    axis, stored = bench.load_rig(rig), load_model(model).model
+    axis, stored = bench.load_rig(rig), load_model(model, scaled=True).model
     kind = stored.parameters.kind
     if kind is not axis.axis_kind:
         raise InputError(f"{model}: kind", f"found '{kind.name}'", f"allowed: '{axis.kind}', as in {axis.source}")

@@ -333,7 +333,7 @@ def show(bare: Fit, added: Added) -> Diagnosis:
         next_experiment=propose(added),
         stopped=added.suspects.stopped,
         unknown_effect=added.unknown,
-        model=added.tabulated,
+        model=added.tabulated and replace(added.tabulated, effort_unit="" if unit == kind.effort_unit else unit),
         balance=Balance.of(whole).repeating(added.repeats),
         time_series=series,
         considered=considered(added, likely),

@@ -127,6 +127,10 @@ def replay(model: Diagnosis | str | Path, trace: Given, rig: GivenRig, units: Un
     rig = rig_of(rig)
     trace = trace_of(trace, rig, units)
     path, table, balance, stored = parts_of(model, rig)
+    wanted, unit = (stored and stored.effort_unit) or rig.effort_unit, rig.own_effort(trace)[1]
+    if unit != wanted:
+        allowed = f"allowed: {wanted}, as in {path}; give the rig of its diagnosis, `--rig RIG`"
+        raise InputError(rig.source, f"gives the effort in {unit}", allowed)
     peak = stored.model.peak_effort if stored is not None and math.isfinite(stored.model.peak_effort) else None
     try:
         rows = Rows.of(trace, rig, width=balance.width, every=True, peak_effort=peak)

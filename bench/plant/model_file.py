@@ -92,12 +92,22 @@ class StoredModel:
         model: the axis with its effects, on the motor's side.
         misalignment: by how much recordings of it report the effort late - s.
         mounting: how the axis sits in its machine; by default without gear and robot, under an unknown load.
+        effort_unit: of its efforts where no rig gives them in N*m (N), e.g. A; inertia is then in A*s**2/rad.
     """
 
     name: str
     model: AxisModel
     misalignment: float = 0.0
     mounting: Mounting = Mounting()
+    effort_unit: str = ""
+
+    @property
+    def unscaled(self) -> str:
+        """That efforts are not in N*m (N), in a sentence; empty where they are."""
+        if not self.effort_unit:
+            return ""
+        unit, kind = self.effort_unit, self.model.parameters.kind
+        return f"Efforts are in {unit}, as no torque constant is known: 1 {kind.effort_unit} here is 1 {unit}."
 
     @property
     def not_native(self) -> tuple[tuple[str, str], ...]:
@@ -114,7 +124,7 @@ def model_xml(stored: StoredModel) -> str:
     spec.delete(spec.geom(FLOOR))
     mass = _set_masses(spec, model.parameters.kind, mounting)
     spec.compile()
-    notes = [f"Axis at steps of {TIMESTEP:g} s, torque as input.", *lacking(stored), mass]
+    notes = [f"Axis at steps of {TIMESTEP:g} s, torque as input.", stored.unscaled, *lacking(stored), mass]
     if mounting.gear_ratio != 1.0:
         gear = f"a gear of {mounting.gear_ratio:g}"
         notes.append(f"All of it is on the motor's side of {gear}: the joint is the motor's shaft.")
@@ -145,7 +155,8 @@ def model_toml(stored: StoredModel, further: Mapping[str, Any] | None = None) ->
     balance = content.get(BALANCE)
     if isinstance(balance, dict):
         content[BALANCE] = {SAME: not any(_differing(stored.model.parameters, balance, EQUAL)), **balance}
-    return tomli_w.dumps(content)
+    note = f"# {stored.unscaled}\n" if stored.effort_unit else ""
+    return note + tomli_w.dumps(content)
 
 
 def joints_toml(models: Mapping[str, StoredModel]) -> str:
@@ -156,6 +167,8 @@ def joints_toml(models: Mapping[str, StoredModel]) -> str:
 def _content(stored: StoredModel) -> dict[str, Any]:
     model, kind, mounting = stored.model, stored.model.parameters.kind, stored.mounting
     content: dict[str, Any] = {"kind": kind.name, "name": stored.name}
+    if stored.effort_unit:
+        content["effort_unit"] = stored.effort_unit
     content |= _texts({"misalignment": (stored.misalignment, "s")})
     if math.isfinite(model.peak_effort):
         content |= _texts({"peak_effort": (model.peak_effort, kind.effort_unit)})
@@ -176,11 +189,11 @@ def tables_toml(kind: AxisKind, tables: Mapping[str, Any]) -> str:
     return tomli_w.dumps({"schema": SCHEMA, "kind": kind.name, **tables})
 
 
-def load_model(path: str | Path) -> StoredModel:
+def load_model(path: str | Path, scaled: bool = False) -> StoredModel:
     """Read a `model.toml`.
 
     InputError: no such file, no TOML, another schema, an unknown or missing key, a value that is none or that no axis
-    has, or parameters that contradict the torque balance.
+    has, parameters that contradict the torque balance, or, where it has to be `scaled`, efforts not in N*m (N).
     """
     table = read_table(path, SCHEMA)
     stored, balance = _model(table, str(path)), table.get(BALANCE)
@@ -189,6 +202,10 @@ def load_model(path: str | Path) -> StoredModel:
             found = f"found {value:g}, and {other:g} among the coefficients of {BALANCE}"
             allowed = "allowed: one value in both, as bench diagnose RECORDING --rig RIG --out DIR writes them"
             raise InputError(f"{path}: parameters.{name}", found, allowed)
+    if scaled and stored.effort_unit:
+        wanted = f"allowed: {stored.model.parameters.kind.effort_unit}"
+        instead = "set motor.torque_constant in the rig, and run `bench diagnose RECORDING --rig RIG --out DIR` again"
+        raise InputError(f"{path}: effort_unit", f"found '{stored.effort_unit}'", f"{wanted}; {instead}")
     return stored
 
 
@@ -215,7 +232,7 @@ def load_joints(path: str | Path) -> dict[str, StoredModel]:
     return {name: _model(one, f"{path}: joints.{name}") for name, one in joints.items()}
 
 
-def load_models(path: str | Path, joints: Sequence[str] = ()) -> dict[str, StoredModel]:
+def load_models(path: str | Path, joints: Sequence[str] = (), scaled: bool = False) -> dict[str, StoredModel]:
     """Models by joint: that of a `model.toml` as a joint's, `axis` by default; all of an `effects.toml`, or some.
 
     InputError as `load_model`, or where there is no model of a joint, or one for several.
@@ -224,7 +241,7 @@ def load_models(path: str | Path, joints: Sequence[str] = ()) -> dict[str, Store
         if len(joints) > 1:
             allowed = "allowed: one joint, or the effects.toml of bench robot, which has a model for each"
             raise InputError(path, f"found one model for {', '.join(joints)}", allowed)
-        return {joints[0] if joints else AXIS: load_model(path)}
+        return {joints[0] if joints else AXIS: load_model(path, scaled)}
     models = load_joints(path)
     for joint in joints:
         if joint not in models:
@@ -261,7 +278,8 @@ def _model(table: Mapping[str, Any], path: str) -> StoredModel:
     for key, value in mounting.items():
         if value <= 0.0:
             raise InputError(f"{path}: mounting.{key}", f"found {value:g}", "allowed: above zero")
-    return StoredModel(str(table.get("name", "axis")), model, misalignment, Mounting(**mounting))
+    unit = str(table.get("effort_unit", ""))
+    return StoredModel(str(table.get("name", "axis")), model, misalignment, Mounting(**mounting), unit)
 
 
 def read_table(path: str | Path, schema: str | None = None) -> dict[str, Any]:

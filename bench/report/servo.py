@@ -126,6 +126,8 @@ def _verdict(found: Servo) -> str:
         return (
             f"The fitted cascade explains {part}the drive's torque: along the measured motion it differs by {change}."
         )
+    if gap.after >= gap.before:
+        return f"The fitted servo does not move like the measured one: its free-running position differs by {change}."
     if found.verdict == "unexplained_remainder":
         return f"The fitted servo explains part of the motion: its free-running position differs by {change}."
     return f"The fitted servo moves like the measured one: its free-running position differs by {change}."
@@ -148,6 +150,7 @@ def servo_answers(found: Servo) -> dict[str, str]:
     more = ", ".join(words(name) for name in of.effects) or "nothing beyond gains, dead time, limit and friction"
     partly = found.verdict == "unexplained_remainder"
     record = "Record the current too: with it, diagnose finds the missing effect." if partly else NO_FURTHER
+    moves = "No" if gap.after >= gap.before else "Partly" if partly else "Yes"
     how = (
         f"free-running {where}, the position"
         if found.law is None
@@ -158,7 +161,7 @@ def servo_answers(found: Servo) -> dict[str, str]:
         "Dead time?": dead,
         "What was missing?": f"{sentence(more)}.",
         "How sure?": f"Half widths are those of 95 % intervals{', which do not cover the residual' * partly}.",
-        MOVES: f"{'Partly' if partly else 'Yes'}: {how} differs "
+        MOVES: f"{moves}: {how} differs "
         f"by {number(gap.after, unit, 3)} RMS, {number(gap.after / found.noise_floor, digits=2)} × the sensor noise; "
         f"with {found.before} by {number(gap.before, unit, 3)} ({share(gap.after / gap.before)} remains).",
         "What next?": f"For {of.advice[0]}" if of.advice else record,

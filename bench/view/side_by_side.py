@@ -114,7 +114,7 @@ def along_profile(path: str | Path, rig: Rig, profile: str) -> SideBySide:
         InputError: no model, one of another kind of axis, or a rig without drive.
         SimulationError: the simulation diverged.
     """
-    stored, cascade = load_model(path), Cascade.from_rig(rig)
+    stored, cascade = load_model(path, scaled=True), Cascade.from_rig(rig)
     kind = stored.model.parameters.kind
     if kind is not rig.axis_kind:
         raise InputError(f"{path}: kind", f"found '{kind.name}'", f"allowed: '{rig.kind}', as in {rig.source}")

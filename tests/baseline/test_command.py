@@ -209,6 +209,14 @@ def models(tmp_path_factory):
     return folder
 
 
+def test_no_other_file_is_replaced_by_a_baseline(models, monkeypatch):
+    monkeypatch.chdir(models)
+    before = Path("b/model.toml").read_bytes()
+    status, _, error = run("check", "--simulated", "a/model.toml", "--baseline", "b/model.toml", "--update")
+    assert (status, "b/model.toml: is no baseline, and would be lost" in error) == (2, True)
+    assert Path("b/model.toml").read_bytes() == before
+
+
 def test_models_are_held_against_each_other(models, monkeypatch):
     monkeypatch.chdir(models)
 

@@ -171,6 +171,14 @@ def test_amperes_are_no_effort_of_a_joint_state(bench, diagnosed):
     assert "x.mcap has no effort: joint states hold no A" in err
     lengths = {(len(state.velocity), len(state.effort)) for _, _, state in joint_states("x.mcap", "/simulated")}
     assert lengths == {(1, 0)}
+    model, mjcf = (Path("amperes", name).read_text() for name in ("model.toml", "model.xml"))
+    assert "1 N*m here is 1 A" in model and "1 N*m here is 1 A" in mjcf
+    status, _, err = bench("export", "amperes/model.toml", "--snippet", "--out", "joint.xml")
+    assert (status, "effort_unit: found 'A'; allowed: N*m" in err) == (2, True), err
+    of_model = {"amperes/model.toml": ("rig.toml", "N*m"), diagnosed / "found/model.toml": ("in_a.toml", "A")}
+    for other, (rig, gives) in of_model.items():
+        status, _, err = bench("replay", other, run, "--rig", diagnosed / rig, "--out", "y.csv")
+        assert (status, f"gives the effort in {gives}" in err) == (2, True), err
 
 
 def test_nothing_hidden_is_nothing_missing(bench):
