@@ -4,13 +4,17 @@ import os
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
+from pickle import dumps, loads
 
 import pytest
 from hypothesis import HealthCheck, settings
 from xdist.scheduler import LoadScopeScheduling
 
-#: Folders whose robots and MDF4 files end no process: this one reads them, as a worker does, which saves one for each.
-SOUND = ("docs", "export", "faults", "gate", "joints", "plant", "report", "servos", "trace", "view")
+import bench.jobs.each
+from bench.jobs.process import raised
+
+#: Folders whose work ends no process: this one does it, which saves the start of one for each file, joint or run.
+SOUND = ("docs", "export", "faults", "gate", "joints", "plant", "report", "servos", "trace", "validation", "view")
 #: Files that share a fixture of the session, by its name; every other file goes its own way.
 TOGETHER = {
     "truths": tuple(f"tests/effects/test_{name}.py" for name in ("agreement", "model_file")),
@@ -18,6 +22,7 @@ TOGETHER = {
 }
 
 ROOT = Path(__file__).parent
+ON_THIS_MACHINE = bench.jobs.each._on_this_machine
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
 FLAGS += ["--disable-sync"]
@@ -49,12 +54,31 @@ def pytest_xdist_auto_num_workers(config):
     return 0 if alone else None
 
 
+def here(work, waiting, *_):
+    """Pieces of work one after the other in this process, by pickles as in one of their own."""
+    work = loads(dumps(work))
+    for place, item in waiting:
+        sent = dumps(item)
+        try:
+            result = loads(dumps(work(loads(sent))))
+        except Exception as error:
+            result = raised(error)
+        yield place, result
+
+
 @pytest.fixture(scope="module", autouse=True)
 def watched(request):
     with pytest.MonkeyPatch.context() as patch:
         if request.path.relative_to(ROOT).parts[0] in SOUND:
             patch.setenv("SERVOBENCH_WATCHED", "1")
+            patch.setattr(bench.jobs.each, "_on_this_machine", here)
         yield
+
+
+@pytest.fixture
+def worker_processes(monkeypatch):
+    """Pieces of work are done in processes of their own, as without these tests."""
+    monkeypatch.setattr(bench.jobs.each, "_on_this_machine", ON_THIS_MACHINE)
 
 
 @pytest.fixture(scope="session")

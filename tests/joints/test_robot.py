@@ -91,6 +91,7 @@ def test_the_page_has_a_row_for_each_joint(arm):
     assert rows[1][-1].startswith("Cogging torque: > 9")
 
 
+@pytest.mark.usefixtures("worker_processes")
 def test_a_joint_of_which_there_is_no_log_leaves_the_rest(arm, tmp_path):
     """A hand that nobody logged stands as stated; the elbow is as before, and of the wrist it is said what lacks."""
     ends = "</body></body></worldbody>"

@@ -39,6 +39,7 @@ def test_pieces_hold_every_run_once():
     assert [index for piece in pieces(2 * TOGETHER + 3) for index in piece] == list(range(2 * TOGETHER + 3))
 
 
+@pytest.mark.usefixtures("worker_processes")
 def test_what_is_reported_in_a_process_of_its_own_is_what_is_reported_here():
     shares = []
     found = validate(PLAN, 3, workers=1, progress=shares.append)
