@@ -1,9 +1,14 @@
 """The notebooks run from the first cell to the last, and find what was hidden from them."""
 
+import re
+
+import matplotlib.pyplot as plt
 import pytest
 
-from tests.docs.pages import DOCS
+from tests.docs.pages import DOCS, run_commands
 
+#: The one that runs in Jupyter each time.
+JUPYTER = "first_model"
 #: What has to hold in each notebook once it has run, as a cell of its own.
 HOLDS = {
     "first_model": """
@@ -46,20 +51,41 @@ assert [(one.axis, one.kind) for one in found.summary.concerns] == [("press 10",
 }
 
 
+OTHERS = sorted({*HOLDS} - {JUPYTER})
+
+
 def test_every_notebook_is_tried():
     assert {path.stem for path in (DOCS / "notebooks").glob("*.md")} == set(HOLDS)
 
 
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of the libraries that run notebooks
-@pytest.mark.parametrize("name", HOLDS)
-def test_it_runs_and_finds_the_truth(name):
-    read = pytest.importorskip("myst_nb.core.read", reason="needs myst-nb (pip install -e '.[docs]')")
-    from nbclient import NotebookClient
+def read(name):
+    """A notebook with what has to hold, and its cells of code."""
+    of_myst = pytest.importorskip("myst_nb.core.read", reason="needs myst-nb (pip install -e '.[docs]')")
     from nbformat.v4 import new_code_cell
 
     path = DOCS / "notebooks" / f"{name}.md"
-    notebook = read.read_myst_markdown_notebook(path.read_text(encoding="utf-8"), path=path)
+    notebook = of_myst.read_myst_markdown_notebook(path.read_text(encoding="utf-8"), path=path)
     notebook.cells.append(new_code_cell(HOLDS[name]))
+    return notebook, [cell for cell in notebook.cells if cell.cell_type == "code"]
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_it_runs_and_finds_the_truth(name, tmp_path, monkeypatch):
+    """In this process, with its commands: a kernel takes as long to start as a notebook to run."""
+    monkeypatch.chdir(tmp_path)
+    names = {"__name__": "__main__", "run_commands": run_commands}
+    for cell in read(name)[1]:
+        code = re.sub(r"^!\{sys\.executable\} -m (bench .*)", r"run_commands(['\1'])", cell.source, flags=re.MULTILINE)
+        exec(compile(code, name, "exec"), names)
+    assert plt.get_fignums()
+    plt.close("all")
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of the libraries that run notebooks
+@pytest.mark.parametrize("name", [JUPYTER, *(pytest.param(name, marks=pytest.mark.slow) for name in OTHERS)])
+def test_it_runs_in_jupyter(name):
+    notebook, cells = read(name)
+    from nbclient import NotebookClient
+
     NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
-    printed = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
-    assert any("image/png" in output.get("data", {}) for output in printed)
+    assert any("image/png" in output.get("data", {}) for cell in cells for output in cell.outputs)

@@ -7,6 +7,8 @@ import tokenize
 from itertools import chain
 from pathlib import Path
 
+import pytest
+
 from tests.docs.pages import PAGES
 
 ROOT = Path(__file__).parents[2]
@@ -53,21 +55,23 @@ def split(path):
     return strings, [*(one.value for one in texts if id(one) in said), *(c for c in comments if c.startswith("#"))]
 
 
-MODULES = [split(path) for top in ("bench", "docs") for path in sorted((ROOT / top).rglob("*.py"))]
+@pytest.fixture(scope="module")
+def modules():
+    return [split(path) for top in ("bench", "docs") for path in sorted((ROOT / top).rglob("*.py"))]
 
 
 def test_pages_of_the_documentation_have_none():
     assert {name: found for name, page in PAGES.items() if (found := private(page))} == {}
 
 
-def test_strings_that_users_read_have_none():
+def test_strings_that_users_read_have_none(modules):
     templates = (path.read_text(encoding="utf-8") for path in (ROOT / "bench").rglob("*.j2"))
-    texts = chain(templates, (text for strings, _ in MODULES for text in strings))
+    texts = chain(templates, (text for strings, _ in modules for text in strings))
     assert [found for text in texts for found in private(text)] == []
 
 
-def test_docstrings_and_comments_have_hardly_any():
-    found = [one for _, texts in MODULES for text in texts for one in private(text)]
+def test_docstrings_and_comments_have_hardly_any(modules):
+    found = [one for _, texts in modules for text in texts for one in private(text)]
     assert len(found) <= MOST, found
 
 
