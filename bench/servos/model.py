@@ -129,10 +129,10 @@ def _integrated(
     out, u, most = np.empty((stretches.length, *q.shape)), goal[0], np.zeros_like(q)
     count, out[0] = stretches.steps, stretches.position
     for step in range((stretches.length - 1) * count):
-        u = u + np.clip(goal[step] - u, -given["speed_limit"] * h, given["speed_limit"] * h) if slewed else goal[step]
+        u = u + _clipped(goal[step] - u, given["speed_limit"] * h) if slewed else goal[step]
         error, regime = u - y, control
         if slacked:
-            error = error - np.clip(error, -slack, slack)
+            error = error - _clipped(error, slack)
         force = a * error
         if slope is not None:
             force = force + given["feedforward"] * slope[step]
@@ -141,8 +141,8 @@ def _integrated(
             regime = [np.where(free, *pair) for pair in zip(drift, control, strict=True)]
         demand = force - k * w
         most = np.maximum(most, np.abs(demand))
-        if limited and (over := np.abs(demand) > limit).any():
-            force = np.where(over, np.clip(demand, -limit, limit), force)
+        if limited and np.count_nonzero(over := np.abs(demand) > limit):
+            force = np.where(over, _clipped(demand, limit), force)
             regime = [np.where(over, *pair) for pair in zip(coast, regime, strict=True)]
         force = force + given["offset"]
         ahead = q + 0.5 * h * w
@@ -158,14 +158,19 @@ def _integrated(
     return np.moveaxis(out, 0, -1), (most / np.where(np.isfinite(limit), limit, 1.0)).max(axis=1)
 
 
+def _clipped(values: Array, reach: Array) -> Array:
+    """Values between -reach and reach: `np.clip` takes three times as long on arrays as small as these."""
+    return np.minimum(np.maximum(values, -reach), reach)
+
+
 def _moved(q: Array, w: Array, force: Array, f: Array, regime: list[Array], h: float) -> tuple[Array, Array]:
     """Position and speed after a step under a force without damping; friction stops, keeps or opposes."""
-    held = np.clip(force, -f, f)
+    held = _clipped(force, f)
     net = force - np.where(w == 0.0, held, np.copysign(f, w))
     qw, qf, ww, wf = regime
     after, speed = q + qw * w + qf * net, ww * w + wf * net
     stops = (speed * w < 0.0) & (f > 0.0)
-    if stops.any():
+    if np.count_nonzero(stops):
         share = np.where(stops, w / np.where(stops, w - speed, 1.0), 1.0)
         rest, net = (1.0 - share) * h, force - held
         after = np.where(stops, q + 0.5 * share * h * w + 0.5 * net * rest**2, after)

@@ -117,8 +117,13 @@ def of_arm(tmp_path_factory):
     of_joint(folder, goal, position)
     shutil.copy(folder / "log.csv", folder / "log2.csv")
     with contextlib.chdir(folder):
-        run_commands(PAGES["docs/servo.md"])
+        run_commands(PAGES["docs/servo.md"], once)
     return folder
+
+
+def once(line):
+    """One fit in place of two of the same log; the drive's log is that of test_law.py."""
+    return "" if "run.csv" in line or "--holdout" not in line else f"{line} --out servo"
 
 
 def test_gravity_on_known_links_gives_the_scale_and_the_actuator_loads(of_arm):
