@@ -61,6 +61,7 @@ FILES = {
 #: Commands that write further files.
 MADE = [
     "bench diagnose log.csv --rig no_rotor.toml --out found",
+    "bench diagnose log.csv --out amperes",
     "bench check --simulated found/model.toml --baseline model_baseline.toml --update",
 ]
 
@@ -84,6 +85,8 @@ CASES = [
     "bench identify log.csv --mjcf robot.xml --joint shoulder --joint elbow",
     "bench identify log.csv --mjcf robot.xml --joint elbo",
     "bench export found/model.toml --out joint.xml",
+    "bench export amperes/model.toml --snippet --out joint.xml",
+    "bench replay found/model.toml log.csv --out replay.csv",
     "bench export found/model.toml --mjcf robot.xml --joint elbow --armature motor --out joint.xml",
     "bench export joints.toml --to mjcf --out joint.xml",
     "bench export joints.toml --mjcf robot.xml --joint elbow --out robot_id.urdf",
