@@ -38,6 +38,11 @@ class Parameter(ByName, NDArrayOperatorsMixin):
     std_error: float
     ci95: tuple[float, float]
 
+    @classmethod
+    def around(cls, value: float, unit: str, std_error: float, half: float) -> Parameter:
+        """A value whose interval reaches half its width to each side - unit."""
+        return cls(value, unit, std_error, (value - half, value + half))
+
     def __float__(self) -> float:
         return float(self.value)
 

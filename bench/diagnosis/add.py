@@ -253,12 +253,7 @@ def rejection(
 
 
 def _comes_closer(
-    recordings: Recordings,
-    whole: Extension,
-    held_out: HeldOut,
-    gaps: VelocityGaps,
-    allowed: float,
-    policy: Policy,
+    recordings: Recordings, whole: Extension, held_out: HeldOut, gaps: VelocityGaps, allowed: float, policy: Policy
 ) -> bool:
     """Whether refinement by simulation brings the velocity gap of all effects below what is allowed."""
     if whole.model is None:

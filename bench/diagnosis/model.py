@@ -169,10 +169,8 @@ class Extension:
     @cached_property
     def stages(self) -> tuple[Extension, ...]:
         """With none, one, ... all of the effects, each with the nuisances of the recording."""
-        parts = [
-            replace(self, hypothesis=self.hypothesis.first(k), outside={}) for k in range(len(self.hypothesis.terms))
-        ]
-        others = [*self.outside.items()]
+        own, terms, others = self.hypothesis, self.hypothesis.terms, [*self.outside.items()]
+        parts = [replace(self, hypothesis=own.with_terms(terms[:k]), outside={}) for k in range(len(terms))]
         return (*parts, *(replace(self, outside=dict(others[:k])) for k in range(len(others))), self)
 
     def less(self, index: int) -> Extension:

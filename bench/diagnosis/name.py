@@ -308,7 +308,7 @@ def _read(recordings: Recordings, effect: Effect, found: Detected) -> NamedEffec
     values = {}
     for key, value in found.values.items():
         half = found.errors[key]
-        values[key] = Parameter(value, _unit(recordings, effect, key), half / NORMAL95, (value - half, value + half))
+        values[key] = Parameter.around(value, _unit(recordings, effect, key), half / NORMAL95, half)
     return NamedEffect(effect, values, effect.ambiguous(recordings.rows.scope), found.evidence)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,8 +13,7 @@ from bench.comparison.difference import Difference
 from bench.comparison.spread import ALARM, Between, Excess, between, excess, spread_warning
 from bench.diagnosis.recordings import Recordings
 from bench.effects.effect import Occasional
-from bench.errors import UndeterminedError
-from bench.fit.determined import left_open, require_determined
+from bench.fit.determined import left_open, refusals
 from bench.fit.estimate import Alone, load_inertia
 from bench.fit.fit import Fit, fit
 from bench.fit.hypothesis import Hypothesis, lay_out
@@ -128,8 +127,7 @@ def widened(found: Parameter, differ: Excess, own: Sequence[Parameter]) -> Param
     if not more:
         return found
     reach = math.hypot(found.half_width, differ.reach * more)
-    interval = (found.value - reach, found.value + reach)
-    return replace(found, std_error=math.hypot(found.std_error, more), ci95=interval)
+    return Parameter.around(found.value, found.unit, math.hypot(found.std_error, more), reach)
 
 
 def _each(recordings: Recordings, whole: Fit) -> tuple[Alone, ...]:
@@ -144,12 +142,8 @@ def _each(recordings: Recordings, whole: Fit) -> tuple[Alone, ...]:
         if equations is None:
             found.append(Alone(origin, {}, f"no filtered sample of {origin} moves clearly in one direction"))
             continue
-        try:
-            reason = ""
-            require_determined(equations, kind)
-        except UndeterminedError as refusal:
-            reason = str(refusal)
         found_alone = uncertain(fit(rows, whole.hypothesis, whole)).base(recordings.base_units)
         unknown = {kind.parameter(term) for term in left_open(equations, kind)}
-        found.append(Alone(origin, {name: one for name, one in found_alone.items() if name not in unknown}, reason))
+        known = {name: one for name, one in found_alone.items() if name not in unknown}
+        found.append(Alone(origin, known, str(next(iter(refusals(equations, kind).values()), ""))))
     return tuple(found)

@@ -30,10 +30,7 @@ class EncoderEccentricity(Wave, EncoderFault):
     name = "encoder_eccentricity"
     summary = "measured position errs once per revolution"
     quantities = (Quantity("amplitude", "e", "rad", lower=0.0, upper=0.5, null=0.0), PHASE)
-    shapes = (
-        Shape(Quantity("sine", "s", "rad"), additive=True),
-        Shape(Quantity("cosine", "c", "rad"), additive=True),
-    )
+    shapes = (Shape(Quantity("sine", "s", "rad"), additive=True), Shape(Quantity("cosine", "c", "rad"), additive=True))
 
     def propose(self, fitted: Fitted) -> list[Proposal]:
         """To first order, where the balance is linear in both shapes: it lacks J times the acceleration's error.

@@ -15,10 +15,7 @@ class PositionDependentFriction(Wave, Friction):
     name = "position_dependent_friction"
     summary = "friction level varies with position"
     scales_friction = True
-    quantities = (
-        Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5, null=0.0),
-        PHASE,
-    )
+    quantities = (Quantity("relative_amplitude", "A", "dimensionless", lower=0.0, upper=1.5, null=0.0), PHASE)
 
     def unit(self, base: Axis) -> float:
         return base.coulomb

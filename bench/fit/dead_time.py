@@ -188,7 +188,7 @@ def _later(signals: Signals, shift: float) -> Signals:
 
 
 def _parameter(value: float, half: float) -> Parameter:
-    return Parameter(value, "s", half / NORMAL95, (value - half, value + half))
+    return Parameter.around(value, "s", half / NORMAL95, half)
 
 
 def _straight_and_bent(late: Fit) -> Iterator[tuple[Array, Array]]:

@@ -47,21 +47,15 @@ SMALLER = "nothing; the rig's rotor_inertia (gear_inertia, gear_ratio) or torque
 EXPLAINED = "nothing yet; `bench diagnose` searches this recording for what else acts"
 
 
-def require_determined(equations: NormalEquations, kind: AxisKind) -> None:
-    """Raise UndeterminedError for the first quantity that rows of every column and a constant do not determine."""
-    for refusal in _refusals(equations, kind).values():
-        raise refusal
-
-
 def left_open(equations: NormalEquations, kind: AxisKind) -> frozenset[str]:
-    """Terms of the equation of motion that the rows do not determine."""
-    refused = _refusals(equations, kind)
+    """Terms of the equation of motion that rows of every column and a constant do not determine."""
+    refused = refusals(equations, kind)
     return frozenset((INERTIA, VISCOUS, COULOMB, OFFSET) if INERTIA in refused else refused)
 
 
 def require_inertia(equations: NormalEquations, kind: AxisKind) -> None:
     """Raise UndeterminedError if the rows are too few or do not determine the inertia."""
-    refused = _refusals(equations, kind)
+    refused = refusals(equations, kind)
     if INERTIA in refused:
         raise refused[INERTIA]
 
@@ -73,7 +67,7 @@ def require_friction(equations: NormalEquations, kind: AxisKind) -> None:
             raise refusal
 
 
-def _refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
+def refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
     """Why each term that the rows leave open is, in the order of the report; the inertia's alone if it is one."""
     least, open_terms = ROWS_PER_COLUMN * len(equations.names), _not_excited(equations, kind)
     if equations.count < least:
@@ -179,7 +173,7 @@ def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: 
     Raises:
         RefusedEstimateError: else, with what is determined, and with what else is suspicious.
     """
-    kind, reasons = rig.axis_kind, [*_refusals(equations, rig.axis_kind).values()]
+    kind, reasons = rig.axis_kind, [*refusals(equations, rig.axis_kind).values()]
     negative = negative_friction(estimate.parameters, kind, suspicions)
     if estimate.explained < LEAST_EXPLAINED:  # then more acceleration does not help
         why = "; ".join(dict.fromkeys([_share(estimate, kind), *suspicions]))

@@ -15,17 +15,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
 from bench.effects.catalogue import catalogue
-from bench.effects.effect import (
-    Bristles,
-    Columns,
-    ColumnsOf,
-    Contact,
-    Coupling,
-    Distortion,
-    Effect,
-    Proposal,
-    TablesOf,
-)
+from bench.effects.effect import Bristles, Columns, ColumnsOf, Contact, Coupling, Distortion, Effect, Proposal, TablesOf
 from bench.effects.shape import Shapes
 from bench.effects.signals import Axis, Scope, Signals
 from bench.effects.torque import Friction
@@ -273,7 +263,7 @@ class Fit:
         return [proposal for part in parts for proposal in self._by_columns(effect, part)]
 
     def _by_columns(self, effect: Columns, shapes: Sequence[tuple[float, ...]]) -> list[Proposal]:
-        rows, (_, resting) = seen_by(self.rows, self.hypothesis), delays(self.rows, self.hypothesis)
+        rows, (_, resting, _) = seen_by(self.rows, self.hypothesis), delays(self.rows, self.hypothesis)
         known = effect.columns_of, tuple(shapes)
         if isinstance(effect, Coupling):  # of the motion alone, which most terms leave as it is
             columns = self.behind(effect.tables_of, shapes)

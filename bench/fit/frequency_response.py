@@ -179,4 +179,4 @@ def _reported(value: float, std: float, coherent: Array) -> Parameter | None:
     half = math.hypot(NORMAL95 * std, 0.5 * float(np.diff(coherent).min()))
     if not coherent.min() < value < coherent.max() or not half < KNOWN * value:
         return None
-    return Parameter(value, "Hz", half / NORMAL95, (value - half, value + half))
+    return Parameter.around(value, "Hz", half / NORMAL95, half)

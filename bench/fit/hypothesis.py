@@ -29,15 +29,7 @@ from numpy.typing import NDArray
 
 from bench.arrays import Array, rms
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, VISCOUS
-from bench.effects.effect import (
-    Bristles,
-    Columns,
-    Coupling,
-    Distortion,
-    Effect,
-    Lag,
-    lagged,
-)
+from bench.effects.effect import Bristles, Columns, Coupling, Distortion, Effect, Lag, lagged
 from bench.effects.shape import is_pitch
 from bench.effects.signals import Scope, Signals
 from bench.effects.torque import Friction
@@ -145,10 +137,6 @@ class Hypothesis:
         """This hypothesis less one of its terms."""
         return replace(self, terms=(*self.terms[:index], *self.terms[index + 1 :]))
 
-    def first(self, count: int) -> Hypothesis:
-        """This hypothesis with the first of its terms only."""
-        return replace(self, terms=self.terms[:count])
-
     def reshaped(self, index: int, shape: tuple[float, ...]) -> Hypothesis:
         """This hypothesis with another shape of one term."""
         return self.with_term(index, replace(self.terms[index], shape=shape))
@@ -245,7 +233,7 @@ def lay_out(
         found: coefficients of a fit before, on some of which columns depend: see `depended_on`.
         missing: what each term that copies torque does not use, see `not_reaching`.
     """
-    seen, late, (moving, resting) = seen_by(rows, hypothesis), effort_lag(hypothesis), delays(rows, hypothesis)
+    seen, (moving, resting, late) = seen_by(rows, hypothesis), delays(rows, hypothesis)
     parts = [seen.kept(_axis, lag=(moving, moving, resting, resting + late))]
     owners: list[Name] = [*BASE]
     links = seen.stretches[0].signals
@@ -282,7 +270,7 @@ def lay_out(
     rescaling = np.flatnonzero(np.isin(held_by, hypothesis.having(lambda effect: effect.rescales_torque)))
     if hypothesis.shift:
         effort = effort + seen.kept(_moved, hypothesis.shift, lag=late)[:, 0]
-    noise = _noise(rows, hypothesis, held_by, moving)
+    noise = _noise(rows, hypothesis, held_by, moving, late)
     return Layout(columns, held_by, effort, noise, bounds, rescaling, rows.known_inertia)
 
 
@@ -401,10 +389,10 @@ def _acting(s: Signals, time: Array, reported: Array, lag: float) -> Array:
     return lagged(between, lag, s.sample_period) if lag else between
 
 
-def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], moving: float) -> Array:
+def _noise(rows: Rows, hypothesis: Hypothesis, owners: NDArray[np.object_], moving: float, late: float) -> Array:
     """Covariance (p, p) of the columns due to the sensors' white noise."""
     smooth, effort_noise = rows.conditioning.filter, rows.conditioning.effort_noise
-    gain = smooth.noise_gain(1) ** 2 + (effort_lag(hypothesis) * smooth.noise_gain(2)) ** 2
+    gain = smooth.noise_gain(1) ** 2 + (late * smooth.noise_gain(2)) ** 2
     noise = np.zeros((owners.size, owners.size))
     noise[BASE.index(MISALIGNMENT), BASE.index(MISALIGNMENT)] = effort_noise**2 * gain
     couplings = hypothesis.couplings
@@ -466,20 +454,10 @@ def seen_by(rows: Rows, hypothesis: Hypothesis) -> Rows:
     return rows.with_signals(change, tuple((effect.name, shape) for effect, shape in faults))
 
 
-def delays(rows: Rows, hypothesis: Hypothesis) -> tuple[float, float]:
-    """Lag to undo on columns of motion, and on all others - s."""
-    moving, resting, _ = _lags(hypothesis, rows.conditioning.source)
-    return moving, resting
-
-
-def effort_lag(hypothesis: Hypothesis) -> float:
-    """Lag to undo on the reported effort - s."""
-    return _lags(hypothesis, "")[2]
-
-
-def _lags(hypothesis: Hypothesis, source: str) -> tuple[float, float, float]:
-    """Lags of all terms, as `Lag.delays` has those of one - s."""
-    found = [term.effect.delays(term.shape, source) for term in hypothesis.terms if isinstance(term.effect, Lag)]
+def delays(rows: Rows, hypothesis: Hypothesis) -> tuple[float, float, float]:
+    """Lags to undo on columns of motion, on all others, and on the reported effort - s."""
+    source, terms = rows.conditioning.source, hypothesis.terms
+    found = [term.effect.delays(term.shape, source) for term in terms if isinstance(term.effect, Lag)]
     moving, resting, late = (sum(each) for each in zip(*found, strict=True)) if found else (0.0, 0.0, 0.0)
     return moving, resting, late
 

@@ -43,16 +43,7 @@ from bench.fit.hum import mains
 from bench.fit.hypothesis import BASE, Hypothesis, Name, lay_out, plain
 from bench.fit.motor import motor_constants, require_often, with_inertia
 from bench.fit.rows import Rows, effort_of
-from bench.fit.solution import (
-    NOISE_ALONE,
-    NormalEquations,
-    Solution,
-    equations_of,
-    join,
-    solution_of,
-    solve,
-    solved,
-)
+from bench.fit.solution import NOISE_ALONE, NormalEquations, Solution, equations_of, join, solution_of, solve, solved
 from bench.fit.two_encoders import coupling
 from bench.gate.check import Check
 from bench.gate.gate import PARTS, Gated, gate, joined, passed, require
@@ -100,10 +91,7 @@ def identify(
     if cutoff is not None and not 0.0 < cutoff < math.inf:
         raise InputError("cutoff", f"found {cutoff:g} Hz", "allowed: above 0 Hz")
     gathered = [_gather(one, rig, cutoff) for one in recordings]
-    if len(gathered) == 1:
-        found = _estimated_alone(gathered[0], gathered[0].solution, rig)
-    else:
-        found = _estimated_together(gathered, rig)
+    found = _estimated_alone(gathered[0], rig) if len(gathered) == 1 else _estimated_together(gathered, rig)
     first = join_traces([one.first for one in gathered])
     found = replace(found, motor=motor_constants(first, rig, found, _only), command=command_delay(first, rig.axis_kind))
     found = _with_coupling(with_inertia(found, first, rig), first, rig)
@@ -133,8 +121,7 @@ def _with_coupling(found: Estimate, first: Trace, rig: Rig) -> Estimate:
 
 def _only(trace: Trace, rig: Rig) -> Estimate:
     """Inertia and friction of a recording alone."""
-    gathered = _gather(trace, rig, None)
-    return _estimated_alone(gathered, gathered.solution, rig)
+    return _estimated_alone(_gather(trace, rig, None), rig)
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,10 +299,10 @@ def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Move
     return found, (doubt, warnings)
 
 
-def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
-    """Estimate from a solution of a recording, without a constant where it moves in one direction only."""
-    kind, unit, parameters = rig.axis_kind, gathered.effort_unit, {}
-    require_inertia(gathered.solution.whole, kind)
+def _estimated_alone(gathered: Gathered, rig: Rig) -> Estimate:
+    """Estimate from the solution of a recording."""
+    found, kind, unit, parameters = gathered.solution, rig.axis_kind, gathered.effort_unit, {}
+    require_inertia(found.whole, kind)
     terms = (INERTIA, VISCOUS, COULOMB, MISALIGNMENT, *([OFFSET] if OFFSET in found.names else []))
     for term in terms:
         margins = gathered.doubt.get(term, 0.0), gathered.tolerance.get(term, 0.0)
@@ -333,14 +320,13 @@ def _estimated_alone(gathered: Gathered, found: Solution, rig: Rig) -> Estimate:
     told = [f"{'; '.join(remaining)}; {TELLS}"] if remaining else []
     late = [] if gathered.late is None else [str(gathered.late)]
     estimate = replace(estimate, warnings=(*gathered.warnings, *late, *told))
-    return sound(estimate, gathered.solution.whole, rig, (*gathered.warnings, *remaining))
+    return sound(estimate, found.whole, rig, (*gathered.warnings, *remaining))
 
 
 def _parameter_of(found: Solution, term: str, kind: AxisKind, effort_unit: str) -> Parameter:
     """A coefficient of a solution with the interval that its covariance gives it."""
-    value, error = found.of(term, found.theta), found.of(term, found.errors)
-    interval = (value - found.reach * error, value + found.reach * error)
-    return Parameter(value, kind.parameter_unit(term, effort_unit), error, interval)
+    unit, error = kind.parameter_unit(term, effort_unit), found.of(term, found.errors)
+    return Parameter.around(found.of(term, found.theta), unit, error, found.reach * error)
 
 
 def _estimate_of(
@@ -397,9 +383,8 @@ def _estimated_together(gathered: Sequence[Gathered], rig: Rig) -> Estimate:
     errors = np.sqrt(np.diag(covariance))
     parameters = {}
     for term, value, error, reach in zip(excesses, theta.tolist(), errors.tolist(), reaches.tolist(), strict=True):
-        found = Parameter(value, kind.parameter_unit(term, unit), error, (value - reach, value + reach))
-        tolerance = float(np.mean([_tolerance(one, term) for one in gathered]))
-        parameters[kind.parameter(term)] = found.widened(tolerance)
+        found = Parameter.around(value, kind.parameter_unit(term, unit), error, reach)
+        parameters[kind.parameter(term)] = found.widened(float(np.mean([_tolerance(one, term) for one in gathered])))
     away = [theta - each.theta for each in members]
     left = sum(each.solution.power + float(d @ each.matrix @ d) for each, d in zip(members, away, strict=True))
     estimate = replace(
@@ -459,7 +444,7 @@ def _member(gathered: Gathered, rig: Rig) -> Member:
     bare = gathered.solved(offset=False) if one_way else solution
     found, reason = None, ""
     try:
-        found = _estimated_alone(gathered, bare, rig)
+        found = _estimated_alone(replace(gathered, solution=bare), rig)
     except RefusedEstimateError as refusal:
         found, reason = refusal.estimate, str(refusal)
     except UndeterminedError as refusal:
@@ -510,7 +495,7 @@ def _without(found: Parameter, reach: float) -> Parameter:
     """A parameter less an independent error of such a half width at 95 %."""
     half = math.sqrt(max(found.half_width**2 - reach**2, 0.0))
     error = math.sqrt(max(found.std_error**2 - (reach / NORMAL95) ** 2, 0.0))
-    return replace(found, std_error=error, ci95=(found.value - half, found.value + half))
+    return Parameter.around(found.value, found.unit, error, half)
 
 
 def _jointly(members: Sequence[Member], excesses: Sequence[Excess]) -> tuple[Array, Array, Array]:

@@ -61,8 +61,7 @@ def identify_as_in_the_lab(trace: Trace, rig: Rig) -> Estimate:
     theta, std_error, error = least_squares(acceleration[fast], velocity[fast], torque[fast])
     numbers = zip(rig.axis_kind.base_parameters(unit).items(), theta.tolist(), std_error.tolist(), strict=True)
     parameters = {
-        name: Parameter(value, label, error, (value - NORMAL95 * error, value + NORMAL95 * error))
-        for (name, label), value, error in numbers
+        name: Parameter.around(value, label, error, NORMAL95 * error) for (name, label), value, error in numbers
     }
     rms = math.sqrt(error / np.count_nonzero(fast))
     relative = math.sqrt(error / np.sum(torque[fast] ** 2))

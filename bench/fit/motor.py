@@ -244,7 +244,7 @@ def _electrical(total: float, period: float, rig: Rig) -> tuple[float, float]:
 def _between(found: Parameter, low: float, high: float) -> Parameter:
     """A parameter larger by something between two bounds, which its interval covers."""
     value, half = found.value + 0.5 * (low + high), found.half_width + 0.5 * abs(high - low)
-    return replace(found, value=value, std_error=half / NORMAL95, ci95=(value - half, value + half))
+    return Parameter.around(value, found.unit, half / NORMAL95, half)
 
 
 def _weighted(rig: Rig) -> bool:

@@ -67,6 +67,6 @@ def regressed(
     beyond = misfit(table[:-1].T, table[-1] - theta @ table[:-1], floor)
     errors = np.sqrt(np.diag(covariance))
     return [
-        Parameter(value, "", error, (value - reach * error, value + reach * error)).widened(wide)
+        Parameter.around(value, "", error, reach * error).widened(wide)
         for value, error, wide in zip(theta.tolist(), errors.tolist(), beyond.tolist(), strict=True)
     ]

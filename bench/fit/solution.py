@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from bench.arrays import Array, rms, symmetric_inverse
 from bench.axis_kind import COULOMB, INERTIA, MISALIGNMENT, OFFSET, VISCOUS
 from bench.effects.effect import Columns, Coupling
-from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, effort_lag, frequencies, lay_out
+from bench.fit.hypothesis import BASE, DIGIT, Hypothesis, Layout, Name, delays, frequencies, lay_out
 from bench.fit.rows import ONE_WAY, Rows
 
 #: Blocks of time in filter widths: neighbouring blocks then share little except the residual's own correlation.
@@ -635,7 +635,7 @@ class Floor:
             source: power there of the noise of the signal that speed is taken from - its unit squared (..., k).
         """
         conditioning, theta, owners = self.rows.conditioning, self.theta, self.layout.owners
-        moving, _ = delays(self.rows, self.hypothesis)
+        moving, _, lag = delays(self.rows, self.hypothesis)
         s = np.asarray(1j * omega, dtype=np.complex128)
         kinetic = (theta[BASE.index(INERTIA)] + self.layout.known) * s + theta[BASE.index(VISCOUS)]
         links, behind = np.ones_like(s), self.rows.stretches[0].signals.link_inertia
@@ -645,9 +645,7 @@ class Floor:
                 kinetic = kinetic + theta[owners == index][0] * s * transfer
                 links = links + theta[owners == index][0] / behind * transfer if behind > 0.0 else links
         kinetic = kinetic * (1.0 + moving * s) * (s if conditioning.source == "position" else 1.0)
-        late = (1.0 + (self.hypothesis.shift + theta[BASE.index(MISALIGNMENT)]) * s) * (
-            1.0 + effort_lag(self.hypothesis) * s
-        )
+        late = (1.0 + (self.hypothesis.shift + theta[BASE.index(MISALIGNMENT)]) * s) * (1.0 + lag * s)
         effort = conditioning.effort_noise**2 * _square(late)
         known = conditioning.known_noise**2 * _square((1.0 + moving * s) * s * links)
         return effort + (known + source * _square(kinetic)) / self._acting**2

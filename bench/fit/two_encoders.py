@@ -192,6 +192,5 @@ def _named(found: Sequence[Parameter], of: Twist, gap: float, rig: Rig) -> dict[
         size = math.hypot(*(one.value for one in pair)) * ratio / stiffness.value
         wide = max(one.half_width for one in pair) * ratio / stiffness.value
         if size > wide:
-            error = Parameter(size, kind.length_unit, wide / 2.0, (size - wide, size + wide))
-            known[f"transmission_error_per_{name}_turn"] = error
+            known[f"transmission_error_per_{name}_turn"] = Parameter.around(size, kind.length_unit, wide / 2.0, wide)
     return known

@@ -66,23 +66,6 @@ class FoundPayload:
 
 
 @dataclass(frozen=True)
-class DoubtedLink:
-    """A link whose inertia about its joint's axis is not the MJCF's: by what factor, and what is added - kg*m**2."""
-
-    joint: str
-    factor: Parameter
-    inertia: float
-
-
-@dataclass(frozen=True)
-class DoubtedZero:
-    """A joint whose zero is not the MJCF's: what is added to the log's position for that of the MJCF - rad (m)."""
-
-    joint: str
-    zero: Parameter
-
-
-@dataclass(frozen=True)
 class Common:
     """Strengths (k,) common to all joints.
 
@@ -106,8 +89,7 @@ class Common:
 
     def parameter(self, value: float, deviation: float, unit: str) -> Parameter:
         """A value with its interval."""
-        half = self.reach * deviation
-        return Parameter(float(value), unit, float(deviation), (float(value - half), float(value + half)))
+        return Parameter.around(float(value), unit, float(deviation), float(self.reach * deviation))
 
 
 def gathered(asked: JointLogs, changes: Sequence[Change]) -> Array | None:
@@ -119,7 +101,7 @@ def gathered(asked: JointLogs, changes: Sequence[Change]) -> Array | None:
     for log in asked.logs:
         try:
             robot, rig = asked.robot_of(log), joint_rig(asked.rig, asked.robot())
-            trace, *changed = logs_of(log, rig, robot, asked.stated, changes)
+            (trace, *changed), _ = logs_of(log, rig, robot, asked.stated, changes)
             rows = Rows.of(trace, rig)
             columns = [own_columns(rows)]
             columns += [rows.effort - Rows.of(one, rig, conditioning=rows.conditioning).effort for one in changed]
@@ -251,27 +233,30 @@ def _without_each(products: Sequence[Array], mix: Array, strengths: Array) -> Ar
     return np.max(np.abs(np.array([strengths, *others]) - strengths), axis=0)
 
 
-def doubt_links(work: Sequence[JointLogs]) -> list[DoubtedLink | DoubtedZero]:
-    """Inertias of links and zeros of joints of the MJCF that the logs contradict, the clearest first."""
+def doubt_links(work: Sequence[JointLogs]) -> dict[Change, Parameter]:
+    """Inertias of links and zeros of joints of the MJCF that the logs contradict, the clearest first.
+
+    Each as the change that it takes, with the inertia over the MJCF's, or the zero - rad (m).
+    """
     names = [asked.joint for asked in work]
     inertias: list[Change] = [AddedBody(joint=name, inertia=1.0) for name in names]
     zeros: list[Change] = [Counting(name, SHIFT) for name in names]
     products = of_joints(work, [*inertias, *zeros])
     if len(products) < 2:
-        return []
+        return {}
     chosen = _contradicted(products, [asked.robot().link_inertia for asked in work])
     if not chosen:
-        return []
-    found, doubts = shared(products, chosen), list[DoubtedLink | DoubtedZero]()
+        return {}
+    found, doubts = shared(products, chosen), dict[Change, Parameter]()
     for k, more, deviation in zip(chosen, found.strengths, found.deviations, strict=True):
         name = names[k % len(names)]
         if k < len(names):
             own = work[k].robot().link_inertia
             factor = found.parameter(1.0 + more / own, deviation / own, "dimensionless")
-            doubts.append(DoubtedLink(name, factor, float(more)))
+            doubts[AddedBody(joint=name, inertia=float(more))] = factor
         else:
-            unit = work[0].robot().unit(name)
-            doubts.append(DoubtedZero(name, found.parameter(SHIFT * more, SHIFT * deviation, unit)))
+            zero = found.parameter(SHIFT * more, SHIFT * deviation, work[0].robot().unit(name))
+            doubts[Counting(name, zero.value)] = zero
     return doubts
 
 
@@ -325,13 +310,16 @@ def _left(work: Sequence[JointLogs]) -> tuple[float, bool]:
     return float(np.log(np.maximum(lefts, 1e-300)).sum()), unlike
 
 
-def doubted(work: Sequence[JointLogs]) -> tuple[list[JointLogs], list[DoubtedLink], list[DoubtedZero]]:
-    """The logs of the robot as they show it, and what that is; zeros settle first, as they turn the links."""
-    shown, at, links, zeros = list(work), dict[str, float](), list[DoubtedLink](), list[DoubtedZero]()
+def doubted(work: Sequence[JointLogs]) -> tuple[list[JointLogs], dict[str, Parameter], dict[str, Parameter]]:
+    """The logs of the robot as they show it, and links' inertias over the MJCF's and zeros - rad (m) - by joint.
+
+    Zeros settle first, as they turn the links.
+    """
+    shown, at, links, zeros = list(work), dict[str, float](), dict[AddedBody, Parameter](), dict[str, Parameter]()
     for _ in range(MOST):
         doubts = doubt_links(shown)
-        links = [one for one in doubts if isinstance(one, DoubtedLink)]
-        steps = {one.joint: one.zero.value for one in doubts if isinstance(one, DoubtedZero)}
+        links = {one: factor for one, factor in doubts.items() if isinstance(one, AddedBody)}
+        steps = {one.joint: one.zero for one in doubts if isinstance(one, Counting)}
         if not steps:
             break
         for _ in range(ROUNDS):
@@ -341,10 +329,9 @@ def doubted(work: Sequence[JointLogs]) -> tuple[list[JointLogs], list[DoubtedLin
             steps = dict(zip(at, (SHIFT * found.strengths).tolist(), strict=True))
             units = {joint: shown[0].robot().unit(joint) for joint in at}
             values = zip(at, (SHIFT * found.deviations).tolist(), strict=True)
-            zeros = [DoubtedZero(j, found.parameter(at[j] + steps[j], error, units[j])) for j, error in values]
-    changes: list[Change] = [Counting(one.joint, one.zero.value) for one in zeros]
-    changes += [AddedBody(joint=one.joint, inertia=one.inertia) for one in links]
-    return carrying(work, changes), links, zeros
+            zeros = {j: found.parameter(at[j] + steps[j], error, units[j]) for j, error in values}
+    changes = [*(Counting(joint, zero.value) for joint, zero in zeros.items()), *links]
+    return carrying(work, changes), {one.joint: factor for one, factor in links.items()}, zeros
 
 
 def _only(product: Array, kept: Sequence[int]) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from bench.axis_kind import ARMATURE
@@ -15,18 +15,11 @@ from bench.jobs.process import Failure
 from bench.joints.goals import GivenGain, by_goals, drive_of, with_gains, with_one_delay
 from bench.joints.grade import GradedJoint, graded
 from bench.joints.identified import IdentifiedJoint, JointLogs, identified, of_each
-from bench.joints.links import (
-    DoubtedLink,
-    DoubtedZero,
-    FoundPayload,
-    carrying,
-    doubted,
-    reversed_joints,
-    seek_payload,
-)
+from bench.joints.links import FoundPayload, carrying, doubted, reversed_joints, seek_payload
 from bench.names import meant, nearest, with_known_arguments
+from bench.parameter import Parameter
 from bench.plant.model_file import StoredModel
-from bench.plant.robot import AddedBody, Change, Counting, joint_units
+from bench.plant.robot import AddedBody, Change, joint_units
 from bench.presented import Shown
 from bench.rig.given import GivenRig, rig_of
 
@@ -44,21 +37,21 @@ class IdentifiedRobot(Shown):
         mjcf: its file.
         joints: each by its name, in the order of the MJCF.
         payload: what a body carried in the logs, where that was sought and is determined.
-        links: whose inertia is not the MJCF's; joints are reported with what theirs is.
+        links: inertia of those that are not the MJCF's over it, by joint; joints are reported with what theirs is.
         warnings: what concerns no joint alone.
         added: what the joints were identified with in addition to the MJCF.
         stand: whether a floating base was fixed.
-        zeros: of joints that are not the MJCF's.
+        zeros: by joint, what is added to the log's position for that of the MJCF, where that is not zero - rad (m).
     """
 
     mjcf: Path
     joints: Mapping[str, IdentifiedJoint]
     payload: FoundPayload | None = None
-    links: tuple[DoubtedLink, ...] = ()
+    links: Mapping[str, Parameter] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     added: tuple[Change, ...] = ()
     stand: bool = False
-    zeros: tuple[DoubtedZero, ...] = ()
+    zeros: Mapping[str, Parameter] = field(default_factory=dict)
 
     def __getitem__(self, joint: str) -> IdentifiedJoint:
         return meant(joint, self.joints)
@@ -198,29 +191,25 @@ def _answered(
         found = _identified(work, progress)
     open_ = _open(found)
     # behind a soft gear the lag of a link looks like more of its inertia, or of its neighbours'
-    links, zeros = list[DoubtedLink](), list[DoubtedZero]()
+    links, zeros = dict[str, Parameter](), dict[str, Parameter]()
     if open_ and not any(one.twists for one in found.values()):
         work, links, zeros = doubted(work)
     if links or zeros:
         found = _identified(work, progress)
     added = work[0].added if work else ()
-    warnings += [_counted_otherwise(one) for one in (*turned, *zeros)]
-    return IdentifiedRobot(of_all.mjcf, found, sought, tuple(links), tuple(warnings), added, of_all.stand, tuple(zeros))
-
-
-def _counted_otherwise(one: Counting | DoubtedZero) -> str:
-    """What a user should know of a joint that the log counts in another way."""
-    if isinstance(one, DoubtedZero):
-        zero = f"{one.zero.value:.4g} ± {one.zero.half_width:.2g} {one.zero.unit}"
-        return (
-            f"{one.joint}: the log has another zero than the MJCF, whose position is the log's + ({zero}). "
-            "The joint is identified with it, and `robot_id.xml` has it as `ref`"
-        )
-    return (
+    warnings += [
         f"{one.joint}: the log counts position, speed and torque in the opposite direction to the MJCF. The joint is "
         "identified with its axis reversed; to keep the MJCF's axis, put `sign = -1` under "
         f"[joints.{one.joint}] in a rig"
-    )
+        for one in turned
+    ]
+    warnings += [
+        f"{joint}: the log has another zero than the MJCF, whose position is the log's + "
+        f"({zero.value:.4g} ± {zero.half_width:.2g} {zero.unit}). "
+        "The joint is identified with it, and `robot_id.xml` has it as `ref`"
+        for joint, zero in zeros.items()
+    ]
+    return IdentifiedRobot(of_all.mjcf, found, sought, links, tuple(warnings), added, of_all.stand, zeros)
 
 
 def _open(found: Mapping[str, IdentifiedJoint]) -> list[IdentifiedJoint]:

@@ -22,7 +22,7 @@ from bench.effects.signals import Signals
 from bench.errors import InputError, UndeterminedError
 from bench.fit.hypothesis import BASE, lay_out, plain
 from bench.fit.rows import Rows, effort_of, known_of
-from bench.fit.solution import block_edges, equations, estimated, solved
+from bench.fit.solution import block_edges, equations, estimated
 from bench.names import readable
 from bench.parameter import Parameter
 from bench.rig.rig import Rig
@@ -84,8 +84,7 @@ def constant_of(traces: Sequence[Trace], rig: Rig) -> tuple[Rig, Parameter]:
         reason = "no known weight of links or payload moves clearly"
         raise UndeterminedError("torque constant", reason, "a motion that lifts links or a payload of known mass")
     value, error, half = 1.0 / share, error / share**2, half / share**2
-    constant = Parameter(value, f"{rig.effort_unit}/A", error, (value - half, value + half))
-    return with_constant(rig, Toleranced(value, half)), constant
+    return with_constant(rig, Toleranced(value, half)), Parameter.around(value, f"{rig.effort_unit}/A", error, half)
 
 
 def counted_differently(traces: Mapping[Path, Trace], rig: Rig) -> Iterator[str]:
@@ -133,7 +132,7 @@ def _counted(trace: Trace, rig: Rig) -> Parameter | None:
     every = equations(tuple(range(OWN + 1)), table, noise, block_edges(rows.time, smooth.width))
     if every.independent_shares([OWN])[0] < LEAST:
         return None
-    theta, inverse = solved(every.total, every.moments, every.count * every.noise)
+    theta, inverse = every.solved()
     covariance, reach = estimated(every.scores(theta), inverse, rows.conditioning.effort_noise**2 / smooth.stride)
     value, error = float(theta[OWN]), float(np.sqrt(max(covariance[OWN, OWN], 0.0)))
-    return Parameter(value, "dimensionless", error, (value - reach * error, value + reach * error))
+    return Parameter.around(value, "dimensionless", error, reach * error)

@@ -65,16 +65,21 @@ def peak_torque(rig: Rig) -> float:
 
 
 class CascadeDrive:
-    """The cascade ticked in software. It starts at rest on its references.
+    """The cascade ticked in software, once along its references, on which it starts at rest.
 
     Args:
-        drive: its gains, references and friction.
         axis: the model whose encoder the drive sees; without one it sees the true motion.
+        emulated: an axis whose friction the software makes.
     """
 
-    def __init__(self, drive: FollowReferences, axis: AxisModel | None = None) -> None:
-        cascade, references, period = drive.cascade, drive.references, drive.cascade.control_period
-        self._position_gain = cascade.position_gain
+    def __init__(
+        self,
+        cascade: Cascade,
+        references: References,
+        axis: AxisModel | None = None,
+        emulated: AxisParameters | None = None,
+    ) -> None:
+        period, self._position_gain = cascade.control_period, cascade.position_gain
         # The velocity error is integrated by the trapezoidal rule: half of this tick's error, all of those before.
         self._gain = cascade.velocity_gain + cascade.integral_gain * (period / 2.0)
         self._integral_step = cascade.integral_gain * period
@@ -83,8 +88,7 @@ class CascadeDrive:
         self._speed_demand = (references.velocity + self._position_gain * references.position).tolist()
         self._feedforward = references.feedforward(cascade.inertia_feedforward).tolist()
         self._integral = 0.0
-        start = references.start[1]
-        self._friction = None if drive.emulated is None else _EmulatedFriction(drive.emulated, period, start)
+        self._friction = None if emulated is None else _EmulatedFriction(emulated, period, references.start[1])
         self._encoders = [] if axis is None else axis.acting(EncoderFault)
 
     def tick(self, k: int, position: float, velocity: float) -> tuple[float, float]:
@@ -234,12 +238,3 @@ class References:
         moved = self.position / per_length, self.velocity / per_speed, self.acceleration / per_speed
         head = "time [s]", f"position [{length}]", f"velocity [{speed}]", f"acceleration [{speed}/s]"
         return csv_text(head, np.stack([signal[rows] for signal in (self.time, *moved)], axis=-1).tolist())
-
-
-@dataclass(frozen=True, eq=False)
-class FollowReferences:
-    """A drive along references; where an axis is `emulated`, software makes the friction of that."""
-
-    cascade: Cascade
-    references: References
-    emulated: AxisParameters | None = None

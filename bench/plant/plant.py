@@ -20,7 +20,7 @@ from bench.effects.present import Present
 from bench.effects.torque import Friction
 from bench.errors import InputError
 from bench.plant.axis_model import AxisModel, AxisParameters, winding_of
-from bench.plant.drive import Cascade, FollowReferences, References, add_pid, pid_inputs
+from bench.plant.drive import Cascade, CascadeDrive, References, add_pid, pid_inputs
 from bench.rig.rig import Rig
 
 #: Inputs of the actuator `drive` that are known before the motion, so that MuJoCo closes the loop: from a tick to
@@ -53,7 +53,7 @@ class ClosedLoop:
 
     axis: AxisModel
     compiled: mujoco.MjModel
-    controller: FollowReferences | PlannedInputs
+    controller: CascadeDrive | PlannedInputs
     time: Array
     position: float = 0.0
     velocity: float = 0.0
@@ -71,7 +71,7 @@ class ClosedLoop:
     @property
     def native(self) -> bool:
         """Whether MuJoCo runs it all by itself."""
-        return not isinstance(self.controller, FollowReferences) and self.axis.all_native
+        return not isinstance(self.controller, CascadeDrive) and self.axis.all_native
 
 
 @dataclass(frozen=True)
@@ -175,9 +175,9 @@ class Plant:
         return ClosedLoop(self.model, self._with_pid, lambda first, last: inputs[first:last], time, *start)
 
     def ticked_loop(self, references: References) -> ClosedLoop:
-        """The axis with its drive ticked in Python."""
-        drive = FollowReferences(self.cascade, references, self.axis.parameters if self.emulated else None)
-        start = references.start
+        """The axis with its drive ticked in Python, to be run once."""
+        emulated, start = self.axis.parameters if self.emulated else None, references.start
+        drive = CascadeDrive(self.cascade, references, self.model, emulated)
         return ClosedLoop(self.model, self._mechanics, drive, references.time, *start, substeps=self.substeps)
 
     @cached_property

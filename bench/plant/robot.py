@@ -314,7 +314,8 @@ class Robot:
         found = list[tuple[Array, Array]]()
         for one in changes:
             if isinstance(one, Counting) and still is not None:
-                moved = self._recounted(one, position, velocity) if self._feels(one.joint) else still
+                aside = position + one.zero * (np.array(self.names) == one.joint)
+                moved = self.rest(aside, velocity) if self._feels(one.joint) else still
                 found.append((moved[0] - still[0], moved[1] - still[1]))
             else:
                 found.append(next(borne))
@@ -326,10 +327,6 @@ class Robot:
             return False
         own, other = (int(self.model.joint(name).bodyid[0]) for name in (self.joint, joint))
         return bool(self._carried[other] or _carried(self.model, other)[own])
-
-    def _recounted(self, one: Counting, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """`rest` with another zero of a joint."""
-        return self.rest(position + one.zero * (np.array(self.names) == one.joint), velocity)
 
     def _borne(self, added: Sequence[AddedBody], position: Array, velocity: Array) -> list[tuple[Array, Array]]:
         """The same of what is added to bodies.
@@ -505,9 +502,8 @@ def read_log(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) ->
 
 def read_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> tuple[Trace, Poses]:
     """The same, and where the robot's joints were meanwhile."""
-    moved = _moved(path, rig, robot, stated)
-    trace, position, _, _ = moved
-    return _known(moved, rig, robot, ())[0], (trace.time, dict(zip(robot.names, position.T, strict=True)))
+    (trace,), poses = logs_of(path, rig, robot, stated)
+    return trace, poses
 
 
 def read_goals(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Trace:
@@ -536,7 +532,7 @@ def read_commanded(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, floa
     own = {name: trace[name] / ratio for name in ("position", "position_reference") if name in trace}
     trace = replace(trace, signals=own, units={name: trace.units[name] for name in own})
     known = with_known(trace, *robot.rest(position, velocity), unit, robot.grown(position))
-    return known, (trace.time, dict(zip(robot.names, position.T, strict=True)))
+    return known, _poses(trace, position, robot)
 
 
 def is_commanded(path: Path, rig: Rig, robot: Robot) -> bool:
@@ -551,17 +547,10 @@ def is_commanded(path: Path, rig: Rig, robot: Robot) -> bool:
 
 def logs_of(
     path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float], changes: Sequence[Change] = ()
-) -> list[Trace]:
-    """The same, and then of the robot with each of some changes."""
-    return _known(_moved(path, rig, robot, stated), rig, robot, changes)
-
-
-def _known(
-    moved: tuple[Trace, Array, Array, list[str]], rig: Rig, robot: Robot, changes: Sequence[Change]
-) -> list[Trace]:
-    """What `_moved` returns with the torque of the rest of the robot, as it is and with each change."""
+) -> tuple[list[Trace], Poses]:
+    """A log as `read_log` has it, then of the robot with each of some changes; and where its joints were."""
     own = rig.of_joint(robot.joint)
-    trace, position, velocity, stand = moved
+    trace, position, velocity, stand = _moved(path, rig, robot, stated)
     unit = own.effort(trace)[1]
     if unit != own.effort_unit:
         if unit == RELATIVE:
@@ -586,7 +575,8 @@ def _known(
         for asked, moving in every
     ]
     standing = _standing(position, velocity, torque, robot, stand, ratio)
-    return [replace(one, notes=(*robot.notes, *one.notes), metadata={**one.metadata, **standing}) for one in known]
+    told = [replace(one, notes=(*robot.notes, *one.notes), metadata={**one.metadata, **standing}) for one in known]
+    return told, _poses(trace, position, robot)
 
 
 def _standing(
@@ -659,6 +649,11 @@ def _twisted(robot: Robot, joint: str, trace: Trace) -> tuple[Array, Array]:
 def poses_along(path: Path, rig: Rig, robot: Robot, stated: Mapping[str, float]) -> Poses:
     """Times of a log - s (n,) -, and where a robot's joints were, by name - rad (m) (n,); raises as `read_log`."""
     trace, position, _, _ = _moved(path, rig, robot, stated)
+    return _poses(trace, position, robot)
+
+
+def _poses(trace: Trace, position: Array, robot: Robot) -> Poses:
+    """Of the positions of a robot's `joints` (n, joints)."""
     return trace.time, dict(zip(robot.names, position.T, strict=True))
 
 

@@ -16,7 +16,7 @@ from mujoco.batch import MODEL_FIELDS, Batch
 from bench.arrays import Array
 from bench.effects.mjcf import AXIS, BRISTLE_LEVELS, BRISTLES, DRIVE, LINKS
 from bench.errors import InputError, SimulationError
-from bench.plant.drive import TORQUE, CascadeDrive, FollowReferences, References
+from bench.plant.drive import TORQUE, CascadeDrive, References
 from bench.plant.plant import DIVERGED, ClosedLoop, PlannedInputs, Plant, States
 from bench.plant.silenced import silenced
 from bench.plant.stepped_effects import SteppedEffects
@@ -84,7 +84,7 @@ def run_native(loop: ClosedLoop) -> States:
     It runs in blocks, the same to the last bit as in one rollout: each takes up the state of the one before. MuJoCo's
     warnings are the caller's to silence, once for all threads.
     """
-    assert not isinstance(loop.controller, FollowReferences)
+    assert not isinstance(loop.controller, CascadeDrive)
     model, data, every = loop.compiled, mujoco.MjData(loop.compiled), loop.every
     half, joint, first = model.opt.timestep / 2.0, model.joint(AXIS), model.actuator_ctrladr[model.actuator(DRIVE).id]
     data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]] = loop.position + half * loop.velocity, loop.velocity
@@ -144,7 +144,7 @@ def run_side_by_side(loops: Sequence[ClosedLoop]) -> list[States]:
     position[:], bare = start + half * velocity, armature.copy()
     effects = SteppedEffects([loop.axis for loop in loops], model.opt.timestep, bristles >= 0)
     memory, found = effects.start(velocity.copy()), np.empty((4, -(-first.ticks // every), len(loops)))
-    controllers = [loop.controller for loop in loops if not isinstance(loop.controller, FollowReferences)]
+    controllers = [loop.controller for loop in loops if not isinstance(loop.controller, CascadeDrive)]
     for k, planned in enumerate(_planned(controllers, first)):
         here, speed, motor = position.copy(), velocity.copy(), planned[:, -2]
         acts = effects.act(memory, since + first.time[k], here, speed, motor, began)
@@ -202,8 +202,8 @@ class _TickedAxis:
             self._level = model.actuator_biasprm[bristles, BRISTLE_LEVELS]
         self._step, self._substeps, self._bare = model.opt.timestep, loop.substeps, float(self._armature[0])
         self._velocity[0], self._position[0] = loop.velocity, loop.position + self._step / 2.0 * loop.velocity
-        if isinstance(loop.controller, FollowReferences):
-            self._drive, self._planned = CascadeDrive(loop.controller, loop.axis), iter(())
+        if isinstance(loop.controller, CascadeDrive):
+            self._drive, self._planned = loop.controller, iter(())
         else:
             self._drive, self._planned = None, _planned_of(loop.controller, loop)
         self._since, self._began = loop.since, loop.began

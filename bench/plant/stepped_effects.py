@@ -114,13 +114,7 @@ class SteppedEffects:
         return Remembered(xp.where(where, velocity, memory.velocity), tuple(kept))
 
     def act(
-        self,
-        memory: Remembered,
-        time: Number,
-        position: Number,
-        velocity: Number,
-        demand: Number,
-        began: Number = 0.0,
+        self, memory: Remembered, time: Number, position: Number, velocity: Number, demand: Number, began: Number = 0.0
     ) -> Acts:
         """What acts in the next step; of a lone axis everything may be numbers. Velocities must not change afterwards.
 

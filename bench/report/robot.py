@@ -56,9 +56,9 @@ def robot_json(
         "joints": {name: _joint_json(joint) for name, joint in found.joints.items()},
         "payload": payload,
         "links": [
-            {"joint": one.joint, "inertia_factor": one.factor.value, "ci95": one.factor.ci95} for one in found.links
+            {"joint": joint, "inertia_factor": one.value, "ci95": one.ci95} for joint, one in found.links.items()
         ],
-        "zeros": [{"joint": one.joint, **as_json(one.zero)} for one in found.zeros],
+        "zeros": [{"joint": joint, **as_json(zero)} for joint, zero in found.zeros.items()],
         "model": {"mjcf": MJCF, "effects": EFFECTS_FILE},
         "warnings": found.warnings,
         "provenance": provenance,
@@ -229,11 +229,11 @@ def _tables(found: IdentifiedRobot) -> list[doc.Table]:
         row = (found.payload.body, interval(found.payload.mass), centre)
         tables.append(doc.table("Payload", ("body", "mass>", "centre in the body's frame>"), [row]))
     if found.links:
-        rows = ((one.joint, f"{interval(one.factor)} times the MJCF's") for one in found.links)
+        rows = ((joint, f"{interval(factor)} times the MJCF's") for joint, factor in found.links.items())
         caption = "Links whose inertia about their joint's axis is not the MJCF's"
         tables.append(doc.table(caption, ("joint", "inertia~"), rows))
     if found.zeros:
-        rows = ((one.joint, interval(one.zero)) for one in found.zeros)
+        rows = ((joint, interval(zero)) for joint, zero in found.zeros.items())
         tables.append(doc.table("Zeros that are not the MJCF's", ("joint", "MJCF's position less the log's>"), rows))
     lacking = [(name, why, motion) for name, joint in found.joints.items() for why, motion in _open(joint)]
     if lacking:

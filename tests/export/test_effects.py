@@ -14,7 +14,7 @@ from bench.effects.effect import EncoderFault
 from bench.effects.mjcf import AXIS, DRIVE
 from bench.errors import InputError
 from bench.export.mjcf import ArmatureShare, armature_of, onto
-from bench.plant.drive import CascadeDrive, FollowReferences, References
+from bench.plant.drive import CascadeDrive, References
 from bench.plant.model_file import LOADED, Mounting, StoredModel, model_toml, model_xml
 from bench.plant.run import run
 from tests.effects.axes import CASCADE, PARAMETERS, PERIOD, VALUES, Reversals, model, plant
@@ -31,7 +31,7 @@ TOGETHER = ("stribeck_friction", "friction_warmup", "torque_ripple", "presliding
 def driven(simulation, effects, joint=AXIS, actuator=DRIVE, ratio=1.0):
     """Speed of the motor - (n,) - in a loop of one's own, under the drive of the rig written around it."""
     data, half = mujoco.MjData(simulation), PERIOD / 2.0
-    drive = CascadeDrive(FollowReferences(CASCADE, REFERENCES))
+    drive = CascadeDrive(CASCADE, REFERENCES)
     here, control = simulation.joint(joint), simulation.actuator_ctrladr[simulation.actuator(actuator).id]
     q, w = int(here.qposadr[0]), int(here.dofadr[0])
     velocity = np.empty(TIME.size)

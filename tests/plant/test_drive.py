@@ -7,7 +7,7 @@ import pytest
 
 from bench.effects.present import Present
 from bench.plant.axis_model import AxisModel, AxisParameters
-from bench.plant.drive import Cascade, CascadeDrive, FollowReferences, References
+from bench.plant.drive import Cascade, CascadeDrive, References
 from bench.plant.plant import Plant
 from bench.plant.run import run, run_native, run_ticked
 
@@ -166,7 +166,7 @@ def test_cascade_terms_one_by_one():
     cascade = Cascade(10.0, 2.0, 30.0, 0.5, 100.0, 1e-3)
     ones = np.ones(2)
     references = References(np.array([0.0, 1e-3]), 3.0 * ones, 4.0 * ones, 5.0 * ones)
-    drive = CascadeDrive(FollowReferences(cascade, references))
+    drive = CascadeDrive(cascade, references)
     error = 4.0 + 10.0 * (3.0 - 2.5) - 1.0
     first, second = (drive.tick(k, 2.5, 1.0)[0] for k in (0, 1))
     assert first == pytest.approx(2.0 * error + 0.5 * 5.0 + 30.0 * error * 0.5e-3)
@@ -197,6 +197,6 @@ def test_substeps_act_as_often_as_they_are(plant):
 def test_emulation_values_are_what_it_takes():
     emulation = AxisParameters(1e-3, 0.0, 0.3)
     cascade = Cascade(0.0, 0.0, 0.0, 0.0, np.inf, 1e-3)
-    setpoint, motor = CascadeDrive(FollowReferences(cascade, standstill(1e-3, 2e-3), emulation)).tick(0, 0.0, 5.0)
+    setpoint, motor = CascadeDrive(cascade, standstill(1e-3, 2e-3), emulated=emulation).tick(0, 0.0, 5.0)
     assert motor == pytest.approx(-0.3)
     assert setpoint == pytest.approx(0.0)
