@@ -34,8 +34,7 @@ FALSE_ALARM_RATE = 0.01
 _SHARE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
 #: Default margins, as shares of the baseline's value.
 MARGINS = {INERTIA: 0.005, VISCOUS: 0.15, COULOMB: 0.03, TORQUE_GAP: 0.25, VELOCITY_GAP: 0.5}
-#: Default standard deviations between recordings, as shares of the baseline's value, for an axis that is warm and moves
-#: the same way each time. Used where the rig states none and fewer than `difference.ENOUGH` recordings show them.
+#: Default standard deviations between recordings, as shares of the baseline's value, of a warm axis that moves alike.
 BETWEEN = {INERTIA: 0.001, VISCOUS: 0.03, COULOMB: 0.0075, TORQUE_GAP: 0.04, VELOCITY_GAP: 0.1}
 #: Relative standard deviation of a recording's noise floor: coloured noise is hard to separate from a gap.
 FLOOR = 0.12
@@ -43,12 +42,9 @@ FLOOR = 0.12
 OF_EFFECTS, BETWEEN_OF_EFFECTS = 0.25, 0.05
 #: Share of the effort of a motion below which the contribution of a parameter does not matter.
 LEAST = 1e-3
-#: Factor on these standard deviations for recordings of different motion or sampling. For two recordings at 95 % it
-#: gives what `bench.diagnosis.same_axis` allows (1 % of inertia, 30 % of viscous and 10 % of Coulomb friction).
+#: Factor on these for other motion or sampling: of two recordings at 95 % what `bench.diagnosis.same_axis` allows.
 OTHER_MOTION = 5.0
-#: The residual of a model, and the torque of an effect, go at most with this power of the largest factor by which two
-#: motions differ: drag with the second, saturation with the third. Beyond COMPARABLE, which 30 % less is within, nobody
-#: covers: the one motion may show what the other does not come to.
+#: Power of the largest factor between motions that residuals go with (drag 2, saturation 3), and the largest allowed.
 POWER, COMPARABLE = 3.0, 1.45
 #: The quantity of a motion that a parameter's torque is proportional to.
 _MADE_OF = {INERTIA: "rms_acceleration", VISCOUS: "rms_speed"}

@@ -37,8 +37,7 @@ ALIKE = 1.1
 FOLLOWING = frozenset({"rms_effort", "cutoff"})
 #: Window over which speed is averaged before it is differentiated - s.
 SMOOTH = 0.02
-#: Tables and keys of a rig that no result depends on: its name, the truth of a simulation, what a check allows, and the
-#: drive, whose effect on the motion is compared separately.
+#: Keys of a rig that no result depends on; the drive's effect on the motion is compared separately.
 BESIDE = {"name", "simulation", "check", "drive", "source"}
 
 

@@ -29,9 +29,8 @@ import scipy  # its special functions load when first used: 0.2 s
 from bench.arrays import Array
 from bench.parameter import Parameter
 
-#: Number of recordings in a baseline from which on the spread is theirs alone, by Student's t. With fewer it is the
-#: larger of theirs and the stated one: at 2 degrees of freedom and 30 comparisons at 1 % an interval is 55 standard
-#: deviations wide on each side, at 4 it is 10.
+#: Recordings in a baseline from which the spread is theirs alone: at 4 degrees of freedom, 30 comparisons and 1 % an
+#: interval is 10 standard deviations wide, at 2 it is 55.
 ENOUGH = 5
 #: Probability that a quantity that differs by more than its margin is called the same.
 NOT_EQUIVALENT = 0.05
@@ -92,12 +91,10 @@ class Difference:
 
     @classmethod
     def of(cls, baseline: Measured, now: Measured, between: float, beside: float = 0.0) -> Difference:
-        """Difference with the variance above.
+        """Difference of a quantity in both states, with the variance above.
 
-        Args:
-            baseline, now: the quantity in both states.
-            between: stated standard deviation between recordings - unit.
-            beside: the same for a known difference of the states, such as their motion - unit.
+        `between`: stated standard deviation between recordings - unit; `beside`: the same for a known difference of the
+        states, such as their motion - unit.
         """
         parts = [(now.std_error**2 / now.recordings, now.degrees)]
         shares = 1.0 / now.recordings + 1.0 / baseline.recordings
@@ -222,11 +219,8 @@ class Comparison:
 def holm(chances: Array, silent: int = 0) -> Array:
     """Chances (n,) of several tests so raised that each one below a rate alarms falsely at that rate for all together.
 
-    S. Holm, Scandinavian Journal of Statistics 6(2), 1979, 65-70; however they depend on each other.
-
-    Args:
-        chances: of each test, were nothing there (n,).
-        silent: tests that were made too and cannot alarm.
+    S. Holm, Scandinavian Journal of Statistics 6(2), 1979, 65-70; however they depend on each other. `silent`: tests
+    that were made too and cannot alarm.
     """
     order = np.argsort(chances, kind="stable")
     raised = (chances.size + silent - np.arange(chances.size)) * chances[order]

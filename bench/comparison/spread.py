@@ -42,8 +42,7 @@ class Excess:
     def of_joint(self, own: Sequence[Parameter]) -> float:
         """Standard error that the spread adds to a joint value, after averaging - the quantity's unit.
 
-        Args:
-            own: estimate by each recording alone; the joint value weights them by 1/(s_k**2 + tau**2).
+        The joint value weights estimates by each recording alone by 1/(s_k**2 + tau**2).
         """
         if not self.variance:
             return 0.0
@@ -52,14 +51,11 @@ class Excess:
 
 
 def excess(groups: Sequence[Sequence[Parameter]]) -> Excess:
-    """Variance between recordings by the method of moments, from Cochran's Q over groups of comparable values.
+    """Variance between recordings by the method of moments, from Cochran's Q over groups of values, one a recording.
 
     tau**2 = max(0, (Q - degrees)/sum over groups of (sum w - sum w**2/sum w)), w = 1/s_k**2 (R. DerSimonian, N. Laird,
     Meta-analysis in clinical trials, Controlled Clinical Trials 7(3), 1986, 177-188). s_k is taken from the interval,
     which includes that it was itself estimated.
-
-    Args:
-        groups: of comparable values, one per recording.
     """
     apart, expected, degrees = 0.0, 0.0, 0
     for group in groups:

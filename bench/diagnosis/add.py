@@ -110,8 +110,7 @@ class Added:
 def add(recordings: Recordings, suspects: Suspects) -> Added:
     """Try every effect, keep those that held-out motion confirms, and refine their model.
 
-    Raises:
-        UndeterminedError: no missing effect was found, and the recording does not determine the inertia, or the load's.
+    UndeterminedError as `last_determined`.
     """
     found = suspects.fitted
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
@@ -184,8 +183,7 @@ def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError
 def last_determined(recordings: Recordings, extension: Extension, policy: Policy) -> Extension | None:
     """The last stage that determines the inertia; None where none does because of what is missing from the model.
 
-    Raises:
-        UndeterminedError: no missing effect was found, and a mass is not determined.
+    UndeterminedError where no missing effect was found, and the mass, or the load's, is not determined.
     """
     for stage in reversed(extension.stages):
         refused = refusals(recordings, stage.fitted)
@@ -341,8 +339,7 @@ def refined_model(
 ) -> tuple[StoredModel, Array, float] | None:
     """The model refined on the motion that is not held out; None if that fails.
 
-    Returns:
-        The model, its values (p,), and its velocity gap in the motion held out - rad/s (m/s).
+    With its values (p,), and its velocity gap in the motion held out - rad/s (m/s).
     """
     try:
         values = stepped(stored, numbers, held_out.seen, gaps)
@@ -405,8 +402,7 @@ class Numbers:
 def stepped(stored: StoredModel, numbers: Numbers, recorded: Recorded, gaps: VelocityGaps) -> Array | None:
     """Values (p,) with the least simulation error on a recording, from a regression's model; None if one fails.
 
-    Raises:
-        InputError: a step of a derivative is not allowed.
+    InputError where a step of a derivative is not allowed.
     """
     values, errors = numbers.values, np.array([p.std_error for _, p in numbers.free])
     models = [stored, *(numbers.model(stored, row) for row in values + np.diag(STEP * errors))]

@@ -53,8 +53,7 @@ from bench.trace.trace import Trace
 
 #: File of a saved diagnosis that contains all of it.
 PACKED = "diagnosis.npz"
-#: Speed gap of a model that matches: in noise floors, and as share of the RMS speed, which filters and the steps of the
-#: integration resolve.
+#: Speed gap of a model that matches: in noise floors, and as share of the RMS speed, which filters and steps resolve.
 MATCH, RESOLVED = 3.5, 1e-3
 
 

@@ -35,8 +35,7 @@ from bench.rig.rig import Rig
 from bench.trace.motion import in_stretches, measured_position, measured_velocity
 from bench.trace.trace import Trace, less_known
 
-#: Bandwidth of the cascade by which a model tracks a recording - rad/s -, and the largest that a model may need
-#: (docs/diagnose.md).
+#: Bandwidth of the cascade that tracks a recording - rad/s -, and the largest that a model may need (docs/diagnose.md).
 BANDWIDTH, MOST = 20.0, 100.0
 #: Phase from which on a wave of position out of phase has a larger residual than no wave, |exp(j*phase) - 1| > 1 - rad.
 OUT_OF_PHASE = math.pi / 3.0
@@ -48,8 +47,7 @@ SPEEDS, SLOWEST = 400, 1e-3
 RECORDING, HOLDOUT = "recording", "holdout"
 #: Share of a recording that is held out if there is no holdout recording.
 HELD_OUT = 1.0 / 3.0
-#: Blocks that moving rows are cut into, and reaches of the filter that a block is long at least: borders take 3 % of
-#: the rows at 1 kHz, 10 to 18 % at 48 Hz.
+#: Blocks of moving rows, and least reaches of the filter in one: borders take 3 % of the rows at 1 kHz, 18 % at 48 Hz.
 BLOCKS, REACHES = 24, 8
 #: Ranges of speed, and of position, of equally many rows each.
 RANGES = 3
@@ -64,8 +62,7 @@ Residual = NDArray[np.float32]
 def stored_model(fitted: Fit, outside: Mapping[Effect, Detected], rig: Rig) -> StoredModel:
     """The axis of a fit in MuJoCo, with effects outside the torque balance.
 
-    Raises:
-        InputError: MuJoCo cannot have the effects with these values, or no inertia.
+    InputError where MuJoCo cannot have the effects with these values, or there is no inertia.
     """
     inertia, viscous, coulomb = (fitted.value(term) for term in (INERTIA, VISCOUS, COULOMB))
     if inertia <= mujoco.mjMINVAL:
@@ -306,9 +303,8 @@ class HeldOut:
     def of(cls, recordings: Recordings, trusted: bool, events: bool, whole: Fit) -> HeldOut:
         """A holdout that is `trusted` to be of this axis, with the recording's events or not; else a third.
 
-        Args:
-            whole: of the recording, whose events stay in the rest where that would lack one: of arbitrary size there,
-                it would judge all else.
+        Events of a fit to the `whole` recording stay in the rest where that would lack one: of arbitrary size there, it
+        would judge all else.
         """
         trace, rig, rows = recordings.trace, recordings.rig, recordings.rows
         if recordings.holdout is not None and recordings.holdout_rows is not None and trusted:
@@ -353,10 +349,7 @@ class HeldOut:
     def determines(self, judged: Fit, whole: Fit, index: int) -> bool:
         """Whether fitted and judging rows both determine the strengths of a term that have a column.
 
-        Args:
-            judged: to the fitted rows.
-            whole: the same hypothesis fitted to the recording; compared with it a part may be ten times as uncertain.
-            index: of the term.
+        By fits to the fitted rows and to the whole recording; compared with that a part may be ten times as uncertain.
         """
         own = whole.owners == index
         if not own.any():

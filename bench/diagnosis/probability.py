@@ -47,8 +47,7 @@ BESIDE_NOISE = 0.03
 BLOCKS, EXPLAINED = 32, 3.0
 #: Power over the best hypothesis' up to which a holdout decides nothing, as strengths and shapes have errors.
 UNSURE = 2.0
-#: Numbers that a scale of the torque counts for beyond its own, as it changes every other one: it comes before an
-#: unbalance, which has two, and after a friction that follows the torque, where a recording does not distinguish them.
+#: Numbers that a scale of the torque counts for beyond its own: more than friction by torque, less than an unbalance.
 RESCALED = 0.5
 #: Probability of a hypothesis with a decoy below which the effects next to the decoy are not counted.
 LITTLE = 0.01

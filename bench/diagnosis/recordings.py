@@ -190,8 +190,7 @@ def _require_another(trace: Trace, holdout: Trace) -> None:
 def _decidable(trace: Trace, rig: Rig, policy: Policy) -> tuple[Rows, tuple[str, ...]]:
     """Rows at the cut-off that suits effects best, and a warning of what a lower one than usual hides.
 
-    Raises:
-        UndeterminedError: the recording is too short or too quiet, or its rows determine no inertia and friction.
+    UndeterminedError where the recording is too short or too quiet, or determines no inertia and friction.
     """
     usual, kind = Rows.of(trace, rig, near=True), rig.axis_kind
     if usual.independent < INDEPENDENT:

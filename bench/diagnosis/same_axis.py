@@ -25,8 +25,7 @@ from bench.parameter import Parameter
 
 #: Factors by which J, K_w and K_0 of one axis may differ between recordings without a warning.
 REPORTED = (1.01, 1.3, 1.1)
-#: Factors beyond which it is another axis. From day to day inertia varies with the torque constant, by a few percent
-#: between cold and warm magnets, dry and viscous friction with the temperature of the lubricant.
+#: Factors beyond which it is another axis: magnets warm by a few percent of inertia, lubricants change friction.
 FOREIGN = (1.03, 3.0, 1.5)
 #: Standard errors in addition to these factors.
 SURE = 3.0
@@ -93,9 +92,8 @@ def between_recordings(
 ) -> tuple[dict[str, Parameter], tuple[Alone, ...], dict[str, Between], list[str]]:
     """The model with all effects, and its parameters, compared to it fitted to each of several recordings alone.
 
-    Returns:
-        Its parameters, with intervals that count how recordings differ; J, K_w and K_0 of each recording, with
-        the effects that were found, () of one; their spread, of what at least two determine; and warnings.
+    Returns its parameters, with intervals that count how recordings differ; J, K_w and K_0 of each recording, with the
+    effects that were found, () of one; their spread, of what at least two determine; and warnings.
     """
     found = dict(parameters)
     if not recordings.trace.joined:
@@ -118,10 +116,7 @@ def between_recordings(
 def widened(found: Parameter, differ: Excess, own: Sequence[Parameter]) -> Parameter:
     """A joint value whose interval includes the spread between recordings, as far as averaging does not reduce it.
 
-    Args:
-        found: with its interval from the recordings' own errors.
-        differ: spread of the recordings beyond these.
-        own: estimate by each recording alone.
+    `own`: the estimates by each recording alone, which differ so beyond their own errors.
     """
     more = differ.of_joint(own)
     if not more:

@@ -34,8 +34,7 @@ LIMIT = "limit of effects reached"
 MOST = 12
 #: Effects whose shapes are searched in addition to a set, in the place of one of its effects, or as next of a chain.
 WIDTH = 3
-#: Sets expanded in succession without a higher score before the search ends, if more than noise remains: in some pairs
-#: neither effect explains much without the other.
+#: Sets expanded without a higher score before the search ends, if more than noise remains: some pairs need two steps.
 LOOKAHEAD = 2
 #: Residual above noise at a grid's shape, over that of the best effect or noise, beyond which no shape is searched.
 SCREEN = 4.0
@@ -333,14 +332,9 @@ class Search:
 
 
 def search(bare: Fit, effects: Sequence[Effect], policy: Policy, most: int = MOST, known: Sequence[Fit] = ()) -> Search:
-    """Sets of effects around the most likely one.
+    """Sets of so many effects at most, of those to be tried, around the most likely one.
 
-    Args:
-        bare: without an effect.
-        effects: to be tried.
-        policy: that weighs them.
-        most: terms of a set.
-        known: fits of an earlier search from the same one without an effect; those of other effects are left out.
+    `known`: fits of an earlier search from the same one without an effect; those of other effects are left out.
     """
     found = Search(bare, effects, policy, known)
     found.run(most)

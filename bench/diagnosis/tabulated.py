@@ -178,9 +178,7 @@ def shape_of(table: Tabulated, fitted: Fit) -> tuple[float, float, float]:
 def smoothed(columns: Array, residual: Array) -> tuple[Array, float]:
     """Nodes (p,) of tables side by side, of the best smoothness, and the squares that they miss where not fitted.
 
-    Args:
-        columns: (m, p).
-        residual: (m,) - N*m (N).
+    By their columns (m, p) and the residual - N*m (N) - (m,).
     """
     rows, width = columns.shape
     part = np.arange(rows) * BLOCKS // rows % PARTS

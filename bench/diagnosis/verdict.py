@@ -58,13 +58,7 @@ class Gap:
 
 
 def verdict(added: Added, likely: Probabilities, torque: Gap, velocity: Gap) -> tuple[str, tuple[Reason, ...]]:
-    """The verdict on the effects that were added, and the objections that it is based on, the gravest first.
-
-    Args:
-        added: the effects accepted.
-        likely: probabilities of sets of names.
-        torque, velocity: gaps of the bare axis and of the model.
-    """
+    """The verdict on the effects that were added, and the objections that it is based on, the gravest first."""
     whole, suspects = added.extension.fitted, added.suspects
     against = list[Reason]()
     if suspects.policy.remains(whole):

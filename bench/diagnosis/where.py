@@ -16,8 +16,7 @@ from bench.fit.rows import Rows
 
 #: Number of bins of a coordinate, and rows that a bin contains: fewer bins of a short recording.
 BINS, LEAST = 48, 12
-#: Bins of equal width that are drawn where these show MOST of what the effects explain - of a wave of 24 periods a
-#: turn their means keep 98 % -, rows that one has at least, and points of a curve for each bin.
+#: Bins of equal width that are drawn where they show MOST of what effects explain, rows of one, and points of a curve.
 DRAWN, FEWEST, FINER, MOST = 192, 4, 4, 0.5
 #: Distance of rows in widths of the filter beyond which their noise is uncorrelated: the correlation is exp(-9).
 CORRELATED = 6.0
@@ -63,12 +62,9 @@ def where(
     after: Sequence[Array] = (),
     sharp: Array | None = None,
 ) -> list[Where]:
-    """Shares of every coordinate of the gap of a fit, largest first.
+    """Shares of every coordinate of the gap of a fit, its residual, largest first.
 
     Args:
-        fitted: whose residual is the gap.
-        kind: of the axis.
-        effort_unit: of the effort.
         current: as reported at the rows - A - (m,); None where another effort is.
         after: residuals of later models, for `Where.after` - N*m (N) - (m,) each.
         sharp: what the filter takes from the torque of their effects - N*m (N) - (m,).
@@ -131,13 +127,8 @@ def by_chance(index: NDArray[np.int64], kept: NDArray[np.bool_], rows: Rows) -> 
 
         E[sum of n_b*(m_b - mean)**2] = variance*(sum over bins of (sum over i, j in b of rho)/n_b - share*K)
 
-    with K the rows of one independent sample and `share` of the rows that are in bins. For independent rows it is the
-    number of bins less one over that of rows.
-
-    Args:
-        index: bin of each row (m,).
-        kept: bins that count (b,).
-        rows: of which the recording has m.
+    with K the rows of one independent sample and `share` of the rows (m,) that are in bins (b,) which are kept. For
+    independent rows it is the number of bins less one over that of rows.
     """
     time, width = rows.time, rows.conditioning.filter.width
     weight = np.where(kept, 1.0 / np.maximum(np.bincount(index), 1), 0.0)[index]

@@ -27,8 +27,7 @@ from bench.units import Quantity
 CONTACT_FREQUENCY, CONTACT_DAMPING_RATIO = 2.0 * np.pi * 200.0, 0.2
 #: Impedance of the joint's limit: constant, and so small that stiffness and damping below act unattenuated.
 IMPEDANCE = (0.01, 0.01, 1.0, 0.5, 2.0)
-#: Gap over what the contact yields to the peak torque - 1 -, below which it is a damped spring: real gaps are .04 and
-#: more, what damps a motor without a load is .002.
+#: Gap over what the contact yields to the peak torque, below which it is a damped spring: 0.04 or more of real gaps.
 OF_YIELDING = 0.005
 
 

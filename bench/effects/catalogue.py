@@ -22,8 +22,7 @@ from bench.offered import EFFECTS_GROUP, offered
 def catalogue() -> MappingProxyType[str, Effect]:
     """All effects by name, each from the module or folder of that name, then those of other packages.
 
-    Raises:
-        InputError: what another package offers is no effect, or has the name of one.
+    InputError where what another package offers is no effect, or has the name of one.
     """
     modules = (
         importlib.import_module(f"bench.effects.{info.name}") for info in pkgutil.iter_modules(bench.effects.__path__)

@@ -197,10 +197,7 @@ def dead_zone_columns(stretches: Sequence[Signals], shapes: Shapes) -> list[list
     """Load's acceleration less the motor's behind several dead zones, with the spring's share of it, in each stretch.
 
     Where the speed is the source, the motor's angle is its integral, whose noise no resolution of an encoder adds to.
-
-    Args:
-        stretches: of a recording.
-        shapes: (k, 4), see `load_positions`.
+    Shapes (k, 4) are as of `load_positions`.
     """
     angles = [
         s.position if s.source == "position" else s.position[0] + integrated(s.velocity, s.sample_period)

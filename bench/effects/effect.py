@@ -35,9 +35,8 @@ from bench.units import Quantity
 
 #: Share of the inertia that sits behind a coupling, at least and at most.
 BEHIND = (0.02, 0.98)
-#: Share of the torque that friction takes at most; at one, torque would explain itself whatever it did. The lossiest of
-#: gears, a worm of one thread with a lead angle of 1.3 degrees, passes 0.3 on at a friction of 0.05 (R. G. Budynas,
-#: J. K. Nisbett, Shigley's Mechanical Engineering Design, 9th ed., 2011, eq. 13-46).
+#: Share of the torque that friction takes at most: a worm of one thread at 1.3 degrees and friction of 0.05 passes 0.3
+#: (R. G. Budynas, J. K. Nisbett, Shigley's Mechanical Engineering Design, 9th ed., 2011, eq. 13-46).
 LOSSIEST = 0.7
 #: Lags that a search tries first - s.
 LAGS = (3e-4, 8e-4, 2e-3, 4e-3, 8e-3)

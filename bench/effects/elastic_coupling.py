@@ -33,12 +33,10 @@ from bench.units import Quantity
 #: Antiresonances - rad/s - and damping ratios that a search tries first.
 ANTIRESONANCES = tuple(2.0 * np.pi * float(f) for f in np.geomspace(8.0, 110.0, 28))
 DAMPINGS = (0.01, 0.04, 0.12)
-#: Damping ratio from which a coupling no longer rings, so that nothing distinguishes it from a lag, and the one from
-#: which its quality 1/(2*D) is below one, which a search may pass but not end with.
+#: Damping ratio from which a coupling is no other than a lag, and the one with which no search may end.
 OVERDAMPED, DULL = 1.0, 0.5
-#: Turns in which known torque, whose slope is small against the coupling's, follows the load. Turns in which the load's
-#: motion and what else acts on it are brought in line, the change that ends them and the one that
-#: no load beyond belief would make - shares of the twist under the load's own inertia.
+#: Turns in which known torque follows the load, and in which its motion and what acts on it are brought in line; the
+#: change that ends them, and the one that no load makes - shares of the twist under the load's own inertia.
 BENDS, TURNS, SETTLED, ASTRAY = 3, 40, 1e-6, 10.0
 
 

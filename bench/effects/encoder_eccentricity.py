@@ -21,8 +21,7 @@ from bench.units import Quantity
 
 #: Amplitudes that are tried where the bare axis determines no inertia - rad.
 AMPLITUDES = (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3)
-#: Newton steps that turn a measured into a true angle at most: the error after k of them is below e**(2**k). A step
-#: below the least is the last - rad.
+#: Newton steps that turn a measured into a true angle at most (error after k below e**(2**k)); least step - rad.
 STEPS, LEAST = 5, 1e-9
 
 

@@ -16,8 +16,7 @@ from bench.units import Quantity
 
 #: Share of the dry amplitude that viscous friction has where none is given.
 ALL = 1.0
-#: Dry friction that the cold axis has more, over that of the warm one, at most: far above what lubricants do. A jolt at
-#: the start of a recording decays, too, by thousands of times.
+#: Dry friction that the cold axis has more, over that of the warm one, at most: far above what lubricants do.
 COLDEST = 10.0
 
 

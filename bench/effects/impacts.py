@@ -22,16 +22,13 @@ from bench.effects.signals import Scope
 
 #: Factors of gap, frequency and damping within which a recording does not distinguish two contacts.
 INDISTINCT = (1.01, 1.1, 1.1)
-#: Gaps in travel of the motor at the recording's RMS speed over one filter width, wide ones closer, as impacts shift by
-#: more widths of the filter the wider the gap is; contacts - rad/s; damping ratio.
+#: Gaps in travel at the RMS speed over one filter width, wide ones closer; contacts - rad/s; damping ratio.
 GAPS = (*np.geomspace(0.005, 0.8, 24).tolist(), *np.geomspace(0.88, 8.0, 24).tolist())
 CONTACTS = tuple(2.0 * np.pi * f for f in (40.0, 80.0, 130.0, 210.0))
 DAMPING = 0.4
-#: Every so many gaps are tried before all are; the best of all takes at most so many times the squares of the best of
-#: these: 1.9 in 19 searches on the shared cases and on axes of several effects, most of which end here.
+#: Every so many gaps are tried first; the best takes at most so many times their squares: 1.9 times in 19 searches.
 EVERY, BETTER = 4, 2.5
-#: Offsets around a shape in each round of refinement - gap, frequency, damping - and their size at first, as factor
-#: e**offset. Refinement starts from the likeliest shapes of several contacts, and ends with the likeliest of all.
+#: Offsets around a shape in each round of refinement - gap, frequency, damping -, and their first size, as e**offset.
 OFFSETS = np.stack([m.ravel() for m in np.meshgrid(np.linspace(-1, 1, 5), [-1, 0, 1], [-1, 0, 1], indexing="ij")], 1)
 SPREAD = (0.12, 0.4, 0.5)
 ROUNDS, STARTS, ALL_STARTS = 6, 3, 2
@@ -45,10 +42,8 @@ TOGETHER = 4_000_000
 AROUND = (np.linspace(-0.12, 0.12, 7), np.linspace(-0.6, 0.6, 5), np.linspace(-0.5, 0.5, 3))
 #: Length of what is drawn: longer than a load rings after an impact - s.
 STRETCH = 0.2
-#: Standard errors that all resampled recordings share, as shares: a contact of microns is hardly above the noise
-#: of the motion that presses it, and rebounds run faster than samples follow, so the likeliest one is softer and damps
-#: more. Of 39 drawn axes (`python -m tests.studies.blind --only backlash`, seeds 101 and 102) the logarithms of
-#: gap, frequency and damping ratio err by .03, .50 and 1.46 by root mean square, 1.34 of it too much damping.
+#: Standard errors that all resampled recordings share, as shares: rebounds run faster than samples follow. On 39 drawn
+#: axes logarithms err by .03, .50, 1.46 (`python -m tests.studies.blind --only backlash`, seeds 101 and 102).
 SHARED = np.array([0.02, 0.45, 1.4])
 #: Resampled recordings.
 DRAWS = 400

@@ -35,8 +35,6 @@ def passive_motor(
     """Add a DC motor without input to the axis, which only cogs or has bristle friction.
 
     Args:
-        spec: to be added to.
-        name: of the actuator.
         cogging: amplitude - N*m (N) -, harmonic - 1 (1/m) - and phase - rad - of a driving torque A*sin(n*q + phi).
         lugre: stiffness, damping and levels of bristles, as MuJoCo has them.
     """

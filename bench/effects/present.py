@@ -31,15 +31,9 @@ class Present:
 
     @classmethod
     def of(cls, name: str, values: Mapping[str, float], where: str = "effect") -> Present:
-        """Checked against the effect's quantities and their bounds.
+        """Checked against the effect's quantities and their bounds; values by quantity - SI.
 
-        Args:
-            name: of the effect.
-            values: by quantity - SI.
-            where: that they come from, for messages.
-
-        Raises:
-            InputError: an unknown effect or quantity, or a value out of bounds.
+        InputError, of `where` they come from, for an unknown effect or quantity, or a value out of bounds.
         """
         effect = named(name, where)
         for key, value in values.items():
@@ -94,8 +88,7 @@ GivenEffects: TypeAlias = Present | str | Sequence[Present | str] | Mapping[str,
 def given_effects(given: GivenEffects, kind: AxisKind) -> list[Present]:
     """Effects as a caller gives them: one or several, as texts of the command line or by name with their values.
 
-    Raises:
-        InputError: as `parse_effect`, or values that are no dictionary.
+    InputError as `parse_effect`, or where values are no dictionary.
     """
     if not isinstance(given, Mapping):
         every = [given] if isinstance(given, Present | str) else given
@@ -117,8 +110,7 @@ def _valued(effect: Effect, values: Mapping[str, object], kind: AxisKind, where:
 def parse_effect(text: str, kind: AxisKind = ROTARY) -> Present:
     """`NAME:key=value,key=value` as on the command line; a value without a unit is SI.
 
-    Raises:
-        InputError: not of this form, an unknown effect or quantity, or a value that is none or out of bounds.
+    InputError where it is not of this form, an effect or quantity is unknown, or a value is none or out of bounds.
     """
     where = f"effect {text}"
     name, _, rest = text.partition(":")

@@ -78,9 +78,7 @@ class PreslidingFriction(Bristles):
 def sliding_level(sign: Array, friction: Array) -> Array:
     """Dry friction of sliding bristles, as share of K_0 (n,): between its values where the direction is known.
 
-    Args:
-        sign: (n,) of speed, 0 where unknown.
-        friction: (n,) level with its sign, as share of K_0.
+    By the sign of speed (n,), 0 where unknown, and the level with its sign, as share of K_0 (n,).
     """
     known = np.flatnonzero(sign)
     if known.size == 0:
@@ -92,7 +90,6 @@ def bristles(position: Array, sign: Array, level: Array, rate: float) -> Array:
     """Torque that the bristles carry along a motion, over Coulomb friction (n,).
 
     Args:
-        position: (n,) - rad (m).
         sign: (n,) of speed, 0 where unknown: the last known one is used.
         level: (n,) of sliding, as share of K_0.
         rate: sigma/K_0 - 1/rad (1/m).

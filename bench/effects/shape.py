@@ -56,9 +56,8 @@ class Shape:
 
 #: Shapes of several terms or candidates, or strengths of several terms.
 Shapes = Sequence[Sequence[float]]
-#: What quantities scale with: a speed with the top speed - rad/s -, a rate over angle with its inverse, a lag with the
-#: width of the filter - s -, a frequency with its inverse, a slow change with the duration - s -, a wave that is longer
-#: than the travel with its inverse - 1/rad. `usual`: of the axes for which effects state their grids.
+#: What quantities go with: a speed with the top speed - rad/s -, a lag with the filter's width - s -, a slow change
+#: with the duration - s -, a long wave with the inverse of the travel - 1/rad. `usual`: of the axes that grids are of.
 SPEED = Measure(lambda scope: scope.top_speed, usual=100.0, angular=True)
 ANGLE = Measure(lambda scope: scope.top_speed, usual=100.0, power=-1, angular=True)
 LAG = Measure(lambda scope: scope.width, usual=1.5e-3)

@@ -14,8 +14,7 @@ from bench.effects.signals import Axis, AxisState, Number, Scope, Values
 from bench.effects.torque import Friction, FrictionLaw
 from bench.units import Quantity
 
-#: Share of the highest speed within which a rise towards standstill ends; a wider one is curvature, as drag has it.
-#: Weak drag without its name was met by rises of 0.20 to 0.29; true ones drawn end within 0.06.
+#: Share of the highest speed within which a rise ends: 0.06 of true ones, 0.20 to 0.29 of a drag without its name.
 RISE = 0.2
 
 

@@ -16,8 +16,7 @@ from bench.effects.signals import Axis, AxisState, Number, Scope, Values
 from bench.effects.torque import Torque
 from bench.units import Quantity
 
-#: Relative change over a recording at most: ferrite magnets that warm by 150 K. Without a bound a rate that fades the
-#: torque out passes for what a torque of many waves, such as cogging at rising speed, has to do with time.
+#: Relative change over a recording at most: ferrite magnets that warm by 150 K. More passes for a torque of many waves.
 MOST = 0.3
 
 

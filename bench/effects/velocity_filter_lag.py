@@ -18,12 +18,9 @@ from bench.trace.filter import GaussianFilter
 from bench.trace.noise import white_noise
 from bench.trace.trace import Trace
 
-#: A lag shorter than this share of the tick is how a drive differences its encoder, not a filter; the same of the
-#: sample period where what is recorded as speed is the difference of the recorded positions.
+#: A lag below this share of the tick, or of the sample period, is how speed is differenced from positions, no filter.
 LEAST_SHARE = 0.6
-#: Distance from the lag of a mean over the sample, of whose ticks the middle is late by (sample period - tick)/2, below
-#: which a lag is that of a recorder that averages, in addition to its error - share of the sample period: 0.001 at
-#: most of means, 0.02 at least of lags.
+#: Distance from the lag of a mean over the sample below which a recorder averages - share of the period: means 0.001.
 AVERAGED = 0.005
 #: Share of the noise of differences of position that remains in a speed which is computed from them.
 OF_POSITION = 0.5

@@ -24,11 +24,9 @@ from bench.units import Quantity
 QUICKEST = 1e-12
 #: Speed behind its reference that counts as falling behind, as share of the largest reference.
 BEHIND = 0.02
-#: Share of the top within which the voltage counts as standing at it, which an eccentric encoder modulates; share of
-#: the samples behind that do, and samples.
+#: Share of the top within which the voltage counts as at it; share of the samples behind that do, and samples.
 TOP, STANDING, SAMPLES = 0.045, 0.5, 20
-#: Samples above the top that are not behind, over those behind: 0.10 at most where the voltage ends, else 0.18 at least
-#: (`python -m tests.studies.blind.margins`).
+#: Samples above the top not behind, over those behind: 0.10 at most of a limit (`tests.studies.blind.margins`).
 BEYOND = 0.13
 #: Share of the top speed below which an axis is at rest.
 RESTING = 0.02

@@ -32,16 +32,13 @@ from bench.fit.solution import Solution, solution_of
 from bench.rig.rig import Rig
 from bench.trace.filter import GaussianFilter
 
-#: Largest share of noise in the acceleration's power at which effects are sought. Least squares that do not count the
-#: noise underestimate J by that share.
+#: Largest share of noise in the acceleration's power at which effects are sought; J is underestimated by that share.
 NOISY = 0.1
-#: Least number of independent rows of clear motion. Of shortened shared cases, those with 25 to 70 named an absent
-#: effect in 5 of 11, those with 90 to 130 in 1 of 13 (first 0.2, 0.4 and 0.8 s of every other one).
+#: Least number of independent rows: with 25 to 70 an absent effect was named in 5 of 11 recordings, with 90 in 1 of 13.
 INDEPENDENT = 100
 #: Cut-offs tried below the highest, relative to it: a decade, for J in four steps, for effects in eight.
 BELOW, FINER = (10.0 ** -np.linspace(0.0, 1.0, steps + 1)[1:] for steps in (4, 8))
-#: Ratio to the interval at the highest accepted cut-off below which another interval counts as narrower; on 100
-#: recordings of rigid axes the smallest ratio was 0.70.
+#: Ratio to the interval at the highest accepted cut-off below which another is narrower; 0.70 at least of rigid axes.
 NARROWER = 0.6
 #: Share of a value by which filters of different widths may differ without any noise.
 ROUNDING = 1e-4

@@ -104,13 +104,9 @@ class CommandDelay:
 
 
 def dead_time(rows: Rows, hypothesis: Hypothesis, shift: float, search: bool = True) -> DeadTime:
-    """Dead time of a recording, against the lag in its place.
+    """Dead time of a recording, against the lag in its place, by a hypothesis without a lag and without a shift.
 
-    Args:
-        rows: the recording.
-        hypothesis: of it, without a lag and without a shift.
-        shift: by which the torque is reported late - s.
-        search: whether the shift is where a search begins, and not what it is.
+    `shift` is by which the torque is reported late - s -, where a `search` begins or without one.
     """
     rows, period = _quiet(rows), rows.scope.sample_period
     late = _fit_later(rows, hypothesis, shift)

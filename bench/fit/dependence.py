@@ -20,8 +20,7 @@ from bench.fit.hypothesis import Layout, Name
 from bench.fit.rows import Rows
 from bench.fit.solution import NormalEquations, block_edges, equations, estimated
 
-#: Half widths of 95 % that a strength has to exceed: of three columns on 200 recordings of axes that lack nothing the
-#: largest was 1.4 of them.
+#: Half widths of 95 % that a strength has to exceed: on 200 recordings of axes that lack nothing the largest had 1.4.
 CLEAR = 1.6
 #: RMS torque that only the dependence explains, over that of the effort, from which on it matters.
 LEAST = 1e-3

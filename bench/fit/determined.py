@@ -168,10 +168,8 @@ def sound(estimate: Estimate, equations: NormalEquations, rig: Rig, suspicions: 
     """The estimate, if its equations, of every column and a constant, determine it and it means something.
 
     It means nothing where its inertia may be zero or is negative, the load's is negative, a friction surely is, or the
-    model explains less than half of the effort's variance.
-
-    Raises:
-        RefusedEstimateError: else, with what is determined, and with what else is suspicious.
+    model explains less than half of the effort's variance: RefusedEstimateError with what is determined, and with what
+    else is suspicious.
     """
     kind, reasons = rig.axis_kind, [*refusals(equations, rig.axis_kind).values()]
     negative = negative_friction(estimate.parameters, kind, suspicions)

@@ -243,12 +243,7 @@ def _stored_motor(table: Mapping[str, Any] | None) -> MotorConstants | None:
 
 
 class RefusedEstimateError(UndeterminedError):
-    """The recording does not determine everything; the error carries what it does.
-
-    Args:
-        reason: why not.
-        estimate: without the undetermined parameters.
-    """
+    """The recording does not determine everything, for a reason; the error carries the estimate without that."""
 
     def __init__(self, reason: UndeterminedError, estimate: Estimate) -> None:
         self.estimate = estimate

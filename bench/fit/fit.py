@@ -51,8 +51,7 @@ OPEN_SHARE = 0.3
 SURE = 3.0
 #: Share of the residual from which on an effect is suggested.
 SUGGESTED = 0.25
-#: How far a search of shapes may wander, in units of how far a grid's shape reaches: along a valley without an end, as
-#: of a coupling that damps everything, it went on until numbers overflowed.
+#: How far a search of shapes may go, in units of a grid's reach: valleys without an end lead to numbers that overflow.
 FURTHEST = 10.0
 #: Of a search of shapes, in the same units: points to each side from which it may start, step of its derivatives and
 #: least step; saving at which it ends, relative; steps at most.
@@ -295,15 +294,10 @@ class Fit:
 
 
 def fit(rows: Rows, hypothesis: Hypothesis, start: Fit | None = None) -> Fit:
-    """Least squares of a hypothesis.
+    """Least squares of a hypothesis, whose strengths start from a fit of some of its effects.
 
     Columns that depend on the strengths of other terms, or on what their copies of torque miss, are made again until
     both are in line with what is found.
-
-    Args:
-        rows: the recording.
-        hypothesis: of it.
-        start: a fit of some of its effects, from whose strengths these start.
     """
     before = NOTHING if start is None else start.found_for(hypothesis)
     layout = lay_out(rows, hypothesis, before)

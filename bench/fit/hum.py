@@ -18,8 +18,7 @@ LINES, STRAYS = (50.0, 60.0, 100.0, 120.0, 150.0, 180.0), 0.1
 BAND, STANDS_OUT = 6.0, 20.0
 #: Share of power that the filter must still pass.
 PASSED = 0.01
-#: Rate at which a residual is kept once its line is turned to zero frequency - Hz: at the band's edge the mean over a
-#: step of it passes 0.95 of the power.
+#: Rate at which a residual is kept once its line is turned to zero frequency - Hz: the band's edge passes 0.95 of it.
 RATE = 8.0 * BAND
 
 

@@ -54,8 +54,7 @@ HUM, DIGIT, AROUND, LINKS = "hum", "last digit", "around", "links"
 FREQUENCIES, REACH = 400, 4.0
 #: Frequencies to each unit of asinh of the distance from a resonance in its half widths.
 CLOSER = 20
-#: Angle - rad (m) - by which links of a robot may be off their encoder: a degree of its zero and of the play of gears,
-#: on one flank of which their weight may keep them.
+#: Angle - rad (m) - by which links of a robot may be off their encoder: a degree of its zero and of the play of gears.
 MISPLACED = np.pi / 180.0
 #: Terms of the series of a shift.
 SERIES = 4
@@ -225,11 +224,9 @@ def plain(rows: Rows) -> Hypothesis:
 def lay_out(
     rows: Rows, hypothesis: Hypothesis, found: Found = NOTHING, missing: Mapping[int, Array] = NOTHING
 ) -> Layout:
-    """Columns of a hypothesis.
+    """Columns of a hypothesis of a recording.
 
     Args:
-        rows: the recording.
-        hypothesis: of it.
         found: coefficients of a fit before, on some of which columns depend: see `depended_on`.
         missing: what each term that copies torque does not use, see `not_reaching`.
     """

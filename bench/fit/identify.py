@@ -217,8 +217,7 @@ def _late(found: Solution) -> DeadTime | None:
 def _first_moving(parts: Iterator[Trace], rig: Rig, cutoff: float | None) -> tuple[Gated, Solution, Moves, list[Gated]]:
     """The first of a recording's parts that moves clearly, with its solution, and the parts before it.
 
-    Raises:
-        UndeterminedError: none does.
+    UndeterminedError where none does.
     """
     still, refusals = [], []
     for part in parts:
@@ -269,12 +268,7 @@ def _by_tolerance(first: Trace, rig: Rig, found: Solution) -> dict[Name, float]:
 
 
 def choose(first: Trace, rig: Rig, cutoff: float | None) -> tuple[Solution, Moves]:
-    """The solution of a recording, or of its first part, at the chosen cut-off, unless one is given - Hz.
-
-    Raises:
-        UndeterminedError: the recording is too short, or never moves clearly.
-        InputError: a signal is missing, or rig and recording do not fit together.
-    """
+    """The solution of a recording, or of its first part, at the chosen cut-off, or at one - Hz; raises as `Rows.of`."""
     rows = Rows.of(first, rig, cutoff=cutoff)
     highest = solution_of(rows, plain(rows), rig.offset)
     hum = mains(rows, highest.residual)

@@ -41,8 +41,7 @@ RESISTANCE, BACK_EMF, SPEED = "resistance", "back_emf_constant", "speed_constant
 #: Values by which a rig makes torque of a voltage or a current.
 SCALES = ("torque_constant", "force_constant", "torque_per_volt", "force_per_volt", "resistance", "back_emf_constant")
 SCALES += ("continuous_stall_torque", "continuous_stall_current", "peak_torque", "peak_current")
-#: Samples in a time constant: from FEW on filtered derivatives serve, as half a hold is 1/40 of it; from ENOUGH on they
-#: are right up to half a hold.
+#: Samples in a time constant from which filtered derivatives serve, and from which they are right up to half a hold.
 FEW, ENOUGH = 20.0, 5.0
 #: Samples by which the motion must be late for a voltage to be held between samples.
 HELD = 0.25

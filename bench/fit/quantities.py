@@ -25,8 +25,7 @@ from bench.parameter import Parameter
 
 #: Step of a numerical derivative, relative.
 STEP = 1e-4
-#: Residual in noise floors beyond which a row counts less and less, where some rows are not determined, as in the
-#: search for a dead zone.
+#: Residual in noise floors beyond which a row counts less and less, where some rows are not determined.
 SCALE = 3.0
 #: Logarithm of the largest factor within which something is known.
 FURTHEST = 10.0
@@ -68,12 +67,7 @@ class Uncertain:
         }
 
     def quantities(self, index: int, unit_of: Callable[[Effect, str], str]) -> dict[str, Parameter]:
-        """Quantities of one term with their intervals.
-
-        Args:
-            index: of the term.
-            unit_of: unit of an effect's quantity by its name.
-        """
+        """Quantities of one term with their intervals; `unit_of` gives the unit of an effect's quantity by its name."""
         term, size, owners = self.fitted.terms[index], self.fitted.theta.size, self.fitted.owners
 
         def values(point: Array) -> Mapping[str, float]:

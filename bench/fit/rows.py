@@ -43,8 +43,7 @@ LATE, LATE_SAMPLES = 5.8e-3, 2.0
 ONE_WAY = 0.02
 
 
-#: Bytes of columns kept: on a recording of 8 s at 1 kHz some hundred, of 600 s what one hypothesis needs. With 96 MB
-#: less than that was kept there, and 600 s took 2.8 times as long as 300 s; with 160 MB 2.0 times.
+#: Bytes of columns kept: with 160 MB 600 s take 2.0 times as long as 300 s, with 96 MB 2.8 times.
 KEPT = 160 * 2**20
 #: Signals of which a stretch has a value for each sample; a load may be one number for all.
 SAMPLES = ("time", "position", "velocity", "sign", "effort", "torque", "friction", "load", "began", "of_motion")
@@ -151,14 +150,11 @@ class Rows:
         """Lay out a recording, or a part of one.
 
         Args:
-            trace: the recording.
-            rig: of the axis.
             conditioning: instead of the one read from the recording: that of its first part.
             cutoff: half-power frequency of the filter instead of the one chosen from the recording - Hz.
             width: of the filter instead of the one chosen from the recording - s.
             every: whether there is a row for every sample, which a replay wants.
             begins: the recording, if this is a later part of it - s.
-            near: as of the rows.
             peak_effort: where the rig has none, that of the recording in which a model was found - N*m (N).
 
         Raises:
@@ -185,8 +181,7 @@ class Rows:
     def through(self, smooth: GaussianFilter, near: bool = False) -> Rows:
         """The same recording through a filter that is no narrower.
 
-        Raises:
-            UndeterminedError: it never moves clearly for as long as the filter reaches.
+        UndeterminedError where it never moves clearly for as long as the filter reaches.
         """
         parts = [(part.signals, part.start) for part in self.stretches if part.signals.time.size > 4 * smooth.margin]
         return self._through(replace(self.conditioning, filter=smooth), parts, self.origin, self.scope, near)

@@ -38,15 +38,8 @@ FASTER = f"{STEPS}, at a higher rate"
 def sampled(trace: Trace, rig: Rig, load: bool) -> tuple[dict[str, Parameter], float]:
     """kS, kV, kA and, with a load, kG of a recording with a voltage, and a delay of the voltage beyond its hold - s.
 
-    Of the winding's L/R nothing is in kA; it may be in the delay.
-
-    Args:
-        trace: the recording.
-        rig: of the axis.
-        load: whether a constant load is fitted.
-
-    Raises:
-        UndeterminedError: too few samples move clearly, or there are too few to the time constant.
+    Of the winding's L/R nothing is in kA; it may be in the delay. UndeterminedError where too few samples move clearly,
+    or there are too few to the time constant.
     """
     voltage, period = rig.voltage(trace), trace.sample_period
     at = condition(trace, voltage)
@@ -63,13 +56,9 @@ def sampled(trace: Trace, rig: Rig, load: bool) -> tuple[dict[str, Parameter], f
 
 
 def _fitted(time: Array, table: Array, noise: Array, loudest: float, smooth: GaussianFilter) -> list[Parameter]:
-    """Coefficients of a table (p + 1, m) in whose first two rows the speed's noise is, which is found with them.
+    """Coefficients of a table (p + 1, m), as of `_table`, with the noise of the speed in its first two rows.
 
-    Args:
-        time, table: as of `_table`.
-        noise: of these two (2, 2), in units of that of a speed.
-        loudest: most of that - rad/s (m/s).
-        smooth: the filter of the recording.
+    `noise`: of these two (2, 2), in units of that of a speed; `loudest`: most of that - rad/s (m/s).
     """
     power, fitted, left = 0.0, list[Parameter](), table[-1]
     for _ in range(TURNS):

@@ -57,21 +57,16 @@ SHORT = 24
 INDEPENDENT_SHARE = 0.01
 #: Standard errors by which a shift of torque against speed must exceed a tick to be one: below, it is held at a tick.
 SURE = 3.0
-#: Share of what exceeds the noise that a delay has to explain to be reported: what a model lacks may look like one
-#: (-12.4 ms on a double pendulum whose signals are in step, which explains 17 %).
+#: Share of what exceeds the noise that a delay has to explain; friction that a model lacks looked like one by 17 %.
 A_DELAY = 0.25
-#: Andrews' bandwidth minimises the error of the covariance, not of an interval's coverage: on 400 recordings of 6 s
-#: with first-order residuals (0.9 a ms) nominal 95 % intervals covered .958/.923/.903 with it, .963/.935/.908 half
-#: again as wide, .963/.933/.918 more than twice as wide (J, viscous, Coulomb; tests/fit/test_intervals.py).
+#: Factor on Andrews' bandwidth, which is best for the covariance, not for intervals (tests/fit/test_intervals.py):
+#: of 95 % nominal .958/.923/.903 are covered without it, .963/.935/.908 with it (J, viscous, Coulomb).
 WIDENED = 1.5
-#: Columns of the plain axis, which take as many degrees of freedom. What effects add is not counted: where residuals
-#: are correlated so long that their number matters, a remainder exists, and the interval does not describe the effect's
-#: columns (a servo's pendulum with four effects and ten independent blocks: one degree, an interval of 12.7 errors).
+#: Columns of the plain axis, which take as many degrees of freedom; those of effects are not counted.
 PLAIN = 4
 #: Parts of equally many rows by acceleration or speed, and by time.
 LEVELS, QUARTERS = 8, 4
-#: Residual in noise floors above which the residual is more than noise; on 100 recordings of axes that lack nothing
-#: 97 lay below.
+#: Residual in noise floors above which it is more than noise; of 100 recordings of axes that lack nothing 97 lay below.
 NOISE_ALONE = 1.12
 #: Share of what shows a coefficient that one part of the rows may have at most.
 MOST = 0.9
@@ -81,8 +76,7 @@ LENGTHS, ENOUGH = (128, 64), 24
 LOWEST, HEARD = 3, 0.03
 #: Power of a line in Hann's window, at its bin and the next.
 HANN = np.array([1.0, 4.0, 1.0]) / 6.0
-#: Quantile over windows that counts as quiet. Of noise every quantile gives the same level; of a lag's residual at
-#: 4 ms a bin of the lower quartile still held 600 times the noise, of the lowest tenth 6 to 12 times.
+#: Quantile over windows that counts as quiet: of a lag the lower quartile holds 600 times the noise, the tenth 6 to 12.
 QUIET = 0.1
 #: Excess at low frequency that chance makes in a white recording, and that is therefore not called colour.
 CHANCE = 0.4

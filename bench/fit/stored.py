@@ -92,9 +92,7 @@ class Balance:
     def from_table(cls, table: Mapping[str, Any], where: str) -> Balance:
         """Balance of the table that `table` gave.
 
-        Raises:
-            KeyError, TypeError, ValueError: it is none.
-            InputError: it names an effect that there is not; `where` it is.
+        KeyError, TypeError or ValueError where it is none; InputError, of `where`, where there is no such effect.
         """
         terms = tuple(
             Term(

@@ -148,8 +148,7 @@ def _noise(smooth: GaussianFilter, size: float, made: Sequence[tuple[int, float]
 def coupling(trace: Trace, rig: Rig) -> Mapping[str, Parameter]:
     """Of a recording with `position` of the motor and `load_position`, by name.
 
-    Raises:
-        UndeterminedError: no torque, or a twist that does not show the stiffness.
+    UndeterminedError where there is no torque, or the twist does not show the stiffness.
     """
     kind = rig.axis_kind
     effort, unit = rig.effort(trace)

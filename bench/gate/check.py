@@ -37,8 +37,7 @@ LEAST = 60
 MOTION = 4
 #: Share of the power of the strongest combination of scaled columns below which one counts as dependent.
 DEPENDENT = 1e-14
-#: Samples of a stretch, and stretches of a recording, evenly spaced where there are more: they stand for all of it, so
-#: that a check costs the same for an hour as for a minute.
+#: Samples of a stretch, and evenly spaced stretches of a recording: a check costs the same for an hour as for a minute.
 LONGEST, MOST = 2**13, 4
 #: Lengths of windows of a torque balance - samples -; the one that explains most is taken.
 LENGTHS = (4, 16, 64, 256)

@@ -20,8 +20,7 @@ HELD = 0.9
 CREEPING = 0.05
 #: Samples of a stretch.
 LEAST = 64
-#: Shares of the effort, explained by motion and position, below which a recording fails, and warns. The least of any
-#: sound recording is 0.48 (`python -m tests.gate`).
+#: Shares of the effort that motion and position explain to pass; the least of sound ones is 0.48 (`tests.gate`).
 REFUSED, WARNED = 0.3, 0.45
 #: Effort below this many times its noise is inconclusive.
 ABOVE_NOISE = 3.0

@@ -20,8 +20,7 @@ NAME = "neighbours_stand"
 CUTOFF = 3.0
 #: A spline has a knot every so often - s -, at most so many, and so many rows for each at least.
 EVERY, MOST, ROWS = 0.25, 200, 3
-#: Largest share of the power of the joint's own residual that it leaves out: 0.06 at most next to a joint that moved
-#: by 0.4 rad and more, and 0.2 at least with effects of the joint's own (`tests/gate/test_neighbours.py`).
+#: Share of the residual's power that remains next to a joint that moved: 0.06 at most, else 0.2 (tests/gate).
 LEFT = 0.1
 
 ALLOWED = "torque that goes with the joint's own motion, where others are stated to stand still"

@@ -36,8 +36,7 @@ ALONE = 4.0
 WHOLE = 0.3
 #: Steps below this share of their RMS are too short for a loss to show, or to matter.
 SLOW = 0.05
-#: Share of lost and repeated samples that is refused, with speed and without: up to it J stays within 1 %
-#: (`tests/gate/test_losses.py`).
+#: Share of lost samples that is refused, with speed and without: J stays within 1 % (`tests/gate/test_losses.py`).
 MOST, MOST_BLIND = 0.01, 0.0005
 #: Looks at the recording, each after what the last one found was put right: a jump hides others close by.
 PASSES = 3

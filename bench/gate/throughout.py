@@ -39,8 +39,7 @@ ALIKE = 0.95
 LONGEST, LATE, SAMPLES = 0.1, 0.012, 12
 #: Share of the residual that may remain without a fault; of signs, of which each block may have either, the first.
 LEFT_BY_SIGNS, LEFT = 0.25, 0.4
-#: The same of a delay that is a fault: 29 of 37 currents of the shared cases that are 20 ms late or early leave 0.06 to
-#: 0.2, a load on a viscous coupling, which looks 12 ms late, 0.29. Above it it may be physics, which diagnose names.
+#: The same of a delay that is a fault: 29 of 37 currents 20 ms late leave 0.06 to 0.2, a viscous coupling 0.29.
 DELAYED = 0.2
 
 ALLOWED = "one balance of effort and motion, from beginning to end"

@@ -24,9 +24,7 @@ PLACED = 0.5
 LOWEST, HIGHEST = 2.0, 200e3
 #: Below this rate - Hz - an axis that turns more than this between samples - rad - moves faster than it is recorded.
 SLOW, TURNED = 20.0, math.pi
-#: A signal that changes by more than this share of its spread from one sample to the next, and whose changes correlate
-#: by no more than this, however many samples are averaged, was not followed. Noise does that to one signal,
-#: undersampling to speed, effort and position alike.
+#: Change over the spread from one sample to the next, and correlation of changes, of a signal that was not followed.
 CHANGES, ALIKE = 0.3, 0.85
 #: Spread of speed, as share of its RMS, below which it is steady and its noise is all that changes.
 STEADY = 0.1

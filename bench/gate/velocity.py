@@ -24,8 +24,7 @@ from bench.trace.trace import Trace
 NAME = "velocity_is_derivative_of_position"
 #: Samples a span.
 SPAN = 20
-#: Deviation of the ratio from one that is reported, and that is refused. Clean recordings reach 0.06, the least wrong
-#: scale met is 0.4 (`python -m tests.gate`).
+#: Deviation of the ratio from one that is reported, and refused: clean ones reach 0.06, wrong scales 0.4 (tests.gate).
 WARNED, REFUSED = 0.02, 0.1
 #: Remainder, as share of the displacements, that is refused; clean recordings reach 0.15.
 REMAINDER = 0.4

@@ -38,10 +38,8 @@ LACKING = ("speed_limit", *(kind.parameter(OFFSET) for kind in KINDS))
 def with_gains(work: Sequence[JointLogs], kp: GivenGain, kd: GivenGain) -> list[JointLogs]:
     """The tasks of joints, each with its gains where the logs hold goals and no efforts; else as they are.
 
-    Gains that are not given are those of the MJCF's position actuators.
-
-    Raises:
-        InputError: gains are given and the logs hold efforts; kd of a joint without kp.
+    Gains that are not given are those of the MJCF's position actuators. InputError where gains are given and the logs
+    hold efforts, or kd of a joint without kp.
     """
     first = next((asked for asked in work if _without_effort(asked)), None)
     if first is None:

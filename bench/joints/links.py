@@ -173,9 +173,7 @@ def _scores(part: Array, strengths: Array) -> tuple[Array, float]:
 def seek_payload(work: Sequence[JointLogs], body: str, progress: Callable[[float], None]) -> FoundPayload:
     """Mass and centre of what a body carries, by gravity and acceleration over all joints together.
 
-    Raises:
-        UndeterminedError: the logs do not determine a mass above zero.
-        InputError: the MJCF has no such body.
+    UndeterminedError where the logs do not determine a mass above zero, InputError where the MJCF has no such body.
     """
     replace(work[0], added=(AddedBody(body),)).robot()
     products = of_joints(work, [AddedBody(body, 1.0, (x, y, z)) for x, y, z in PLACES.tolist()], progress)

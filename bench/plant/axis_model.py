@@ -41,8 +41,7 @@ from bench.units import Quantity
 
 Kind = TypeVar("Kind", bound=Effect)
 
-#: What acts between the effort that is asked for and the one that moves the axis; and with what the drive sees of the
-#: motion, all that it has to do with.
+#: What acts between the effort that is asked for and the one that moves the axis; and that with what the drive sees.
 OF_TORQUE = frozenset({Stage.CURRENT_SENSOR, Stage.CURRENT_LOOP, Stage.TORQUE_CONSTANT})
 IN_THE_LOOP = OF_TORQUE | {Stage.ENCODER}
 #: Share of the motion that dry friction takes away in one step while it sticks; MuJoCo's default of 0.9 creeps.
@@ -51,8 +50,7 @@ STICKING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 FLOOR = "floor"
 #: Mass of a body of unknown mass - kg: MuJoCo needs one, and it is negligible where the body moves.
 NO_MASS = 1e-6
-#: Inertia of a flat disk about its diameter, over that about its shaft: half, and as much more as a thickness of a
-#: hundredth of the diameter gives it, so that numbers rounded in a file still add up to a body's.
+#: Inertia of a disk about its diameter over that about its shaft; its thickness is a hundredth, for rounded numbers.
 ACROSS = 0.5 + 2.0 / 3.0 * 0.01**2
 #: The visible disk is drawn to size up to what clears the floor - m.
 LARGEST_VISIBLE_RADIUS = 0.13

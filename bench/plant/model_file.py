@@ -41,8 +41,7 @@ from bench.structured import read_toml
 SCHEMA, OF_JOINTS = "bench.model/1", "bench.effects/1"
 #: Table of the torque balance, and its key that states whether the parameters are its first coefficients.
 BALANCE, SAME = "torque_balance", "same_parameters"
-#: Share of the larger by which inertia, viscous and dry friction may differ from the coefficients: where they are the
-#: same, and where a file does not state it. Refinement moves an inertia by some percent, weak frictions by more.
+#: Share of the larger by which inertia and frictions may differ from the coefficients: as they are, and if refined.
 EQUAL, REFINED = (1e-9, 1e-9, 1e-9), (0.5, 0.9, 0.9)
 #: What makes an effect that is not native.
 STEPPED, SEEN = "bench.Effects steps it", "it is in what sensors report, not in the motion"

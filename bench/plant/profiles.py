@@ -21,8 +21,7 @@ from bench.rig.rig import Rig
 
 #: Without a stated speed, profiles run up to the speed that full torque reaches in this time - s.
 RUN_UP = 0.1
-#: Share of the motor's stated speed, or of its no-load speed (supply voltage over back-EMF constant), that a motion
-#: asks for; the rest is for overshoot.
+#: Share of the motor's stated speed, or no-load speed (supply over back-EMF constant), asked for, against overshoot.
 SPEED_SHARE = 0.8
 #: Share of peak torque that friction and load may take at top speed; the rest accelerates.
 RESISTING_SHARE = 0.5

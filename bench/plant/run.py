@@ -33,11 +33,8 @@ def run(plant: Plant, references: References, progress: Progress | None = None) 
     """An axis under its drive along references.
 
     One that MuJoCo runs natively does so; if it reaches its torque limit, where the drive stops its integrator and
-    MuJoCo's does not, it runs again tick by tick.
-
-    Raises:
-        InputError: references of another period than the drive's.
-        SimulationError: the simulation diverged.
+    MuJoCo's does not, it runs again tick by tick. InputError where the references' period is not the drive's,
+    SimulationError where the simulation diverged.
     """
     period, limit = plant.cascade.control_period, plant.cascade.torque_limit
     if abs(references.period / period - 1.0) > 1e-6:

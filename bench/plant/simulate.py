@@ -29,11 +29,9 @@ from bench.structured import json_text
 from bench.trace.trace import Trace
 
 SCHEMA = "bench.truth/1"
-#: A torque alternates at a tick where it turns back by this share of its largest value; a drive whose torque does so in
-#: this share of the ticks chatters: rigid axes stay below 0.0005, unstable drives are above 0.03.
+#: A torque that turns back by this share, in this share of the ticks, chatters: rigid axes 0.0005, unstable ones 0.03.
 TURNS_BACK, CHATTERS = 0.05, 0.01
-#: RMS deviation from the profile's speed, over the RMS of that speed, from which an axis does not follow: sound drives
-#: stay below 0.1.
+#: RMS deviation from the profile's speed, over its RMS, from which an axis does not follow: 0.1 of sound drives.
 ASTRAY = 0.5
 
 
@@ -205,12 +203,7 @@ RAMP = 0.1
 
 
 class Sampled:
-    """A motion by its speed at some times, between which it has no overshoot; it starts and ends at rest.
-
-    Args:
-        time: (n,) rising - s.
-        speed: (n,) - rad/s (m/s).
-    """
+    """A motion by its speed - rad/s (m/s) - at rising times - s - (n,) each, from rest to rest without overshoot."""
 
     def __init__(self, time: Array, speed: Array) -> None:
         time = np.concatenate([[time[0] - RAMP], time, [time[-1] + RAMP]]) - (time[0] - RAMP)

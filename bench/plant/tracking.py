@@ -45,8 +45,7 @@ BANDWIDTH = 10.0
 FREE = 1e-9
 #: Longest step of the integration - s.
 LONGEST_STEP = 0.5e-3
-#: Longest step with a contact, times its damping rate or its frequency: explicit steps overshoot from 1 on, and
-#: diverge from 2.
+#: Longest step with a contact, times its damping rate or frequency: explicit steps overshoot from 1 on, diverge from 2.
 CONTACT_STEP = 0.5
 
 
@@ -217,11 +216,8 @@ def _holding_inputs(
 def follow_references(model: AxisModel, trace: Trace, rig: Rig) -> States:
     """What a model reports under the drive of a rig, along the references of a recording that starts at rest.
 
-    At the samples of the recording; the effort of one is that of the tick which begins with it.
-
-    Raises:
-        InputError: no references, holes, a rig without drive, or samples that are no multiple of its ticks.
-        SimulationError: the simulation diverged.
+    At the samples of the recording; the effort of one is that of the tick which begins with it. InputError where there
+    are no references, holes, no drive, or samples that are no multiple of its ticks; SimulationError where it diverged.
     """
     cascade = Cascade.from_rig(rig)
     if len(trace.segments) > 1:
