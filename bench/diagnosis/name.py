@@ -83,7 +83,6 @@ class Suspects:
         visited: all fits that are possible, the first without an effect.
         probabilities: of these and of others.
         detected: what the torque balance does not hold.
-        withheld: whether something was found whose name was not to be tried.
         policy: that decided.
         excluded: names that were not to be tried.
         rejected: why the size of what was found at first is not determined, by name; it was then not tried either.
@@ -98,7 +97,6 @@ class Suspects:
     probabilities: Probabilities
     detected: Mapping[Effect, Detected]
     policy: Policy
-    withheld: bool = False
     excluded: frozenset[str] = frozenset()
     rejected: Mapping[str, Reason] = field(default_factory=dict)
     stopped: str | None = None
@@ -138,7 +136,6 @@ def name(recordings: Recordings, bare: Fit, excluded: frozenset[str], policy: Po
         probabilities=replace(likely, detected=likely.detected | events),
         detected=kept,
         policy=policy,
-        withheld=len(kept) < len(recordings.detected),
         excluded=excluded,
         rejected=unsized,
         stopped=searched.stopped,

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,19 +43,8 @@ NEGLIGIBLE = 30.0
 AGAIN = 2
 
 
-@dataclass(frozen=True)
-class Candidate:
-    """An effect tried.
-
-    Attributes:
-        term: effect and shape.
-        gain: sum of squares it would take from the residual - (N*m)**2 (N**2).
-        share: of the squared residual that it would take, through the filter that it was tried with.
-    """
-
-    term: Term
-    gain: float
-    share: float
+#: An effect of a shape, and the sum of squares that it would take from the residual - (N*m)**2 (N**2).
+Candidate = tuple[Term, float]
 
 
 class Search:
@@ -114,7 +102,8 @@ class Search:
     def shares(self) -> dict[Key, dict[Effect, float]]:
         """Share of the squared residual of each set that was expanded which each effect would take, in order."""
         tried = {key: self.tried[key] for key in self.expanded if key in self.tried}
-        return {key: {each.term.effect: each.share for each in of} for key, of in tried.items()}
+        wholes = {key: max(self.fits[key].squares, 1e-300) for key in tried}
+        return {key: {term.effect: max(0.0, gain) / wholes[key] for term, gain in of} for key, of in tried.items()}
 
     def add(self, fitted: Fit) -> Fit:
         """Keep a fit that is physical; returns the best one of its effects."""
@@ -196,9 +185,9 @@ class Search:
         if key in self.grown or key not in self.fits:
             return
         self.grown.add(key)
-        tried = [each for each in self.candidates(fitted) if each.gain > self.policy.by_chance(fitted)]
-        least = self.add_best(fitted, (each for each in tried if not each.term.effect.decoy), WIDTH, math.inf)
-        self.add_best(fitted, (each for each in tried if each.term.effect.decoy), 1, least)
+        tried = [each for each in self.candidates(fitted) if each[1] > self.policy.by_chance(fitted)]
+        least = self.add_best(fitted, (each for each in tried if not each[0].effect.decoy), WIDTH, math.inf)
+        self.add_best(fitted, (each for each in tried if each[0].effect.decoy), 1, least)
 
     def add_best(self, fitted: Fit, tried: Iterable[Candidate], width: int, least: float) -> float:
         """Visit the fit with each of the few best candidates whose residual is not much above the least.
@@ -206,25 +195,24 @@ class Search:
         Returns the least residual above noise of the possible ones, at a grid's shape - (N*m)**2 (N**2).
         """
         noise = fitted.count * fitted.floor**2
-        for candidate in tried:
-            rest = max(fitted.squares - candidate.gain - noise, 0.0)
+        for term, gain in tried:
+            rest = max(fitted.squares - gain - noise, 0.0)
             if width == 0 or rest > SCREEN * least:
                 break
-            if self.added(fitted, candidate) is not None:  # what is impossible takes no other effect's place
+            if self.added(fitted, term) is not None:  # what is impossible takes no other effect's place
                 least, width = min(least, max(rest, noise)), width - 1
         return least
 
-    def added(self, fitted: Fit, candidate: Candidate, together: bool = False) -> Fit | None:
+    def added(self, fitted: Fit, term: Term, together: bool = False) -> Fit | None:
         """The fit with a candidate of searched shape; None if impossible, or no more than damped noise.
 
         `together`: where the candidate is possible and another effect no longer is, all shapes are searched, as those
         that were found without it are not those next to it; what remains impossible was in the candidate's place.
         """
-        effect = candidate.term.effect
-        known = self.fits.get(key_of(fitted, effect))
+        effect, known = term.effect, self.fits.get(key_of(fitted, term.effect))
         if known is not None and not effect.repeatable:
             return known
-        after = shaped(fitted, fitted.hypothesis.plus(candidate.term), len(fitted.terms))
+        after = shaped(fitted, fitted.hypothesis.plus(term), len(fitted.terms))
         after = physical_form(after, self.effects, self.policy)
         if together and not self.policy.physical(after) and self.policy.last_is_physical(after):
             after = without_impossible(settled(after, self.policy), self.policy)
@@ -309,8 +297,8 @@ class Search:
         """Visit a chain of effects each of which takes its part of the residual above noise, no set of them twice."""
         sets = set[Key]()
         while fitted is not None and self.remains(fitted) and len(fitted.terms) < most:
-            least, known = self.part(fitted), [each for each in self.candidates(fitted) if not each.term.effect.decoy]
-            tried = (self.added(fitted, each, together=True) for each in known[:WIDTH] if each.gain > least)
+            least, known = self.part(fitted), [each for each in self.candidates(fitted) if not each[0].effect.decoy]
+            tried = (self.added(fitted, term, together=True) for term, gain in known[:WIDTH] if gain > least)
             fitted = next((after for after in tried if after is not None and key_of(after) not in sets), None)
             if fitted is not None:
                 sets.add(key_of(fitted))
@@ -343,18 +331,15 @@ def search(bare: Fit, effects: Sequence[Effect], policy: Policy, most: int = MOS
 
 def candidates(current: Fit, effects: Iterable[Effect]) -> list[Candidate]:
     """The best shape of every effect that may be added to a fit, best first."""
-    found, whole = [], max(current.squares, 1e-300)
+    found = list[Candidate]()
     for effect in effects:
         if not effect.sought(current.scope) or not current.hypothesis.admits(effect):
             continue
-        tried = [
-            Candidate(Term(effect, each.shape), each.gain, max(0.0, each.gain) / whole)
-            for each in effect.propose(current)
-        ]
-        tried = [candidate for candidate in tried if not any(candidate.term.same(term) for term in current.terms)]
+        tried = [(Term(effect, each.shape), each.gain) for each in effect.propose(current)]
+        tried = [(term, gain) for term, gain in tried if not any(term.same(other) for other in current.terms)]
         if tried:
-            found.append(max(tried, key=lambda candidate: candidate.gain))
-    return sorted(found, key=lambda candidate: -candidate.gain)
+            found.append(max(tried, key=lambda candidate: candidate[1]))
+    return sorted(found, key=lambda candidate: -candidate[1])
 
 
 def physical_form(fitted: Fit, effects: Sequence[Effect], policy: Policy) -> Fit:

@@ -71,7 +71,7 @@ def verdict(added: Added, likely: Probabilities, torque: Gap, velocity: Gap) -> 
         against.append(Reason("refused", {"parameter": name, "reason": reason}))
     if suspects.stopped:
         against.append(Reason("stopped", {"reason": suspects.stopped}))
-    elif suspects.withheld:
+    elif len(suspects.detected) < len(added.recordings.detected):  # of a name that was not to be tried
         against.append(Reason("withheld"))
     if added.effects:
         against += [*moves_worse(added, velocity), *undetermined(added, torque)]
