@@ -108,17 +108,17 @@ class Added:
 
 
 def add(recordings: Recordings, suspects: Suspects) -> Added:
-    """Try every effect, keep those that held-out motion confirms, and refine their model.
-
-    UndeterminedError as `last_determined`.
+    """Keep the effects that held-out motion confirms, and refine their model; UndeterminedError as `last_determined`.
     """
     found = suspects.fitted
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
     held_out = HeldOut.of(recordings, compared.same is not False, repeats, found)
     extension = Extension(recordings.rows, found.hypothesis, suspects.detected, recordings.rig, found)
-    recorded, closed_loop = recordings_to_track(recordings, repeats), closed_loop_gap(recordings, extension)
-    rejected = [*suspects.rejected.items()]
+    recorded = [Recorded(RECORDING, recordings.trace, recordings.rig)]
+    if recordings.holdout is not None:  # in which the recording's events occur too or not
+        recorded.append(Recorded(HOLDOUT, recordings.holdout, recordings.rig, events=repeats))
+    closed_loop, rejected = closed_loop_gap(recordings, extension), [*suspects.rejected.items()]
     while True:
         refused = refusals(recordings, extension.fitted)
         modelled = last_determined(recordings, extension, suspects.policy) if refused else extension
@@ -144,7 +144,7 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         extension=extension,
         stages=stages,
         gaps=gaps,
-        recorded=recorded,
+        recorded=tuple(recorded),
         rejected=tuple(rejected),
         model=model,
         effects=effects,
@@ -156,14 +156,6 @@ def add(recordings: Recordings, suspects: Suspects) -> Added:
         refused={name: refusal.reason for name, refusal in refused.items()},
         unknown=unknown_effect(stages[-1], held_out) if suspects.policy.remains(extension.fitted) else None,
     )
-
-
-def recordings_to_track(recordings: Recordings, repeats: bool) -> tuple[Recorded, ...]:
-    """The recording, and the holdout where there is one, in which the recording's events occur too or not."""
-    recorded = Recorded(RECORDING, recordings.trace, recordings.rig)
-    if recordings.holdout is None:
-        return (recorded,)
-    return recorded, Recorded(HOLDOUT, recordings.holdout, recordings.rig, events=repeats)
 
 
 def everywhere(balance: Balance, other: Rows | None) -> bool:

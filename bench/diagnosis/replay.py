@@ -19,7 +19,7 @@ from bench.fit.hypothesis import lay_out
 from bench.fit.rows import Rows
 from bench.fit.stored import EVERY, Balance
 from bench.names import meant, percent, with_known_arguments
-from bench.plant.model_file import LARGEST_VALUE, StoredModel, load_model, read_table
+from bench.plant.model_file import StoredModel, load_model, read_table
 from bench.plant.tracking import track
 from bench.presented import Shown
 from bench.rig.given import Given, GivenRig, Units, rig_of, trace_of
@@ -179,39 +179,4 @@ def parts_of(
         raise InputError(f"{path}: kind", f"found {kind!r}", f"allowed: '{rig.kind}', as in {rig.source}")
     if isinstance(model, Diagnosis):
         return path, table, model.balance, model.model
-    return path, table, load_balance(model), load_model(model) if "parameters" in table else None
-
-
-def load_balance(path: str | Path) -> Balance:
-    """The torque balance in a `model.toml`.
-
-    Raises:
-        InputError: no such file, no TOML, or no torque balance in it.
-    """
-    table = read_table(path)
-    if "torque_balance" not in table:
-        raise InputError(f"{path}: torque_balance", "missing", "allowed: a model.toml that bench diagnose wrote")
-    where = f"{path}: torque_balance"
-    if not isinstance(table["torque_balance"], dict):
-        raise InputError(where, f"found {table['torque_balance']!r}", "allowed: a table, as bench diagnose wrote it")
-    try:
-        balance = Balance.from_table(table["torque_balance"], where)
-    except KeyError as error:
-        raise InputError(f"{where}.{error.args[0]}", "missing", "allowed: as bench diagnose wrote it") from error
-    except (TypeError, ValueError) as error:
-        raise InputError(where, f"found {error}", "allowed: as bench diagnose wrote it") from error
-    _require_sound(balance, where)
-    return balance
-
-
-def _require_sound(balance: Balance, where: str) -> None:
-    if not 0.0 < balance.width < math.inf:
-        raise InputError(f"{where}.filter_width", f"found {balance.width:g}", "allowed: a width above zero - s")
-    if not (np.abs(balance.theta) <= LARGEST_VALUE).all():  # nor nan
-        allowed = f"allowed: finite numbers up to {LARGEST_VALUE:g}"
-        raise InputError(f"{where}.coefficients", "found one that no servo axis has", allowed)
-    for term in balance.hypothesis.terms:
-        size = len(term.effect.shapes)
-        if len(term.shape) != size or not np.isfinite(term.shape).all():
-            found = f"found {list(term.shape)}"
-            raise InputError(f"{where}.effects: {term.effect.name}.shape", found, f"allowed: {size} finite numbers")
+    return path, table, Balance.from_table(table, path), load_model(model) if "parameters" in table else None

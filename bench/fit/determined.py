@@ -85,9 +85,10 @@ def refusals(equations: NormalEquations, kind: AxisKind) -> dict[str, Undetermin
 
 def _not_excited(equations: NormalEquations, kind: AxisKind) -> dict[str, UndeterminedError]:
     """Why each term is not determined of whose column too little is independent of noise and of the others."""
+    terms = INERTIA, VISCOUS, COULOMB
     return {
         term: _hidden(term, share, equations.noise_share(term), kind)
-        for term, share in equations.shares_of_axis.items()
+        for term, share in zip(terms, equations.independent_shares(terms).tolist(), strict=True)
         if not share >= INDEPENDENT_SHARE
     }
 

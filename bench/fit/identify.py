@@ -93,7 +93,8 @@ def identify(
     gathered = [_gather(one, rig, cutoff) for one in recordings]
     found = _estimated_alone(gathered[0], rig) if len(gathered) == 1 else _estimated_together(gathered, rig)
     first = join_traces([one.first for one in gathered])
-    found = replace(found, motor=motor_constants(first, rig, found, _only), command=command_delay(first, rig.axis_kind))
+    motor = motor_constants(first, rig, found, lambda trace, rig: _estimated_alone(_gather(trace, rig, None), rig))
+    found = replace(found, motor=motor, command=command_delay(first, rig.axis_kind))
     found = _with_coupling(with_inertia(found, first, rig), first, rig)
     return replace(found, of=(rig, tuple(one for one in recordings if isinstance(one, Trace))))
 
@@ -117,11 +118,6 @@ def _with_coupling(found: Estimate, first: Trace, rig: Rig) -> Estimate:
         return replace(found, coupling=coupling(first, rig))
     except UndeterminedError as error:
         return replace(found, warnings=(*found.warnings, str(error)))
-
-
-def _only(trace: Trace, rig: Rig) -> Estimate:
-    """Inertia and friction of a recording alone."""
-    return _estimated_alone(_gather(trace, rig, None), rig)
 
 
 @dataclass(frozen=True, eq=False)

@@ -235,11 +235,11 @@ class Rows:
 
     def selected(self, kept: Callable[[Array], NDArray[np.bool_]]) -> Rows:
         """Those of the rows that are kept, by their times (r,) - s."""
-        stretches = tuple(
-            replace(part, used=part.used & kept(self._picked(part, part.signals.time + part.signals.began)))
-            for part in self.stretches
-        )
-        return replace(self, stretches=stretches, memory=Memory())
+        smooth, stretches = self.conditioning.filter, list[Stretch]()
+        for part in self.stretches:
+            time = (part.signals.time + part.signals.began)[smooth.margin : -smooth.margin : smooth.stride]
+            stretches.append(replace(part, used=part.used & kept(time[: part.used.size])))
+        return replace(self, stretches=tuple(stretches), memory=Memory())
 
     @property
     def held(self) -> Rows:
@@ -277,10 +277,6 @@ class Rows:
         smooth = self.conditioning.filter
         found = [pick(part.signals)[smooth.margin + smooth.stride * part.places] for part in self.stretches]
         return found[0] if len(found) == 1 else np.concatenate(found)
-
-    def _picked(self, part: Stretch, values: Array) -> Array:
-        smooth = self.conditioning.filter
-        return values[smooth.margin : -smooth.margin : smooth.stride][: part.used.size]
 
     def table(self, columns: ColumnsOf, lag: Lag = 0.0) -> Array:
         """Filtered columns at the used rows (m, k).

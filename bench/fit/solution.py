@@ -159,12 +159,6 @@ class NormalEquations:
         place = self.names.index(name)
         return float(self.count * self.noise[place, place] / max(self.total[place, place], 1e-300))
 
-    @cached_property
-    def shares_of_axis(self) -> dict[str, float]:
-        """Independent shares of J, K_w and K_0 by their terms."""
-        terms = INERTIA, VISCOUS, COULOMB
-        return dict(zip(terms, self.independent_shares(terms).tolist(), strict=True))
-
     def solved(self) -> tuple[Array, Array]:
         """Coefficients (p,) of all rows, and the inverse of the matrix that they came from; see `solved`."""
         return solved(self.total, self.moments, self.count * self.noise)

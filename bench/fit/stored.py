@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import BaseModel, Field, FiniteFloat, ValidationError
 
 from bench.arrays import Array, rms
 from bench.effects.effect import Occasional
 from bench.effects.present import named
+from bench.errors import InputError
 from bench.fit.fit import ROUNDS, Fit
 from bench.fit.hypothesis import AROUND, HUM, Hypothesis, Layout, Term, depended_on, lay_out, not_reaching
 from bench.fit.rows import Rows
+from bench.plant.model_file import LARGEST_VALUE
+from bench.validated import input_error
 
 #: Placeholder for a recording where an event comes at the same time of every one.
 EVERY = "every recording"
@@ -73,42 +77,66 @@ class Balance:
 
     def table(self) -> dict[str, Any]:
         """The table `torque_balance` of a `model.toml`: the model as coefficients, for `bench replay`; SI."""
-        effects = [
-            {"name": term.effect.name, "shape": list(term.shape), "on_load": term.on_load, "around": list(term.around)}
-            for term in self.hypothesis.terms
-        ]
-        return {
-            "recording": self.recording,
-            "filter_width": self.width,
-            "mains": list(self.hypothesis.hum),
-            "effort_step": self.hypothesis.step,
-            "shift": self.hypothesis.shift,
-            "misplaced": self.hypothesis.misplaced,
-            "coefficients": self.theta.tolist(),
-            "effects": effects,
-        }
+        own, effects = self.hypothesis, [_Effect.of(term) for term in self.hypothesis.terms]
+        return _Table(
+            recording=self.recording,
+            filter_width=self.width,
+            mains=[*own.hum],
+            effort_step=own.step,
+            shift=own.shift,
+            misplaced=own.misplaced,
+            coefficients=self.theta.tolist(),
+            effects=effects,
+        ).model_dump()
 
     @classmethod
-    def from_table(cls, table: Mapping[str, Any], where: str) -> Balance:
-        """Balance of the table that `table` gave.
-
-        KeyError, TypeError or ValueError where it is none; InputError, of `where`, where there is no such effect.
-        """
-        terms = tuple(
-            Term(
-                named(str(entry["name"]), f"{where}.effects"),
-                _floats(entry["shape"]),
-                bool(entry["on_load"]),
-                _floats(entry["around"]),
-            )
-            for entry in table.get("effects", [])
-        )
-        step, shift = (float(table.get(name, 0.0)) for name in ("effort_step", "shift"))
-        misplaced = bool(table.get("misplaced", False))
-        hypothesis = Hypothesis(terms, _floats(table.get("mains", [])), step, shift, misplaced)
-        theta = np.array(_floats(table["coefficients"]))
-        return cls(hypothesis, theta, float(table["filter_width"]), str(table["recording"]))
+    def from_table(cls, tables: Mapping[str, Any], path: object) -> Balance:
+        """Balance of what `table` gave, among the tables of a file; InputError where it is not there, or wrong."""
+        if "torque_balance" not in tables:
+            raise InputError(f"{path}: torque_balance", "missing", "allowed: a model.toml that bench diagnose wrote")
+        try:
+            found = _File.model_validate(tables).torque_balance
+        except ValidationError as error:
+            raise input_error(path, error) from error
+        terms = tuple(one.term(f"{path}: torque_balance.effects") for one in found.effects)
+        hypothesis = Hypothesis(terms, tuple(found.mains), found.effort_step, found.shift, found.misplaced)
+        return cls(hypothesis, np.array(found.coefficients), found.filter_width, found.recording)
 
 
-def _floats(values: Any) -> tuple[float, ...]:  # noqa: ANN401 - whatever a file holds
-    return tuple(float(value) for value in values)
+class _Effect(BaseModel):
+    """A term of a balance in the file."""
+
+    name: str
+    shape: list[FiniteFloat]
+    on_load: bool
+    around: list[FiniteFloat]
+
+    @classmethod
+    def of(cls, term: Term) -> _Effect:
+        return cls(name=term.effect.name, shape=[*term.shape], on_load=term.on_load, around=[*term.around])
+
+    def term(self, where: str) -> Term:
+        effect = named(self.name, where)
+        if len(self.shape) != len(effect.shapes):
+            allowed = f"allowed: {len(effect.shapes)} finite numbers"
+            raise InputError(f"{where}: {effect.name}.shape", f"found {self.shape}", allowed)
+        return Term(effect, tuple(self.shape), self.on_load, tuple(self.around))
+
+
+class _Table(BaseModel):
+    """A balance in the file."""
+
+    recording: str
+    filter_width: Annotated[FiniteFloat, Field(gt=0.0)]
+    mains: list[FiniteFloat] = []
+    effort_step: FiniteFloat = 0.0
+    shift: FiniteFloat = 0.0
+    misplaced: bool = False
+    coefficients: list[Annotated[FiniteFloat, Field(ge=-LARGEST_VALUE, le=LARGEST_VALUE)]]
+    effects: list[_Effect] = []
+
+
+class _File(BaseModel):
+    """The table among those of a `model.toml`."""
+
+    torque_balance: _Table

@@ -171,21 +171,12 @@ class Plant:
     def native_loop(self, references: References) -> ClosedLoop:
         """The axis with its drive as MuJoCo's `pid`, which does not hold its integrator while limited."""
         time = self.timestep * np.arange(references.time.size, dtype=np.float64)
-        inputs, start = pid_inputs(self.cascade, references), references.start
-        return ClosedLoop(self.model, self._with_pid, lambda first, last: inputs[first:last], time, *start)
+        inputs, start, spec = pid_inputs(self.cascade, references), references.start, self.spec()
+        add_pid(spec, self.cascade)
+        return ClosedLoop(self.model, spec.compile(), lambda first, last: inputs[first:last], time, *start)
 
     def ticked_loop(self, references: References) -> ClosedLoop:
         """The axis with its drive ticked in Python, to be run once."""
         emulated, start = self.axis.parameters if self.emulated else None, references.start
         drive = CascadeDrive(self.cascade, references, self.model, emulated)
-        return ClosedLoop(self.model, self._mechanics, drive, references.time, *start, substeps=self.substeps)
-
-    @cached_property
-    def _mechanics(self) -> mujoco.MjModel:
-        return self.spec().compile()
-
-    @cached_property
-    def _with_pid(self) -> mujoco.MjModel:
-        spec = self.spec()
-        add_pid(spec, self.cascade)
-        return spec.compile()
+        return ClosedLoop(self.model, self.spec().compile(), drive, references.time, *start, substeps=self.substeps)

@@ -86,10 +86,10 @@ class SteppedEffects:
         self._step, self._none = step, made(per_axis([0.0] * len(models)))
         self._coulomb = made(per_axis([model.parameters.coulomb_friction for model in models]))
         self._bristled = made(np.squeeze(bristled)) if np.any(bristled) else None
-        everything = on_axes(models, Effect, made)
+        everything = on_axes(models, made)
         self._flowing = of_kind(everything, DriveLimit)
         self._lags = [some for some in of_kind(everything, Lag) if some.effect.signal == "torque"]
-        torques, ticked = of_kind(everything, Torque), of_kind(on_axes(models, Effect, made, ticked=True), Torque)
+        torques, ticked = of_kind(everything, Torque), of_kind(on_axes(models, made, ticked=True), Torque)
         self._sensors = [some for some in torques if some.effect.stage == Stage.CURRENT_SENSOR]
         self._motor = [some for some in torques if some.effect.stage == Stage.TORQUE_CONSTANT]
         self._motor += [some for some in ticked if some.effect.stage == Stage.COMMUTATION]
@@ -268,21 +268,18 @@ def _not_below_zero(level: Number) -> Number:
     return namespace(level).maximum(level, 0.0)
 
 
-def on_axes(
-    models: Sequence[AxisModel], kind: type[Kind], made: Made = numpys, ticked: bool = False
-) -> list[EffectOnAxes[Kind]]:
-    """Effects of a kind, in the order of their names; an effect that an axis has twice makes two of them.
+def on_axes(models: Sequence[AxisModel], made: Made, ticked: bool = False) -> list[EffectOnAxes[Effect]]:
+    """Effects in the order of their names, an effect that an axis has twice as two; arrays are `made` a library's.
 
-    With `ticked` only those that MuJoCo does not make by itself; arrays are `made` those of a library.
+    With `ticked` only those that MuJoCo does not make by itself.
     """
     found: dict[tuple[str, int], dict[int, Present]] = {}
     for row, model in enumerate(models):
         count: Counter[str] = Counter()
-        for present in model.of_kind(kind):
-            if not ticked or present in model.ticked:
-                found.setdefault((present.name, count[present.name]), {})[row] = present
-                count[present.name] += 1
-    return [_gathered(models, found[key], kind, made) for key in sorted(found)]
+        for present in model.ticked if ticked else model.effects:
+            found.setdefault((present.name, count[present.name]), {})[row] = present
+            count[present.name] += 1
+    return [_gathered(models, found[key], made) for key in sorted(found)]
 
 
 def of_kind(effects: Sequence[EffectOnAxes[Effect]], kind: type[Kind]) -> list[EffectOnAxes[Kind]]:
@@ -290,30 +287,26 @@ def of_kind(effects: Sequence[EffectOnAxes[Effect]], kind: type[Kind]) -> list[E
     return [cast(EffectOnAxes[Kind], some) for some in effects if isinstance(some.effect, kind)]
 
 
-def _gathered(
-    models: Sequence[AxisModel], having: Mapping[int, Present], kind: type[Kind], made: Made
-) -> EffectOnAxes[Kind]:
+def _gathered(models: Sequence[AxisModel], having: Mapping[int, Present], made: Made) -> EffectOnAxes[Effect]:
     """An effect on the axes that have it."""
     index, values = list(having), [dict(present.values) for present in having.values()]
-    effect = having[index[0]].effect
-    assert isinstance(effect, kind)
     axes = [models[row].axis for row in index]
     windings = [axis.winding for axis in axes if axis.winding is not None]
-    winding = Winding(**stacked(windings, made=made)) if len(windings) == len(axes) else None
+    winding = Winding(**stacked(windings, made)) if len(windings) == len(axes) else None
     places = np.arange(len(models))
     places[index] = len(models) + np.arange(len(index))
     everywhere = len(index) == len(models)
     return EffectOnAxes(
-        effect,
+        having[index[0]].effect,
         len(models),
         None if everywhere else made(np.array(index)),
         None if everywhere else made(places),
         {key: made(per_axis([value[key] for value in values])) for key in values[0]},
-        Axis(**stacked(axes, without="winding", made=made), winding=winding),
+        Axis(**stacked(axes, made, without="winding"), winding=winding),
     )
 
 
-def stacked(ones: Sequence[Any], without: str = "", made: Made = numpys) -> dict[str, Any]:
+def stacked(ones: Sequence[Any], made: Made, without: str = "") -> dict[str, Any]:
     """Fields of dataclasses of numbers, but for one, as `per_axis` has them of all."""
     names = [field.name for field in fields(ones[0]) if field.name != without]
     return {name: made(per_axis([float(getattr(one, name)) for one in ones])) for name in names}

@@ -50,7 +50,7 @@ def test_the_torque_of_a_push_beside_what_runs_slowly(trace, width):
 def test_it_belongs_to_one_recording_and_is_kept_with_it(trace):
     rows, other = (Rows.of(each, RIG) for each in (trace, replace(trace, origin="another")))
     fitted = fit(rows, Hypothesis((BESIDE,)))
-    balance = Balance.from_table(Balance.of(fitted).table(), "model.toml")
+    balance = Balance.from_table({"torque_balance": Balance.of(fitted).table()}, "model.toml")
     assert balance.hypothesis.terms[0].around == BESIDE.around
     np.testing.assert_allclose(balance.left(rows), fitted.residual, atol=1e-12)
     effectless = fitted.effort - fitted.columns[:, :4] @ fitted.theta[:4]
