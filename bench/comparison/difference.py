@@ -114,10 +114,7 @@ class Difference:
 
     @classmethod
     def relative(cls, baseline: Parameter, now: Parameter) -> Difference:
-        """now/baseline - 1 with the error that both pass on to it; the range includes how recordings differ.
-
-        The baseline is above zero.
-        """
+        """now/baseline - 1, of a baseline above zero, with the error that both pass on to it."""
         ratio = now.value / baseline.value
         error = float(np.hypot(baseline.std_error * ratio, now.std_error)) / baseline.value
         return cls(ratio - 1.0, error)

@@ -108,8 +108,7 @@ class Added:
 
 
 def add(recordings: Recordings, suspects: Suspects) -> Added:
-    """Keep the effects that held-out motion confirms, and refine their model; UndeterminedError as `last_determined`.
-    """
+    """Keep the effects that held-out motion confirms, and refine their model; raises as `last_determined`."""
     found = suspects.fitted
     compared = same_axis(found, recordings.holdout_rows, recordings.base_units)
     repeats = everywhere(Balance.of(found), recordings.holdout_rows)
@@ -175,7 +174,7 @@ def refusals(recordings: Recordings, fitted: Fit) -> dict[str, UndeterminedError
 def last_determined(recordings: Recordings, extension: Extension, policy: Policy) -> Extension | None:
     """The last stage that determines the inertia; None where none does because of what is missing from the model.
 
-    UndeterminedError where no missing effect was found, and the mass, or the load's, is not determined.
+    UndeterminedError where no missing effect was found, and a mass is not determined.
     """
     for stage in reversed(extension.stages):
         refused = refusals(recordings, stage.fitted)

@@ -53,10 +53,7 @@ class SameAxis:
 
 
 def same_axis(fitted: Fit, other: Rows | None, units: Mapping[str, str]) -> SameAxis:
-    """Compare J, K_w and K_0, whose names have such units, of a recording's fit and of the holdout.
-
-    The model's effects are fitted to both recordings; events belong to one of them and are left out.
-    """
+    """Compare J, K_w and K_0 - units - of a recording's fit and of the holdout, with the effects that last."""
     if other is None:
         return SameAxis(None)
     lasting = fitted.hypothesis.with_terms(term for term in fitted.terms if not isinstance(term.effect, Occasional))

@@ -146,10 +146,7 @@ def choices(fitted: Fit) -> list[list[Tabulated]]:
 
 
 def tabulated(fitted: Fit, among: Sequence[Sequence[Tabulated]]) -> list[tuple[Present, ...]]:
-    """Tables, of several choices, that predict the residual, best first.
-
-    A choice of two has to be better than each of one by more than chance.
-    """
+    """Tables that predict the residual, best first; a choice of two has to be better than one by more than chance."""
     sizes = {table: shape_of(table, fitted) for table in {table for choice in among for table in choice}}
     columns = {
         table: fitted.seen(partial(table.columns, shape=shape), False) * fitted.determined[:, None]

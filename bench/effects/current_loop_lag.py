@@ -18,8 +18,7 @@ class CurrentLoopLag(Lag):
     filters_motion = True
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
-        """A lag of the speed, unless position determines that; and, as only the difference shows, one of the
-        current."""
+        """A lag of the speed, unless position determines that; and one of the current, as only the difference shows."""
         separable = scope.source == "position" or {"position", "velocity"} <= scope.signals
         return () if separable else ("velocity_filter_lag", "current_filter_lag")
 

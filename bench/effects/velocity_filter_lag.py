@@ -41,8 +41,7 @@ class VelocityFilterLag(Lag):
         return scope.source == "velocity" and "position" not in scope.signals
 
     def ambiguous(self, scope: Scope) -> tuple[str, ...]:
-        """A lag of the torque, unless position determines that; and, as only the difference shows, one of the
-        current."""
+        """A lag of the torque, unless position determines that; and one of the current, as the difference shows."""
         return () if "position" in scope.signals else ("current_loop_lag", "current_filter_lag")
 
     def detect(self, trace: Trace, rig: Rig, width: float) -> Detected | None:

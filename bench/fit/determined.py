@@ -154,10 +154,7 @@ def _share(estimate: Estimate, kind: AxisKind) -> str:
 
 
 def remainder(estimate: Estimate, kind: AxisKind, hint: str, depends: Dependence | None) -> tuple[str, ...]:
-    """How much is explained, and how large the residual is, where that is more than noise; `hint`: what explains it.
-
-    Where it is as small as noise: on what it depends.
-    """
+    """How much is explained, and how large the residual is, where that is more than noise; else on what it depends."""
     residual = estimate.residual
     if not residual.rms > NOISE_ALONE * residual.noise_floor:
         return () if depends is None else (f"{depends}. The intervals include its influence",)

@@ -281,10 +281,7 @@ def _beyond(inertia: Parameter, less: float, square: float) -> Parameter:
 
 
 def modelled_effort(motion: Motion, estimate: Estimate, kind: AxisKind) -> Array:
-    """J*alpha + K_w*omega + K_0*sgn(omega) (+ M_0) - tau*dM/dt along a motion (m,) - the effort's unit.
-
-    nan where the direction is uncertain.
-    """
+    """J*alpha + K_w*omega + K_0*sgn(omega) (+ M_0) - tau*dM/dt (m,) - the effort's unit; nan where uncertain."""
     moving = motion.direction != 0.0
     columns = {
         INERTIA: motion.acceleration,

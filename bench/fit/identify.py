@@ -211,10 +211,7 @@ def _late(found: Solution) -> DeadTime | None:
 
 
 def _first_moving(parts: Iterator[Trace], rig: Rig, cutoff: float | None) -> tuple[Gated, Solution, Moves, list[Gated]]:
-    """The first of a recording's parts that moves clearly, with its solution, and the parts before it.
-
-    UndeterminedError where none does.
-    """
+    """The first part that moves clearly, its solution, and the parts before it; UndeterminedError where none does."""
     still, refusals = [], []
     for part in parts:
         try:

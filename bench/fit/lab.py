@@ -27,8 +27,8 @@ LEAST_SPEED = 20.0
 def least_squares(acceleration: Array, velocity: Array, torque: Array) -> tuple[Array, Array, float]:
     """J, K_w and K_0 of M = J*alpha + K_w*omega + K_0*sgn(omega) by least squares over the fast samples (n,).
 
-    Returns (3,) estimate, (3,) standard errors under independent residuals, and the remaining quadratic error E -
-    (N*m)**2; UndeterminedError where the three columns are not independent.
+    With standard errors under independent residuals (3,), and the remaining quadratic error - (N*m)**2.
+    UndeterminedError where the three columns are not independent.
     """
     columns = np.stack([acceleration, velocity, np.sign(velocity)], axis=1)
     theta, _, rank, _ = np.linalg.lstsq(columns, torque, rcond=None)

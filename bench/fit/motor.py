@@ -54,10 +54,7 @@ By = Callable[[str, Trace], Estimate]
 def motor_constants(
     trace: Trace, rig: Rig, found: Estimate, identified: Callable[[Trace, Rig], Estimate]
 ) -> MotorConstants | None:
-    """Of a recording and its estimate; None where it has no voltage.
-
-    `identified`: inertia and friction of another recording of the axis, by its rig.
-    """
+    """Of a recording and its estimate; None without a voltage. `identified`: the estimate of another recording."""
     if "voltage" not in trace:
         return None
     known, refused = dict[str, Parameter](), dict[str, str]()

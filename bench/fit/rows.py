@@ -179,10 +179,7 @@ class Rows:
         return cls._through(conditioning, parts, trace.origin, _scope(trace, rig, conditioning, peak_effort), near)
 
     def through(self, smooth: GaussianFilter, near: bool = False) -> Rows:
-        """The same recording through a filter that is no narrower.
-
-        UndeterminedError where it never moves clearly for as long as the filter reaches.
-        """
+        """The same through a filter that is no narrower; UndeterminedError where nothing moves clearly so long."""
         parts = [(part.signals, part.start) for part in self.stretches if part.signals.time.size > 4 * smooth.margin]
         return self._through(replace(self.conditioning, filter=smooth), parts, self.origin, self.scope, near)
 

@@ -142,10 +142,7 @@ class NormalEquations:
         return "forward" if mean_direction > 0.0 else "backward"
 
     def independent_shares(self, names: Sequence[Name]) -> Array:
-        """Share of the power of each of some columns that is neither noise nor explained by the others (k,).
-
-        Negative where it is noise alone.
-        """
+        """Share of the power of some columns that neither is noise nor the others explain (k,); below 0 of noise."""
         places, at = [self.names.index(name) for name in names], np.arange(len(names))
         power = np.diag(self.total)[places]
         scale = np.sqrt(np.where(power > 0.0, power, 1.0))

@@ -146,10 +146,7 @@ def _noise(smooth: GaussianFilter, size: float, made: Sequence[tuple[int, float]
 
 
 def coupling(trace: Trace, rig: Rig) -> Mapping[str, Parameter]:
-    """Of a recording with `position` of the motor and `load_position`, by name.
-
-    UndeterminedError where there is no torque, or the twist does not show the stiffness.
-    """
+    """Of a recording with both positions, by name; UndeterminedError without a torque, or where no stiffness shows."""
     kind = rig.axis_kind
     effort, unit = rig.effort(trace)
     if unit != kind.effort_unit:

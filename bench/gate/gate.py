@@ -57,7 +57,7 @@ class Gated:
 def gate(trace: Trace, rig: Rig | None = None, looks: Sequence[Look] = CHECKS) -> Gated:
     """Run checks on a recording, or on a part of one.
 
-    InputError: rig and recording do not fit together, or a value that no axis can have.
+    InputError where rig and recording do not fit together, or for a value that no axis can have.
     """
     require_plausible(trace)
     seen, checks = Seen(trace, rig), list[Check]()

@@ -43,8 +43,7 @@ def stand(seen: Seen) -> Check | None:
 
 
 def _over_time(seen: Seen) -> float:
-    """RMS of the effort that depends on time, not on its own motion, in its unit; 0 where that is not most of the
-    rest."""
+    """RMS of the effort that depends on time, not on its own motion, in its unit; 0 where that is not most of it."""
     if seen.effort is None or not seen.tells_motion:
         return 0.0
     trace, (effort, _) = seen.trace, seen.effort

@@ -137,8 +137,7 @@ def _trimmed(used: NDArray[np.bool_], grams: Array, along: Array, power: Array) 
 
 
 def _left(fitted: Balanced, factors: Array) -> float:
-    """Share of the effort that the balance does not explain in the windows, their effort times factors (n,); 0 omits
-    one out."""
+    """Share of the effort that the balance does not explain in the windows, times factors (n,), without those of 0."""
     used = factors != 0.0
     effort, basis = (fitted.effort * factors)[used], basis_of(fitted.columns[used])
     return 1.0 - float(np.sum((basis.T @ effort) ** 2)) / max(float(effort @ effort), 1e-300)

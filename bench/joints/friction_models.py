@@ -97,10 +97,7 @@ class LoadedMotion:
 
 
 def friction_models(traces: Sequence[Trace], rig: Rig) -> tuple[FrictionModel, ...]:
-    """The six models of a joint by its logs.
-
-    UndeterminedError where no known load moves, which four of the six depend on.
-    """
+    """The six models of a joint by its logs; UndeterminedError where no known load moves, on which four depend."""
     motion = _motion([Rows.of(trace, rig) for trace in traces])
     if not rms(motion.load) > SLOWEST * rms(motion.torque):
         reason = "no known weight of links or payload moves, on which friction could depend"

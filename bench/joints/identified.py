@@ -382,10 +382,7 @@ def _with_constant(joint: str, rig: Rig, traces: Sequence[Trace]) -> tuple[Rig, 
 def _moving(
     read: Mapping[Path, tuple[Trace, Poses]], refused: Mapping[Path, BenchError], rig: Rig, joint: str
 ) -> tuple[dict[Path, tuple[Trace, Poses]], dict[str, str]]:
-    """Recordings in which the joint moves, with the robot's poses along each, and why the others are none.
-
-    Raises as the first if none is one.
-    """
+    """Recordings in which the joint moves, with the robot's poses, and why others are none; raises without one."""
     traces, reasons = dict[Path, tuple[Trace, Poses]](), dict(refused)
     for log, (recorded, poses) in read.items():
         try:

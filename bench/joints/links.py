@@ -146,8 +146,7 @@ def shared(products: Sequence[Array], chosen: Sequence[int] | Array) -> Common:
 
 
 def _solved(reduced: Array, lefts: Sequence[float]) -> tuple[Array, Array, Array]:
-    """Strengths (k,), the inverse of their matrix (k, k), and the weights of the joints, by the residual of each
-    (j,)."""
+    """Strengths (k,), the inverse of their matrix (k, k), and weights of the joints, by the residual of each (j,)."""
     weights = 1.0 / np.maximum(lefts, 1e-300)
     inverse = symmetric_inverse(np.tensordot(weights, reduced[:, :-1, :-1], 1)[None], 1e-12)[0]
     return inverse @ np.tensordot(weights, reduced[:, :-1, -1], 1), inverse, weights

@@ -165,8 +165,7 @@ def add_pid(spec: mujoco.MjSpec, cascade: Cascade) -> None:
 
 
 def pid_inputs(cascade: Cascade, references: References) -> Array:
-    """Inputs pos, vel, ff of the actuator that `add_pid` makes, for one axis, without other known torque: (ticks,
-    4)."""
+    """Inputs pos, vel, ff of the actuator of `add_pid`, for one axis, without other known torque: (ticks, 4)."""
     lead = cascade.control_period / 2.0 * references.velocity
     feedforward = references.feedforward(cascade.inertia_feedforward)
     beside = np.zeros_like(feedforward)

@@ -116,8 +116,7 @@ class StoredModel:
 
 
 def model_xml(stored: StoredModel) -> str:
-    """MJCF that MuJoCo opens without other files, and that attaches to any body; a comment lists what it lacks, and
-    assumes."""
+    """MJCF that MuJoCo opens without other files and attaches to any body; a comment lists what it lacks."""
     model, mounting = stored.model, stored.mounting
     spec = model.spec(TIMESTEP)
     spec.delete(spec.geom(FLOOR))

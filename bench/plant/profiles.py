@@ -103,8 +103,7 @@ Profile = Callable[[MotionLimits], References]
 
 
 def fast_reversals(limits: MotionLimits) -> References:
-    """The lab's fast run: accelerate and decelerate between the two directions, never at rest. Determines inertia
-    best."""
+    """The lab's fast run: between top speeds of both directions, never at rest. Determines inertia best."""
     return through_speeds(limits, [limits.speed, -limits.speed] * 4 + [0.0], dwell=0.0)
 
 
@@ -116,8 +115,7 @@ def full_torque(limits: MotionLimits) -> References:
 
 
 def speed_staircase(limits: MotionLimits) -> References:
-    """Up and down through steps of speed, each held for a while, in both directions. Determines friction over speed
-    best."""
+    """Up and down through steps of speed, each held for a while, both ways. Determines friction over speed best."""
     steps = [share * limits.speed for share in (0.2, 0.4, 0.6, 0.8, 1.0, 0.7, 0.3, 0.1)]
     return through_speeds(limits, [*steps, *(-step for step in steps), 0.0], dwell=0.06)
 

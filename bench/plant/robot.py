@@ -465,10 +465,7 @@ def _moved_tendons(model: mujoco.MjModel, joint: int) -> Sequence[int]:
 
 
 def joint_rig(rig: Rig | None, robot: Robot) -> Rig:
-    """The rig of a joint, or one that contains only its kind, with the links of the robot's model.
-
-    InputError where the rig is of another kind.
-    """
+    """The rig of a joint, or one with its kind only, with the robot's links; InputError where it is of another kind."""
     turns = robot.unit(robot.joint) == "rad"
     alone = {"name": robot.joint, "kind": "rotary" if turns else "linear"}
     own = Rig.of(alone, robot.source) if rig is None else rig.of_joint(robot.joint)
