@@ -16,6 +16,9 @@ from bench.trace.signals import unit_in_name
 #: Format of a recording that is given as arrays or a data frame.
 ARRAYS = "arrays"
 _ELEMENT = re.compile(r"\S\[\d+\]")
+#: Names of the two columns of a time stamp, which ROS and C's `timespec` have in whole seconds and nanoseconds.
+_WHOLE = re.compile(r"(?:(.*)[^a-z0-9])?(?:tv_)?secs?", re.IGNORECASE)
+_PART = re.compile(r"(?:(.*)[^a-z0-9])?(?:tv_)?n(?:ano)?secs?", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +117,21 @@ class Recording:
         if self.format == ARRAYS:
             return f'units={{"{channel.name}": "{unit}"}}'
         return f'`[trace.columns] {signal} = "{self.column(channel)} [{unit}]"` in the rig'
+
+
+def with_stamps(channels: Sequence[Channel]) -> tuple[Channel, ...]:
+    """The same, whole seconds and the nanoseconds beyond them as one time from the first sample."""
+    whole, part = (
+        {match[1]: one for one in channels if (match := name.fullmatch(one.name)) and one.values.size}
+        for name in (_WHOLE, _PART)
+    )
+    joined: dict[Channel, Channel | None] = {}
+    for prefix in whole.keys() & part.keys():
+        one, other = whole[prefix], part[prefix]
+        if not (one.values % 1.0).any() and 0.0 <= other.values.min() <= other.values.max() < 1e9:
+            passed = one.values - one.values[0] + 1e-9 * other.values
+            joined |= {one: replace(one, name=prefix or "time", unit="s", values=passed, moments=True), other: None}
+    return tuple(kept for one in channels if (kept := joined.get(one, one)) is not None)
 
 
 def with_shared_times(channels: Iterable[Channel]) -> tuple[Channel, ...]:

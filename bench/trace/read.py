@@ -18,7 +18,7 @@ from typing import Protocol, runtime_checkable
 from bench.errors import InputError
 from bench.names import with_known_arguments
 from bench.offered import READERS_GROUP, offered
-from bench.trace.channel import Recording, with_units
+from bench.trace.channel import Recording, with_stamps, with_units
 from bench.trace.choose import ReadingOptions
 from bench.trace.joints import by_joints
 from bench.trace.readers.arrow import PARQUET
@@ -129,4 +129,4 @@ def read_recording(path: str | Path) -> Recording:
     """
     source = open_source(path)
     recording = reader_of(source).read(source)
-    return by_joints(replace(recording, channels=with_units(recording.channels)))
+    return by_joints(replace(recording, channels=with_units(with_stamps(recording.channels))))
