@@ -30,9 +30,9 @@ class Swung(NamedTuple):
     drive: np.ndarray
 
 
-def swung(ahead: float = 0.0) -> Swung:
+def swung(ahead: float = 0.0, period: float = PERIOD) -> Swung:
     """By Lagrange's equation of a pendulum, a time `ahead` - s."""
-    time = PERIOD * np.arange(round(SECONDS / PERIOD)) + ahead
+    time = period * np.arange(round(SECONDS / period)) + ahead
     angle, speed, acceleration = sines(time, [(0.9, 0.4, 0.0), (0.35, 1.1, 1.0), (0.1, 2.3, 2.0)])
     link = MASS * LENGTH**2 * acceleration + MASS * GRAVITY * LENGTH * np.sin(angle)
     return Swung(time, angle, speed, link, ARMATURE * acceleration + VISCOUS * speed + COULOMB * np.sign(speed))

@@ -1,4 +1,4 @@
-"""A torque that acts 5 ms, which is two and a half samples, after it is reported."""
+"""A torque that acts 10 ms, which is two and a half samples, after it is reported."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from pathlib import Path
 
 from tests.faults.pendulum import swung, write_log
 
-DELAY = 5e-3
+PERIOD, DELAY = 4e-3, 1e-2
 
 
 def write(folder: Path) -> None:
     """`log.csv` and `robot.xml`."""
-    acting = swung(DELAY)
-    write_log(folder, swung(), acting.link + acting.drive)
+    acting = swung(DELAY, PERIOD)
+    write_log(folder, swung(period=PERIOD), acting.link + acting.drive)
