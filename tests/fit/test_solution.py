@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy import special
 from scipy.optimize import lsq_linear
 from scipy.signal import lfilter
 
@@ -153,11 +152,6 @@ def test_intervals_of_means_cover(correlation):
         held.append(abs(mean) <= reach * np.sqrt(covariance[0, 0]))
     print(f"\ncoverage of a mean at correlation {correlation}: {np.mean(held):.3f}")
     assert abs(np.mean(held) - 0.95) < 3.0 * np.sqrt(0.95 * 0.05 / 1000)
-
-
-def test_students_table_is_scipys():
-    for degrees, value in STUDENT.items():
-        assert special.stdtrit(degrees, 0.975) == pytest.approx(value, rel=1e-5)
 
 
 NAMES = (*BASE, OFFSET)

@@ -43,24 +43,20 @@ def recorded(gap=0.0, error=0.0, size=1.0):
     }
 
 
-def test_stiffness_and_damping_of_a_spring():
-    found = bench.identify(recorded(), RIG, units=UNITS).coupling
+@pytest.mark.parametrize(
+    ("has", "name", "share"),
+    [
+        ({}, "damping", 0.2),
+        ({"gap": 4e-3}, "backlash_gap", 0.05),
+        ({"error": 1e-3}, "transmission_error_per_load_turn", 0.05),
+    ],
+    ids=["a spring", "backlash", "a transmission error"],
+)
+def test_a_coupling_has_its_stiffness_and_what_else_it_has(has, name, share):
+    found = bench.identify(recorded(**has), RIG, units=UNITS).coupling
     assert found["stiffness"].value == pytest.approx(STIFFNESS, rel=0.02)
-    assert found["damping"].value == pytest.approx(DAMPING, rel=0.2)
-    assert "backlash_gap" not in found
-
-
-def test_backlash_of_a_gear():
-    gap = 4e-3
-    found = bench.identify(recorded(gap), RIG, units=UNITS).coupling
-    assert found["backlash_gap"].value == pytest.approx(gap, rel=0.05)
-    assert found["stiffness"].value == pytest.approx(STIFFNESS, rel=0.02)
-
-
-def test_a_transmission_error_once_per_turn():
-    found = bench.identify(recorded(error=1e-3), RIG, units=UNITS).coupling
-    assert found["transmission_error_per_load_turn"].value == pytest.approx(1e-3, rel=0.05)
-    assert found["stiffness"].value == pytest.approx(STIFFNESS, rel=0.02)
+    assert found[name].value == pytest.approx(next(iter(has.values()), DAMPING), rel=share)
+    assert has or "backlash_gap" not in found
 
 
 def test_without_a_torque_it_says_what_is_missing():

@@ -117,7 +117,7 @@ def test_an_mjcf_is_of_all_logs_or_of_one_each(tmp_path):
         bench.robot(logs, mjcfs[:2])
 
 
-@pytest.mark.parametrize(("friction", "name", "period"), [(coulomb, "M1", 24e-3), (directional, "M5", 16e-3)])
+@pytest.mark.parametrize(("friction", "name", "period"), [(coulomb, "M1", 48e-3), (directional, "M5", 16e-3)])
 def test_the_friction_model_of_a_servo_is_the_simplest_that_predicts_its_torque(tmp_path, friction, name, period):
     """M5 includes M1, and M6 both: none that is larger predicts better than the noise of the torque, 0.01 N*m."""
     logs, mjcfs = swung(tmp_path, "ab", friction=friction, period=period)

@@ -41,19 +41,19 @@ def test_every_joint_has_its_physics(arm):
     assert not shoulder["effects"]
 
 
-def test_the_mjcf_has_all_of_it(arm):
+def test_its_files_have_all_of_it(arm):
+    joints = load_joints(arm / "robot_id" / "effects.toml")
+    assert list(joints) == ["shoulder", "elbow"]
+    assert [present.name for present in joints["elbow"].model.effects] == ["cogging_torque"]
+    rows = json.loads((arm / "robot_id" / "report.json").read_text())["sections"][0]["blocks"][0]["rows"]
+    assert [row[0] for row in rows] == ["shoulder", "elbow"]
+    assert rows[1][-1].startswith("Cogging torque: > 9")
     model = mujoco.MjModel.from_xml_path(str(arm / "robot_id" / "robot_id.xml"))
     elbow = model.joint("elbow")
     assert elbow.armature[0] == pytest.approx(HIDDEN.armature, rel=0.01)
     assert elbow.frictionloss[0] == pytest.approx(HIDDEN.coulomb, rel=0.01)
     assert model.actuator("elbow cogging_torque 0").biasprm[1] == pytest.approx(HIDDEN.harmonic, rel=0.01)
     assert model.joint("shoulder").armature[0] < 1e-3
-
-
-def test_the_models_come_back_by_joint(arm):
-    joints = load_joints(arm / "robot_id" / "effects.toml")
-    assert list(joints) == ["shoulder", "elbow"]
-    assert [present.name for present in joints["elbow"].model.effects] == ["cogging_torque"]
 
 
 def test_the_page_shows_the_arm_moving_with_its_models(arm):
@@ -82,13 +82,6 @@ def test_the_page_shows_the_arm_moving_with_its_models(arm):
     assert curves["elbow"]["y"][0] < 1e-6 < 1e-4 < curves["elbow"]["y"][-1]
     windows = at < 10.0  # two of them, whole
     assert rms(np.array(curves["elbow"]["y"])) == pytest.approx(rms(runs["restarted every 5 s"][windows]), rel=0.1)
-
-
-def test_the_page_has_a_row_for_each_joint(arm):
-    page = json.loads((arm / "robot_id" / "report.json").read_text())
-    rows = page["sections"][0]["blocks"][0]["rows"]
-    assert [row[0] for row in rows] == ["shoulder", "elbow"]
-    assert rows[1][-1].startswith("Cogging torque: > 9")
 
 
 @pytest.mark.usefixtures("worker_processes")
