@@ -325,6 +325,7 @@ class Subject:
         reported: a recording, whose notes are printed with the result, or with why there is none.
         along: the robot along a log.
         options: of the command that select the joint.
+        selected: options that select the axis or joint, as a command has them.
     """
 
     rig: bench.Rig
@@ -334,6 +335,11 @@ class Subject:
     joint: str | None = None
     along: Callable[[Path], RobotAlong] | None = None
     options: dict[str, object] = field(default_factory=dict)
+    selected: tuple[str, ...] = ()
+
+    def command(self, verb: str, *words: object) -> str:
+        """A command for the same axis or joint, as it is typed."""
+        return typed(verb, *words, *self.selected)
 
     def provenance(
         self, traces: Sequence[Path], options: Mapping[str, object], holdout: Path | None = None
@@ -343,6 +349,11 @@ class Subject:
 
         rig, mjcf = self.files
         return provenance(rig, traces, {**options, **self.options}, holdout, mjcf)
+
+
+def typed(*words: object) -> str:
+    """A command of the bench as it is typed."""
+    return readable(shlex.join(["bench", *map(str, words)]))
 
 
 def subject(
@@ -370,13 +381,23 @@ def subject(
         return trace
 
     joint = next(iter(named), None)
+    options = (
+        ("--rig", rig),
+        ("--axis", axis),
+        ("--mjcf", mjcf),
+        ("--joint", joint),
+        *(("--at", one) for one in at or ()),
+    )
+    selected = tuple(str(word) for name, value in options if value is not None for word in (name, value))
     if mjcf is None:
         if joint is not None or at:
             raise InputError("--joint" if joint is not None else "--at", "found without --mjcf", "allowed: with --mjcf")
         if rig is not None and draft is not None:
             raise InputError("--draft", "found with --rig", "allowed: without, for the rig that is drafted then")
         known = _drafted(trace, axis, draft) if rig is None else bench.load_rig(rig).on_axis(axis)
-        return Subject(known, (rig, None), lambda path: reported(bench.read(path, known.trace)), reported)
+        return Subject(
+            known, (rig, None), lambda path: reported(bench.read(path, known.trace)), reported, selected=selected
+        )
     from bench.plant.robot import Robot, joint_rig, poses_along, read_log
 
     robot = Robot.of(mjcf, joint)
@@ -391,7 +412,7 @@ def subject(
 
         return RobotAlong(mjcf, robot.joint, within.gear_ratio, *poses_along(path, within, robot, stands))
 
-    return Subject(within, (rig, mjcf), read, reported, joint, along, {"joint": joint, "at": at or []})
+    return Subject(within, (rig, mjcf), read, reported, joint, along, {"joint": joint, "at": at or []}, selected)
 
 
 def _drafted(trace: Path | None, axis: str | None, draft: Path | None) -> bench.Rig:

@@ -77,7 +77,7 @@ def replay(
     of = common.subject(rig, axis_name, mjcf, joint, at, trace)
     replayed = None if trace is None else bench.replay(model, of.read(trace), of.rig)
     if replayed is not None and trace is not None:
-        out = _written(replayed, model, readable(trace.name), of.joint or ALONE, out, report)
+        out = _written(replayed, model, trace, of, out, report)
     if shown:
         _show(model, trace, replayed, of, profile, (start, stop), slowed, page, video)
     if replayed is not None and not (shown and out is None and report is None):
@@ -88,20 +88,31 @@ def replay(
 
 
 def _written(
-    replayed: Replay, model: Path, name: str, joint: str, out: Path | None, report: Path | None
+    replayed: Replay, model: Path, trace: Path, of: Subject, out: Path | None, report: Path | None
 ) -> Path | None:
     """Write signals and report of a replay; the file of signals."""
     if out is not None:
         out = common.file_in(out, "replay.csv")
         if out.suffix.lower() == ".mcap":
-            _joint_states(replayed, out, joint)
+            _joint_states(replayed, out, of.joint or ALONE)
         else:
             write_text(out, replayed.csv())
     if report is not None:
         from bench.report.simulation import replay as document_of
 
-        common.write_page(report, document_of(replayed, model, name))
+        moving = f"`{of.command('replay', model, trace, '--page', 'moving.html')}` shows it in motion."
+        document = document_of(replayed, model, readable(trace.name), _following(replayed, trace, of, moving))
+        common.write_page(report, document)
     return out
+
+
+def _following(replayed: Replay, trace: Path, of: Subject, good: str) -> str:
+    """What to do after a replay, which is `good` where model and recording match."""
+    from bench.report.simulation import matches
+
+    if matches(replayed):
+        return good
+    return f"`{of.command('diagnose', trace, '--out', 'found')}` searches for what the model is missing."
 
 
 def _joint_states(replayed: Replay, out: Path, joint: str) -> None:
@@ -141,10 +152,16 @@ def _show(
         with progress(f"rendering {video.name}") as done:
             write_video(video, shown, scene, slowed, done)
     if page is not None:
+        from bench.report.parts import NO_FURTHER
         from bench.report.simulation import view as document_of
 
         along = readable(profile if trace is None else trace.name)
-        common.write_page(page, document_of(shown, model, along, warnings, free, robot))
+        following = (
+            f"Record this motion; `{of.command('replay', model, 'motion.csv', '--page', 'moving.html')}` compares."
+        )
+        if replayed is not None and trace is not None:
+            following = _following(replayed, trace, of, NO_FURTHER)
+        common.write_page(page, document_of(shown, model, along, warnings, free, robot, following))
     common.warn(warnings)
 
 

@@ -52,7 +52,8 @@ def inspect(
     found = inspect_recording(recording, how)
     trace = None if found.asks is not None else assemble(recording, how)
     checks = () if trace is None else gate(trace, axis).checks
-    document = inspection(found, checks, trace)
+    selected = [word for name, value in (("--rig", rig), ("--axis", axis_name)) if value for word in (name, value)]
+    document = inspection(found, checks, trace, common.typed("identify", file, *selected))
     if draft is not None:
         from bench.rig.given import draft as drafted
 
@@ -297,12 +298,17 @@ def friction(
     from bench.friction_map import friction_map
     from bench.report.friction import SCHEMA, friction_json
     from bench.report.friction import friction as document_of
+    from bench.rig.rig import lacking
 
     of = common.subject(rig, axis_name, None, None, None, traces[0], draft)
     axis = of.rig
     with common.refusal_as_json(json, SCHEMA):
         found = friction_map([of.read(trace) for trace in traces], axis)
-    document = document_of(found, axis.name)
+    following = f"Record a motion that reverses: `{of.command('identify', 'motion.csv')}` determines its inertia too."
+    if rig is not None and not lacking(axis)["plan"]:
+        plan = common.typed("plan", "--rig", rig, "--out", "motion.csv")
+        following = f"`{plan}` writes a motion whose recording determines the inertia too."
+    document = document_of(found, axis.name, following)
     written = common.write_figure(out, document, lambda: document.pictures[0])
     common.write_page(report, document)
     common.write_json(json, lambda: friction_json(found))

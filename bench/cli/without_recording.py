@@ -67,7 +67,8 @@ def simulate(
     if report is not None:
         from bench.report.simulation import simulation
 
-        common.write_page(report, simulation(simulated, readable(out.name)))
+        how = ["diagnose", out, "--rig", rig, "--out", "found"] if present else ["identify", out, "--rig", rig]
+        common.write_page(report, simulation(simulated, readable(out.name), common.typed(*how)))
     common.list_files([out, truth, report])
     common.warn(simulated.warnings)
 

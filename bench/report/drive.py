@@ -55,6 +55,8 @@ COLD_FINDING = (
     "A cold winding has more voltage in reserve at speed, until it has warmed: do not plan with its peak reserve. It "
     "changes nothing where the magnets limit, nor for heat."
 )
+WITHIN = "Nothing: the motor can follow this motion."
+BEYOND = "Record the motion with less speed or acceleration, and run the same command for it."
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,8 @@ def limits(trace: Trace, rig: Rig) -> doc.Document:
         raise InputError(rig.source, f"gives the effort in {unit}", "the operating range needs it in N*m")
     name = readable(trace.origin).rpartition("/")[2]
     found = in_range(rig, trace["velocity"], np.asarray(effort), name)
-    least = min(value for key, (value, _) in found.numbers.items() if "reserve" in key)
+    reserves = {key: value for key, value in found.numbers.items() if "reserve" in key}
+    least = min(value for value, _ in reserves.values())
     values = ((name, value, unit) for name, (value, unit) in found.numbers.items())
     blocks = (values_table("Reserves and effective values", values, 4), found.chart)
     return doc.Document(
@@ -87,7 +90,12 @@ def limits(trace: Trace, rig: Rig) -> doc.Document:
         subject=f"Operating range of {rig.name}: {name}",
         verdict=f"The motion {'stays within' if least >= 0.0 else 'exceeds'} the motor's limits.",
         tone="sure" if least >= 0.0 else "refused",
-        answers={},
+        answers={
+            "How large is the reserve?": "; ".join(f"{name} {number(*value, 3)}" for name, value in reserves.items())
+            + ".",
+            "How sure?": "The limits are the datasheet's values, without tolerances of motor and supply.",
+            "What next?": WITHIN if least >= 0.0 else BEYOND,
+        },
         sections=(
             doc.section("findings", "Reserve", doc.points(found.findings)),
             doc.section("range", "Operating range", *blocks),

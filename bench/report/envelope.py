@@ -90,7 +90,9 @@ def _answers(found: Envelope, kind: AxisKind) -> Iterator[tuple[str, str]]:
         yield "Corner?", f"{interval(found.corner)}: above it the voltage limits the {kind.effort}."
     missing = [text for text, one in ((NEXT_PEAK, found.peak), (NEXT_VOLTAGE, found.no_load)) if one is None]
     if missing:
-        yield "What next?", f"For what is missing, {'; and '.join(missing)}: bench limits harder.csv."
+        yield "What next?", f"For what is missing, {'; and '.join(missing)}: `bench limits harder.csv`."
+    else:
+        yield "What next?", 'Copy the lines of "For simulators" into your model.'
 
 
 def _chart(found: Envelope, kind: AxisKind) -> doc.Chart:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import shlex
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,11 +24,11 @@ from bench.fleet.change_point import FEWEST, expected
 from bench.fleet.fleet import RESULTS, TABLE, Fleet
 from bench.fleet.store import Plain, Store
 from bench.fleet.summary import ALARM, STATUSES, AxisSummary, Changed, History, Summary
-from bench.names import counted, short, words
+from bench.names import counted, readable, short, words
 from bench.parameter import Parameter
 from bench.report import document as doc
 from bench.report.numbers import SPACE, brief, chance, listed, number, sentence, share
-from bench.report.parts import one_panel, parameters_table
+from bench.report.parts import MOVES, one_panel, parameters_table
 from bench.report.publish import write_html
 from bench.report.serial import as_json, picked, serialised
 
@@ -62,6 +63,19 @@ MEANT = {
     "failed": "stopped by an unexpected error; evaluated again with --retry",
     "timed_out": "no result within the deadline; evaluated again with --retry",
 }
+RETRY = "`--retry --deadline 600` evaluates what failed or timed out again, with more time."
+#: What to do about each concern; {} is the recording with its rig.
+NEXT = {
+    "failed": RETRY,
+    "timed_out": RETRY,
+    "missing": "Put the file in its place, and run the same command again.",
+    "refused": "`bench inspect {}` shows the recording; record what the reason states.",
+    "unexplained": "`bench diagnose {} --out found` searches for what is missing.",
+    "checks": "`bench inspect {}` shows what was recorded and every check.",
+}
+AGAIN = "Add the next recordings to the manifest, and run the same command again: only these are evaluated."
+#: Effects of a fleet that an answer lists.
+FIRST = 3
 
 
 def fleet_json(fleet: Fleet, provenance: Mapping[str, Any]) -> str:
@@ -143,7 +157,7 @@ def fleet_document(fleet: Fleet, provenance: Mapping[str, Any]) -> doc.Document:
         subject=f"Fleet {name}: {counted(len(fleet.manifest), 'recording')} of {counted(summary.axes, 'axis', 'axes')}",
         verdict=_verdict(summary),
         tone="refused" if summary.changed else "open" if summary.concerns or not summary.compared else "sure",
-        answers=_answers(summary, reasons),
+        answers={**_answers(summary, reasons), "What next?": pages.following(next(iter(summary.by_need())))},
         sections=doc.sections(
             doc.section("axes", "All axes", _dashboard(pages), detail=True),
             doc.section("people", "Axes that need attention", _people(summary, reasons)),
@@ -180,7 +194,15 @@ def _answers(summary: Summary, reasons: Mapping[str, Sequence[str]]) -> dict[str
             f"most {100.0 * ALARM:g} names an axis."
         )
     first = next((f"{short(axis, NAME)}: {why[0]}" for axis, why in reasons.items()), "Nobody")
-    return {"Who first?": f"{first}.", "How sure?": sure, "Recordings?": f"{counts}."}
+    axes = Counter(one.name for one in summary.shown).most_common()
+    missing = ", ".join(f"{words(name)} ({counted(count, 'axis', 'axes')})" for name, count in axes[:FIRST])
+    more = f" and {len(axes) - FIRST} more effects" if len(axes) > FIRST else ""
+    return {
+        "Who first?": f"{first}.",
+        **({"What was missing?": f"{sentence(missing)}{more}."} if missing else {}),
+        "How sure?": sure,
+        "Recordings?": f"{counts}.",
+    }
 
 
 def _reasons(summary: Summary) -> dict[str, list[str]]:
@@ -297,10 +319,22 @@ class FleetPages:
         return {column: self.fleet.manifest.text(column) for column in ("file", "time")}
 
     @cached_property
-    def commands(self) -> list[str]:
-        """What shows a recording with all that was measured (n,)."""
+    def recorded(self) -> list[str]:
+        """Each recording with its rig, as a command takes them (n,)."""
         places = zip(*(self.fleet.manifest.located(column) for column in ("file", "rig")), strict=True)
-        return [f"bench diagnose {shlex.quote(file)} --rig {shlex.quote(rig)} --out found" for file, rig in places]
+        return [readable(shlex.join((file, "--rig", rig))) for file, rig in places]
+
+    def following(self, axis: AxisSummary) -> str:
+        """What to do next about an axis."""
+        if axis.changed:
+            one = axis.changed[0]
+            command = f"bench diagnose {self.recorded[one.history.rows[one.step.place]]} --out found"
+            return f"`{command}` shows the first recording after the change with all that was measured."
+        if not axis.concerns:
+            return AGAIN
+        concern = axis.concerns[0]
+        latest = next(row for row in reversed(axis.rows) if self.text_of["file"][row] == concern.file)
+        return NEXT[concern.kind].replace("{}", self.recorded[latest])
 
     def axis_place(self, axis: str) -> str:
         """Where the page of an axis lies, in the folder of the fleet: names are any text."""
@@ -325,9 +359,10 @@ class FleetPages:
             answers["How sure?"] = f"{sentence(chance(max(one.chance for one in axis.changed)))} that nothing changed."
         if axis.shown:
             shown = (f"{words(one.name)} ({one.recordings} of {one.of}, since {one.since})" for one in axis.shown)
-            answers["Effects?"] = sentence(listed(shown))
+            answers["What was missing?"] = f"{sentence(listed(shown))}."
         for one in axis.concerns:
             answers[f"{sentence(words(one.kind))}?"] = f"{one.recordings} of {one.of} recordings: {one.reason}"
+        answers["What next?"] = self.following(axis)
         unchanged = "No change" if axis.histories else "Nothing to compare"
         return doc.Document(
             title=f"{short(axis.name, NAME)}: axis",
@@ -374,21 +409,19 @@ class FleetPages:
             warned.append(doc.table("Those that did not pass", ("check", "status", "found~", "advice~"), rows))
         name = self.recording_place(row).rpartition("/")[2].replace(".html", ".json")
         above = {name: "all of it", f"../../{self.axis_place(axis)}": "the axis", f"../../{FLEET}": "the fleet"}
-        graphs = (doc.Paragraph(text="With all that was measured, as graphs:"), doc.Code(text=self.commands[row]))
         good, digest = found["status"] == "done" and not found["checks"], found.get("trace_sha256")
-        noted = found["reason"] or f"{counted(len(found['checks']), 'check')} did not pass."
         return doc.Document(
             title=f"{short(file, NAME)}: recording of {short(axis, NAME)}",
             subject=f"Recording {short(file, NAME)} of axis {short(axis, NAME)}{when and f', {when}'}",
             verdict=_recording_verdict(found),
             tone="sure" if good else "open",
-            answers={} if good else {"Noted?": noted},
+            answers=_recording_answers(found, self.recorded[row]),
             sections=doc.sections(
                 doc.section("parameters", "Parameters", *([parameters_table("", values)] if values else [])),
                 doc.section("effects", "What was missing", *lacking),
                 doc.section("gap", "Residual", *([_gaps(found["gap"])] if found.get("gap") else [])),
                 doc.section("checks", "Checks and warnings", *warned),
-                doc.section("more", "More", *graphs, doc.neighbours(above)),
+                doc.section("more", "More", doc.neighbours(above)),
             ),
             origin=(self.origin, *([f"trace sha256 {digest}"] if digest else [])),
         )
@@ -454,6 +487,34 @@ def _recording_verdict(found: Plain) -> str:
             explained = found["explained"]
             known = "" if explained is None else f" and explain {share(explained)} of the effort"
             return f"Inertia and friction are known{known}."
+
+
+def _recording_answers(found: Plain, recorded: str) -> dict[str, str]:
+    """Of one recording, which a command takes as `recorded`."""
+    if found["status"] != "done":
+        return {"Why?": found["reason"], "What next?": NEXT[found["status"]].replace("{}", recorded)}
+    names, gaps = listed(words(one["name"]) for one in found.get("effects", ())), found.get("gap", {})
+    missing = "Not searched for: `--diagnose` of the same command does."
+    if "effects" in found:
+        missing = f"{sentence(names) or 'No effect of the catalogue'}."
+    large, moving = (_by_gap(gaps.get(name)) for name in ("torque", "velocity"))
+    return {
+        "What was missing?": missing,
+        "How sure?": "Half widths are those of 95 % intervals.",
+        **({"How large is the residual?": large} if large else {}),
+        **({MOVES: f"The simulated speed differs by {moving}"} if moving else {}),
+        **({"Noted?": f"{counted(len(found['checks']), 'check')} did not pass."} if found["checks"] else {}),
+        "What next?": f"`bench diagnose {recorded} --out found` shows it with all that was measured.",
+    }
+
+
+def _by_gap(gap: Plain | None) -> str:
+    """RMS residual, that before, and the noise floor; empty where none is known."""
+    if gap is None or gap["after"] is None:
+        return ""
+    before = "" if gap["before"] is None else f" ({number(gap['before'], digits=3)} before)"
+    floor = "" if gap["noise_floor"] is None else f"; the noise floor is {number(gap['noise_floor'], digits=3)}"
+    return f"{number(gap['after'], gap['unit'], 3)}{before}{floor}."
 
 
 def _gaps(gaps: Mapping[str, Plain]) -> doc.Table:

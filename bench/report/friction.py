@@ -48,8 +48,8 @@ def friction_json(found: FrictionMap) -> str:
     )
 
 
-def friction(found: FrictionMap, title: str) -> doc.Document:
-    """The document of a friction map of the axis that `title` names."""
+def friction(found: FrictionMap, title: str, following: str = "") -> doc.Document:
+    """The document of a friction map of the axis that `title` names; `following`: what to do next."""
     axes = {"The axis": _base(found), **({} if found.name is None else {sentence(words(found.name)): _effect(found)})}
     tables = [values_table(of, ((name, *value) for name, value in values.items())) for of, values in axes.items()]
     curves, left = _charts(found)
@@ -58,7 +58,7 @@ def friction(found: FrictionMap, title: str) -> doc.Document:
         subject=f"Friction of {title} over {found.velocity.size} steady speeds",
         verdict=_verdict(found),
         tone="sure",
-        answers=_answers(found),
+        answers=_answers(found) | ({"What next?": following} if following else {}),
         sections=(
             doc.section("curve", "Friction over speed", curves, left),
             doc.section("parameters", "Parameters", *tables),
@@ -108,15 +108,19 @@ def _answers(found: FrictionMap) -> dict[str, str]:
         chance = f"{words(found.best.name)} is best, {chance}"
     elif found.name is None:
         chance = "physics allows no effect here"
-    left = "None that steady speeds determine."
+    sure = f"{sentence(chance)}; named below {CHANCE:g}."
     if found.offset is None:
-        left = "A constant offset is counted in the effect: such recordings do not distinguish them."
+        sure += " A constant offset is counted in the effect: such recordings do not distinguish them."
+    before, after = found.unexplained
+    effect = "; ".join(f"{words(name)} {number(*value)}" for name, value in _effect(found).items())
     between = f"{number(speeds.min(), digits=3)} to {number(speeds.max(), found.kind.speed_unit, 3)}"
     return {
         "Friction?": friction,
-        "How sure?": f"{sentence(chance)}; named below {CHANCE:g}.",
+        "What was missing?": f"{sentence(words(found.name))} ({effect})." if found.name else "No effect of speed.",
+        "How sure?": sure,
+        "How large is the residual?": f"{share(before)} of the friction"
+        + (f" without the effect, {share(after)} with it." if found.name else "."),
         "From what?": f"{found.velocity.size} steady speeds, {between}.",
-        "What is open?": left,
     }
 
 

@@ -9,6 +9,7 @@ import base64
 import hashlib
 import json
 import math
+import re
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from bench.names import plain
 from bench.report.document import LARGEST, Chart, Document, Intervals, Moving, Panel, Series, Table, TimeGraph
@@ -103,6 +104,7 @@ def _environment() -> Environment:
     )  # fmt: skip
     found.filters.update(drawn=drawn, sketched=sketched, laid=laid, rail=rail)
     found.filters["deflated"] = _deflated
+    found.filters["coded"] = _coded
     found.filters["zipped"] = lambda text: _zipped(text.encode())
     found.filters["data"] = _data
     found.filters["link"] = lambda file: f"data:{file.media};base64,{base64.b64encode(file.content.encode()).decode()}"
@@ -112,6 +114,12 @@ def _environment() -> Environment:
 def _shown(value: Any) -> Any:  # noqa: ANN401 - whatever a template prints
     """Text with the characters written out that would turn the direction of what follows."""
     return plain(value) if type(value) is str else value
+
+
+def _coded(text: str) -> Markup:
+    """Text for a page, in which what is between backticks is code."""
+    parts = (escape(_shown(part)) for part in re.split(r"`([^`]+)`", text))
+    return Markup("".join(f"<code>{part}</code>" if place % 2 else part for place, part in enumerate(parts)))
 
 
 def _data(drawing: TimeGraph | Moving) -> Markup:

@@ -14,7 +14,7 @@ from bench.errors import InputError
 from bench.gate.check import Check
 from bench.names import counted, readable, words
 from bench.report import document as doc
-from bench.report.numbers import number, share, unit_text
+from bench.report.numbers import number, sentence, share, unit_text
 from bench.report.over_time import Grid
 from bench.report.parts import checks_section, origin
 from bench.trace.channel import Channel, Recording
@@ -30,12 +30,15 @@ MOST_HOLES = 20
 MOST = 16
 
 
-def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | None = None) -> doc.Document:
+def inspection(
+    found: Inspection, checks: Sequence[Check] = (), trace: Trace | None = None, command: str = "bench identify"
+) -> doc.Document:
     """The document of an inspection.
 
     Args:
         checks: what the gate found; () of a recording that is not read.
         trace: the recording as it is read; None where `found.asks` is set.
+        command: that identifies what was recorded.
     """
     name, (verdict, tone) = readable(Path(found.origin).name), _verdict(found, checks)
     rest = [column for column in found.columns if not column.read]
@@ -46,7 +49,7 @@ def inspection(found: Inspection, checks: Sequence[Check] = (), trace: Trace | N
         subject=f"Inspection of {name} ({found.format})",
         verdict=verdict,
         tone=tone,
-        answers=dict(_answers(found)),
+        answers={**dict(_answers(found)), "What next?": _next(found, checks, command)},
         sections=doc.sections(
             doc.section("signals", "Signals", *signals),
             doc.section("asked", "What to write", *_what_to_write(found)),
@@ -134,6 +137,20 @@ def _answers(found: Inspection) -> Iterator[tuple[str, str]]:
         yield "What is not used?", ", ".join(found.dropped)
 
 
+def _next(found: Inspection, checks: Sequence[Check], command: str) -> str:
+    """What lets the recording be read, what to repair in it, or the command that identifies it."""
+    if found.asks is not None:
+        return f"`{_of_first(found)}`" if _of_axes(found) else f"{sentence(found.asks)}."
+    if failed := [check for check in checks if check.status == "fail"]:
+        return f"{sentence(failed[0].advice or failed[0].found)}."
+    return f"`{command}` determines inertia and friction."
+
+
+def _of_first(found: Inspection) -> str:
+    """The command that inspects the first axis."""
+    return shlex.join(["bench", "inspect", readable(found.origin), "--axis", found.axes[0]])
+
+
 def _lost(found: Inspection) -> str:
     holes = [f"{number(duration, 's', 3)} at {number(start, 's')}" for start, duration in found.holes[:MOST_HOLES]]
     more = len(found.holes) - len(holes)
@@ -184,9 +201,7 @@ def _what_to_write(found: Inspection) -> Iterator[doc.AnyPart]:
     if found.asks is not None:
         yield doc.Paragraph(text=f"{found.asks}.")
         if _of_axes(found):
-            yield doc.Code(
-                text=f"bench inspect {shlex.quote(readable(found.origin))} --axis {shlex.quote(found.axes[0])}"
-            )
+            yield doc.Code(text=_of_first(found))
         elif found.suggestions:
             yield doc.Paragraph(text="Likely, for the rig file:")
             yield doc.Code(text="\n".join(("[trace.columns]", *found.suggestions)))

@@ -141,8 +141,6 @@ def _answers(found: IdentifiedRobot) -> dict[str, str]:
     """What was missing, how sure and how large, whether the joints move like the robot, and what to record next."""
     known = {name: joint.diagnosis for name, joint in found.joints.items() if joint.diagnosis is not None}
     fitted = {name: servo_answers(joint.servo) for name, joint in found.joints.items() if joint.servo is not None}
-    if not known and not fitted:
-        return {}
     named = {name: one for name, one in known.items() if one.effects}
     texts: dict[str, dict[str, str]] = {
         "What was missing?": {
@@ -160,7 +158,7 @@ def _answers(found: IdentifiedRobot) -> dict[str, str]:
     for name, own in fitted.items():
         for question, text in own.items():
             texts.setdefault(question, {})[name] = text
-    none = {"What was missing?": "No missing effect found.", "What next?": NO_FURTHER}
+    none = {"What was missing?": "No missing effect found.", "What next?": NO_FURTHER} if known or fitted else {}
     answers = {question: _by_joint(of) or none.get(question, "") for question, of in texts.items()}
     return {question: text for question, text in answers.items() if text}
 

@@ -20,7 +20,7 @@ from bench.plant.simulate import Simulated
 from bench.report import document as doc
 from bench.report.numbers import effort_word, number, sentence, share, unit_text
 from bench.report.over_time import Plotted, in_steps, time_graph
-from bench.report.parts import MOVES, model_sections, one_panel, origin, values_table
+from bench.report.parts import MOVES, NO_FURTHER, model_sections, one_panel, origin, values_table
 from bench.report.robot_drawing import robot_drawing
 from bench.trace.noise import white_noise
 from bench.view.free_running import BARE, HELD, HORIZONS, FreeRun
@@ -37,8 +37,8 @@ DRAWN = 300
 SLOWED: tuple[doc.Slowed, ...] = get_args(doc.Slowed)
 
 
-def simulation(simulated: Simulated, name: str) -> doc.Document:
-    """The document of a simulated recording of a name."""
+def simulation(simulated: Simulated, name: str, following: str = "") -> doc.Document:
+    """The document of a simulated recording of a name; `following`: the command that shows what it determines."""
     truth, trace = simulated.truth, simulated.trace
     kind, values = truth.parameters.kind, dict[str, list[tuple[str, float, str]]]()
     for present in truth.effects:
@@ -73,6 +73,8 @@ def simulation(simulated: Simulated, name: str) -> doc.Document:
             f"{kind.in_words(INERTIA).capitalize()}?": number(truth.parameters.inertia, kind.inertia_unit, 5),
             "What is hidden?": "; ".join(effects) or "Nothing beyond inertia and friction.",
             "Where is the friction?": f"In the {truth.friction}.",
+            "How sure?": "These values are exact; the recorded signals have the noise and resolution of the sensors.",
+            **({"What next?": f"`{following}`; compare its result with these values."} if following else {}),
         },
         sections=doc.sections(
             doc.section("warnings", "Warnings", *([doc.points(simulated.warnings)] if simulated.warnings else [])),
@@ -103,8 +105,16 @@ def _recorded(simulated: Simulated) -> doc.TimeGraph:
     return time_graph("Over time.", alternative, trace.time, signals)
 
 
-def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
-    """The document of a model's file that was run along a recording of a name.
+def matches(replayed: Replay) -> bool:
+    """Whether a model explains a recording and moves as it does, and nothing speaks against it."""
+    torque = _residual(replayed.torque, replayed.torque_simulated)[0]
+    speed = _residual(replayed.velocity, replayed.velocity_simulated)[1]
+    differs = speed > NULL * white_noise(replayed.velocity)  # not of a model that contains no motion
+    return torque < LEFT and not differs and not replayed.warnings
+
+
+def replay(replayed: Replay, model: Path, along: str, following: str = NO_FURTHER) -> doc.Document:
+    """The document of a model's file that was run along a recording of a name; `following`: what to do next.
 
     Raises:
         InputError: the model cannot be read.
@@ -125,6 +135,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         f"How large is the residual {effort}?": f"{number(torque[1], replayed.effort_unit, 3)} RMS",
         MOVES: moves,
         "Is it this axis?": " ".join(replayed.warnings) or "Nothing speaks against it.",
+        "What next?": following,
     }
     both = {
         ("speed", replayed.speed_unit): (replayed.velocity, replayed.velocity_simulated),
@@ -138,7 +149,7 @@ def replay(replayed: Replay, model: Path, along: str) -> doc.Document:
         title=title,
         subject=f"Replay: {title}",
         verdict=f"{line}.",
-        tone="sure" if torque[0] < LEFT and not replayed.warnings else "open",
+        tone="sure" if matches(replayed) else "open",
         answers=answers,
         sections=doc.sections(motion, *model_sections(model, replayed.warnings)),
         origin=origin(None),
@@ -161,10 +172,11 @@ def view(
     warnings: Sequence[str] = (),
     free: FreeRun | None = None,
     robot: RobotAlong | None = None,
+    following: str = NO_FURTHER,
 ) -> doc.Document:
     """The document of a model's file in motion with its ghost, along a recording or profile of a name.
 
-    `free` is how far off it runs by itself; a robot is drawn in place of the axis.
+    `free` is how far off it runs by itself; a robot is drawn in place of the axis. `following`: what to do next.
 
     Raises:
         InputError: the model cannot be read.
@@ -177,6 +189,7 @@ def view(
         "What moves?": shown.simulated_is,
         "How large is the difference?": f"{number(rms(apart), kind.length_unit, 3)} RMS, {furthest} at most",
         **({} if free is None else {"And free-running?": _after(free, kind)}),
+        "What next?": following,
     }
     both = {
         ("speed", kind.speed_unit): (shown.ghost_velocity, shown.velocity),

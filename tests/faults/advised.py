@@ -33,6 +33,16 @@ def two_axes():
     return "\n".join([head, *(f"{t!r},{w!r},{i!r},{w / 2!r},{i / 2!r}" for t, w, i in rows)]) + "\n"
 
 
+def steady(speed):
+    """The plain axis at one speed - rad/s."""
+    time = 1e-3 * np.arange(200)
+    rng = np.random.default_rng([int(100 * abs(speed)), speed > 0])
+    torque = 8e-4 * speed + 0.06 * np.sign(speed) + 2e-3 * rng.normal(size=time.size)
+    return csv_of(time, speed + 0.03 * rng.normal(size=time.size), torque / 0.8)
+
+
+#: Recordings at steady speeds, by name.
+SPEEDS = {f"at{k}.csv": steady(w) for k, w in enumerate(np.outer((-1, 1), np.geomspace(0.5, 60, 8)).ravel().tolist())}
 #: Files by name: text.
 FILES = {
     "log.csv": TABLE,
@@ -55,6 +65,12 @@ FILES = {
     "beaten.csv": disturbed(beat=1.7),
     "beaten_weight.csv": disturbed(weight=3.0, beat=4.5),
     "pushed.csv": disturbed(push=-0.5),
+    "refused.csv": "file,rig,axis,time\nno_effort.csv,rig.toml,a,2026-01-01\nlog.csv,rig.toml,b,2026-01-01\n",
+    "checked.csv": "file,rig,axis,time\nbare.csv,rig.toml,a,2026-01-01\n",
+    "bare.csv": headed("time,velocity,current"),
+    "motion.csv": TABLE,
+    "harder.csv": TABLE,
+    **SPEEDS,
     "slow.toml": RIG + '[trace]\nsample_period = "2 ms"\n',
 }
 
@@ -93,6 +109,21 @@ CASES = [
     "bench robot joint_log.csv --mjcf legged.xml --out legged",
     "bench export joints.toml --to mjlab --out actuators.py --with-assets",
     "bench fleet pendulum.csv --out fleet",
+    "bench fleet pendulum.csv --out fleet --diagnose",
+    "bench fleet manifest.csv --out fleet",
+    "bench fleet refused.csv --out fleet",
+    "bench fleet checked.csv --out fleet",
+    "bench fleet manifest.csv --out fleet --deadline 0.1",
+    "bench simulate sh30701p --profile fast_reversals --out run.csv --report run.html",
+    "bench simulate sh30701p --profile fast_reversals --out run.csv --effect unbalance:amplitude=0.3 --report run.html",
+    f"bench friction {' '.join(SPEEDS)} --rig rig.toml",
+    f"bench friction {' '.join(SPEEDS)} --rig sh30701p",
+    "bench replay found/model.toml log.csv --rig rig.toml --report replay.html",
+    "bench replay found/model.toml swing.csv --rig rig.toml --page moving.html",
+    "bench replay found/model.toml --rig sh30701p --profile fast_reversals --page moving.html",
+    "bench inspect log.csv --rig rig.toml",
+    "bench inspect two_axes.csv",
+    "bench limits log.csv --rig rig.toml",
     "bench identify log.csv --rig rig.toml --max-size 1kB",
     "bench identify swing.csv --rig rig.toml",
     "bench identify weight.csv --rig rig.toml",

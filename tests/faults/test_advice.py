@@ -14,6 +14,7 @@ import shutil
 import tomllib
 from dataclasses import dataclass
 from difflib import get_close_matches
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -25,21 +26,30 @@ from tests.faults.advised import CASES, FILES, MADE
 from tests.sources import ROOT, SOURCES, nodes
 
 ADVICE = re.compile(r"`((?:bench |--|\[)[^`]*)`")
+ANSWERS = re.compile(r'<dl class="answers".*?</dl>', re.DOTALL)
 MEANT = re.compile(r"did you mean '([^']*)'\?")
 TABLE = re.compile(r"\[([\w.]+)\]\s*(.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Said:
-    """What a command printed: its status and its text, white space folded."""
+    """What a command printed, and the answers of pages that it wrote: its status and its text, white space folded."""
 
     status: int
     text: str
 
 
 def run(command: str) -> Said:
+    before = {*Path().rglob("*.html")}
     done = bench(*shlex.split(command)[1:])
-    return Said(done.status, " ".join((done.err + done.out).split()))
+    pages = sorted({*Path().rglob("*.html")} - before)
+    return Said(done.status, " ".join((done.err + done.out + "".join(map(answers, pages))).split()))
+
+
+def answers(page: Path) -> str:
+    """Of a page, as text, with the backticks of what it shows as code."""
+    found = "".join(ANSWERS.findall(page.read_text(encoding="utf-8")))
+    return unescape(re.sub(r"<[^>]*>", " ", re.sub(r"</?code>", "`", found)))
 
 
 def with_option(command: str, option: str) -> str:
@@ -74,7 +84,7 @@ def merge(into: dict, more: dict) -> dict:
 def follow(command: str, said: Said) -> list[tuple[str, Said]]:
     """Carry out all that a message advises: each with what it led to."""
     done = []
-    for advice in ADVICE.findall(said.text):
+    for advice in dict.fromkeys(ADVICE.findall(said.text)):
         if re.fullmatch(r"bench \w+", advice):
             next_command = " ".join(["bench", advice.removeprefix("bench "), *command.split()[2:]])
         elif advice.startswith("bench "):
