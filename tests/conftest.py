@@ -107,8 +107,8 @@ def opening(browser):
         page.on("dialog", lambda dialog: (complaints.append(f"dialog {dialog.message}"), dialog.dismiss()))
         page.on("requestfailed", lambda request: complaints.append(f"asked for {request.url[:80]}"))
         page.goto(path.resolve().as_uri())
-        drawn = "[...document.querySelectorAll('.graph')].every((graph) => graph.querySelector('canvas'))"
-        page.wait_for_function(drawn)  # its numbers are unpacked in turns of their own
+        undrawn = page.locator("[data-folded], .graph:not(:has(canvas))")
+        undrawn.first.wait_for(state="detached")  # its numbers are unpacked in turns of their own
         return page
 
     yield open_page

@@ -356,6 +356,12 @@ def typed(*words: object) -> str:
     return readable(shlex.join(["bench", *map(str, words)]))
 
 
+def selecting(**options: object) -> tuple[str, ...]:
+    """Options that are given, as a command has them, those of several values once for each."""
+    values = {name: value if isinstance(value, list) else [value] for name, value in options.items()}
+    return tuple(str(word) for name in values for one in values[name] if one is not None for word in (f"--{name}", one))
+
+
 def subject(
     rig: Path | None,
     axis: str | None,
@@ -381,14 +387,7 @@ def subject(
         return trace
 
     joint = next(iter(named), None)
-    options = (
-        ("--rig", rig),
-        ("--axis", axis),
-        ("--mjcf", mjcf),
-        ("--joint", joint),
-        *(("--at", one) for one in at or ()),
-    )
-    selected = tuple(str(word) for name, value in options if value is not None for word in (name, value))
+    selected = selecting(rig=rig, axis=axis, mjcf=mjcf, joint=joint, at=at)
     if mjcf is None:
         if joint is not None or at:
             raise InputError("--joint" if joint is not None else "--at", "found without --mjcf", "allowed: with --mjcf")

@@ -52,8 +52,8 @@ def inspect(
     found = inspect_recording(recording, how)
     trace = None if found.asks is not None else assemble(recording, how)
     checks = () if trace is None else gate(trace, axis).checks
-    selected = [word for name, value in (("--rig", rig), ("--axis", axis_name)) if value for word in (name, value)]
-    document = inspection(found, checks, trace, common.typed("identify", file, *selected))
+    command = common.typed("identify", file, *common.selecting(rig=rig, axis=axis_name))
+    document = inspection(found, checks, trace, command)
     if draft is not None:
         from bench.rig.given import draft as drafted
 

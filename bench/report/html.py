@@ -23,15 +23,24 @@ from markupsafe import Markup, escape
 
 from bench.names import plain
 from bench.report.document import LARGEST, Chart, Document, Intervals, Moving, Panel, Series, Table, TimeGraph
-from bench.report.over_time import coarser
+from bench.report.over_time import coarser, thinned
 
 if TYPE_CHECKING:  # 0.05 s, which only a page has to pay
     from jinja2 import Environment
 
-#: Bytes of a page at most, where its graphs over time then have so many intervals: one for each three pixels.
+#: Bytes of a page at most, and intervals that its graphs over time have at least: one for each three pixels.
 PAGE, COARSEST = 600_000, 400
-#: How many times fewer intervals each trial has.
-FEWER = 1.2
+#: The same, and instants of a motion at most, on a page of so much that its sections are folded.
+FOLDED, INSTANTS = 50, 200
+#: How many times fewer intervals each trial has at least.
+FEWER = 1.1
+#: A section of a page: its heading, and what is below it; and the data of a drawing there.
+SECTION = re.compile(r"(<section [^>]*>\n<h2[^>]*>[^<]*</h2>)(.*?)(</section>)", re.DOTALL)
+DRAWING = re.compile(r'(<script type="application/json">)(.*?)(?=</script>)', re.DOTALL)
+
+#: Paths of a chart, and its bins.
+PATH, BINS = re.compile(r'(?<= d=")[^"]+'), re.compile(r'(?<= data-bins=")[^"]+')
+NEEDS_SCRIPT = "This section needs JavaScript; the tables above and the files of the folder contain its numbers."
 
 
 def html(document: Document, script: str | None = None) -> str:
@@ -39,17 +48,59 @@ def html(document: Document, script: str | None = None) -> str:
 
     `script`: address, as seen from the page, of the script file that it shares with others; without, it is in the page.
     """
-    page = _rendered(document, script)
-    if (size := len(page.encode())) <= PAGE:
+    page, intervals = _rendered(document, script), _intervals(document)
+    if _size(page) <= PAGE or not intervals:
         return page
-    intervals = _intervals(document)
-    room = max(PAGE - size + intervals, 1)
-    most = max((graph.count for graph in document.blocks if isinstance(graph, TimeGraph)), default=0) // COARSEST
-    times, thinner = max(intervals // room, 1), document
-    while times < most and _intervals(thinner) > room:
-        times = min(math.ceil(FEWER * times), most)
+    rest = _size(page) - intervals
+    thinner = _fitting(document, rest, COARSEST)
+    if rest + _intervals(thinner) <= PAGE:
+        return _rendered(thinner, script)
+    moving = [block for block in document.blocks if isinstance(block, Moving)]
+    frames = max((math.ceil(one.count / INSTANTS) for one in moving), default=1)
+    rest = _size(_folded(page)) - intervals - sum(len(_data(one)) - len(_data(thinned(one, frames))) for one in moving)
+    return _folded(_rendered(_fitting(thinned(document, frames), rest, FOLDED), script))
+
+
+def _size(page: str) -> int:
+    return len(page.encode())
+
+
+def _fitting(document: Document, rest: int, least: int) -> Document:
+    """The document with as many intervals as a page with so many other bytes has room for, but `least` in the longest
+    graph.
+    """
+    room, intervals, times, thinner = max(PAGE - rest, 1), _intervals(document), 1, document
+    most = max((graph.count for graph in document.blocks if isinstance(graph, TimeGraph)), default=0) // least
+    while intervals > room and times < most:
+        times = min(math.ceil(times * max(FEWER, intervals / room)), most)
         thinner = coarser(document, times)
-    return page if thinner is document else _rendered(thinner, script)
+        intervals = _intervals(thinner)
+    return thinner
+
+
+def _folded(page: str) -> str:
+    """The page with all but its first section deflated together, from which its script makes them again.
+
+    Numbers of charts come behind all other text. What is deflated already is not deflated again: bins of charts come
+    behind that, and the data of drawings stay in their sections.
+    """
+    texts, paths, bins = list[str](), list[str](), list[str]()
+
+    def fold(section: re.Match[str]) -> str:
+        head, below, end = section.groups()
+        text = DRAWING.sub(r"\1", below)
+        for numbers, of, place in ((paths, PATH, "\1"), (bins, BINS, "\2")):
+            numbers.extend(of.findall(text))
+            text = of.sub(place, text)
+        texts.append(text)
+        data = "".join(f"{start}{content}</script>" for start, content in DRAWING.findall(below))
+        return f"{head}<div data-folded></div><noscript><p>{NEEDS_SCRIPT}</p></noscript>{data}{end}"
+
+    start = page.index("</section>") + len("</section>")
+    rest = SECTION.sub(fold, page[start:])
+    content = " ".join([_zipped("\0".join([*texts, *paths]).encode()), *bins])
+    folded = f'<script type="text/plain" class="folded">{content}</script>'
+    return page[:start] + rest.replace("<footer>", f"{folded}\n<footer>", 1)
 
 
 def _intervals(document: Document) -> int:
@@ -81,10 +132,11 @@ def program(drawing: bool = True, moving: bool = True) -> str:
     """The page's own scripts, for inside of a page or for a file of its own: with uPlot for graphs over time, and with
     what moves a drawing.
     """
-    parts = [("assets", "inflated.js"), ("assets", "seek.js")]
+    parts = [("assets", "seek.js")]
     parts += [("uplot", "uPlot.iife.min.js"), ("assets", "page.js")] if drawing else []
     parts += [("assets", "motion.js")] if moving else []
-    return "\n".join(_asset(*part) for part in parts)
+    body = "\n".join(_asset(*part) for part in parts)
+    return f"{_asset('assets', 'inflated.js')}\nunfolded.then(() => {{\n{body}\n}});"
 
 
 @cache

@@ -9,15 +9,27 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.arrays import Array
-from bench.report.document import Panel, Part, Samples, TimeCurve, TimeGraph, TimePanel, packed
+from bench.report.document import (
+    ModelRun,
+    Moving,
+    Panel,
+    Part,
+    RobotDrawing,
+    Samples,
+    TimeCurve,
+    TimeGraph,
+    TimePanel,
+    packed,
+)
 from bench.report.numbers import unit_text
 
 Values = NDArray[np.floating]
@@ -163,12 +175,7 @@ def numbers_over(graph: TimeGraph, time: Array, values: NDArray[np.integer]) -> 
 
 def coarser(part: AnyOf, times: int) -> AnyOf:
     """A document, or a part of one, whose graphs over time have intervals that are so many times as long."""
-    fields: dict[str, Any] = {}
-    for name, value in part:
-        if isinstance(value, Part):
-            fields[name] = coarser(value, times)
-        elif isinstance(value, tuple):
-            fields[name] = tuple(coarser(one, times) if isinstance(one, Part) else one for one in value)
+    fields = _within(part, partial(coarser, times=times))
     match part:
         case TimeGraph():
             fields["start"] = part.start + 0.5 * (times - 1) * part.step
@@ -178,6 +185,38 @@ def coarser(part: AnyOf, times: int) -> AnyOf:
         case Panel() if part.bins is not None:
             fields["bins"] = packed(_runs(part.bins, times)[:, times // 2], "<i2")
     return part.model_copy(update=fields)
+
+
+def thinned(part: AnyOf, every: int) -> AnyOf:
+    """A document, or a part of one, whose motions have one of so many instants."""
+    fields = _within(part, partial(thinned, every=every))
+    match part:
+        case Moving():
+            position = np.frombuffer(base64.b64decode(part.position), "<f4")[::every]
+            fields |= {"step": every * part.step, "count": position.size, "position": packed(position)}
+        case ModelRun():
+            fields |= {"apart": _some(part.apart, every), "others": tuple(_some(one, every) for one in part.others)}
+        case RobotDrawing():
+            fields |= {"step": every * part.step, "poses": tuple(_some(one, every) for one in part.poses)}
+    return part.model_copy(update=fields)
+
+
+def _within(part: Part, change: Callable[[Part], Part]) -> dict[str, Any]:
+    """Fields of a part that are parts themselves, each changed."""
+    fields: dict[str, Any] = {}
+    for name, value in part:
+        if isinstance(value, Part):
+            fields[name] = change(value)
+        elif isinstance(value, tuple):
+            fields[name] = tuple(change(one) if isinstance(one, Part) else one for one in value)
+    return fields
+
+
+def _some(samples: Samples, every: int) -> Samples:
+    """One of so many values."""
+    return samples.model_copy(
+        update={"low": packed(np.frombuffer(base64.b64decode(samples.low), "<i2")[::every], "<i2")}
+    )
 
 
 def _joined(samples: Samples, times: int) -> Samples:

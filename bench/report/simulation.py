@@ -134,7 +134,7 @@ def replay(replayed: Replay, model: Path, along: str, following: str = NO_FURTHE
     answers = {
         f"How large is the residual {effort}?": f"{number(torque[1], replayed.effort_unit, 3)} RMS",
         MOVES: moves,
-        "Is it this axis?": " ".join(replayed.warnings) or "Nothing speaks against it.",
+        "Is it this axis?": sentence(" ".join(replayed.warnings)) or "Nothing speaks against it.",
         "What next?": following,
     }
     both = {
@@ -201,7 +201,6 @@ def view(
     ]
     alternative = f"Speed and position as {shown.ghost_is} and simulated; a line goes along with the drawing above."
     graph = time_graph("Over time.", alternative, shown.time, signals)
-    let_free = [] if free is None else _let_free(free, kind)
     return doc.Document(
         title=title,
         subject=f"View: {title}",
@@ -211,7 +210,7 @@ def view(
         sections=doc.sections(
             doc.section("moving", "Moving", motion_of(shown, robot)),
             doc.section("motion", "Over time", graph),
-            doc.section("free", "Free-running simulation", *let_free),
+            doc.section("free", "Free-running simulation", *([] if free is None else _let_free(free, kind))),
             *model_sections(model, warnings),
         ),
         origin=origin(None),
