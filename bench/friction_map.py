@@ -26,6 +26,7 @@ from bench.errors import InputError, UndeterminedError
 from bench.gate.check import Check
 from bench.gate.gate import STEADY as STEADY_CHECKS
 from bench.gate.gate import joined, passed
+from bench.presented import ByName
 from bench.rig.given import Given, GivenRig, Units, recordings_of
 from bench.rig.rig import Rig
 from bench.trace.motion import measured_velocity
@@ -71,7 +72,7 @@ class FrictionCurve:
 
 
 @dataclass(frozen=True)
-class FrictionMap:
+class FrictionMap(ByName):
     """What a map of friction over speed shows.
 
     Attributes:

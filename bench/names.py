@@ -8,6 +8,7 @@ import os
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import wraps
+from numbers import Integral, Real
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
@@ -64,6 +65,21 @@ INSTEAD = {
     "x=": 'plot("velocity"): all signals are over time',
     "y=": 'plot("velocity")',
 }
+#: Types by the words of annotations, and in words.
+_KINDS: dict[str, tuple[type, str]] = {
+    "None": (type(None), "None"),
+    "bool": (bool, "True or False"),
+    "int": (Integral, "a whole number"),
+    "float": (Real, "a number"),
+    "str": (str, "a text"),
+    "Path": (os.PathLike, "a path"),
+    "Collection": (Collection, "several in a list"),
+    "Mapping": (Mapping, "a dictionary"),
+    "Sequence": (Sequence, "several in a list"),
+    "Size": (tuple, "width and height in inch, e.g. (7, 4)"),
+}
+#: The innermost brackets of an annotation.
+_WITHIN = re.compile(r"\[[^][]*\]")
 _NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?([eE][+-]?\d+)?")
 
 
@@ -125,6 +141,8 @@ def meant(name: str, known: Mapping[str, T]) -> T:
 
     `inertia` or `J` is the moment of inertia, `coulomb_friction` or `K_0` the Coulomb friction torque.
     """
+    if not isinstance(name, str):
+        raise KeyError(f"found {name!r}; allowed: one of {', '.join(map(str, known)) or 'none'}")
     if name not in known:
         alike = [each for each in known if _telling(each) == _telling(_SYMBOLS.get(name, name))]
         if len(alike) != 1:
@@ -147,7 +165,7 @@ def same_as(name: str, known: Collection[str]) -> str | None:
 def instead(name: str, known: Sequence[str]) -> str:
     """What does the same as an attribute or argument that is not there, or the nearest, and all that are."""
     other = f"; instead: {INSTEAD[name]}" if name in INSTEAD else nearest(name.rstrip("="), [*known])
-    return f"{other}; allowed: {', '.join(known)}"
+    return f"{other}; allowed: {', '.join(known) or 'no argument'}"
 
 
 def nearest(name: str, names: list[str]) -> str:
@@ -157,14 +175,51 @@ def nearest(name: str, names: list[str]) -> str:
 
 
 def with_known_arguments(function: Callable[P, T]) -> Callable[P, T]:
-    """The function, whose TypeError for an argument that it does not have is one line with those that it has."""
-    known = [name for name in inspect.signature(function).parameters if name != "self"]
+    """The function, whose error for an argument that it does not take is one line with those that it takes."""
 
     @wraps(function)
     def called(*args: P.args, **given: P.kwargs) -> T:
-        for name in given:
-            if name not in known:
-                raise TypeError(f"{function.__name__}() has no argument '{name}'{instead(f'{name}=', known)}")
-        return function(*args, **given)
+        try:
+            return function(*args, **given)
+        except (AttributeError, TypeError, ValueError) as error:
+            said = mistake(function, args, given)
+            if said is None:
+                raise
+            raise TypeError(said) from error
 
     return called
+
+
+def mistake(function: Callable[..., object], args: Sequence[object], given: Mapping[str, object]) -> str | None:
+    """What is wrong with the arguments of a call, by the function's signature; None where nothing is."""
+    signature = inspect.signature(function)
+    known = [name for name in signature.parameters if name not in ("self", "cls")]
+    name = function.__name__ if function.__name__ != "__init__" else function.__qualname__.split(".")[-2]
+    takes_any = any(each.kind is each.VAR_KEYWORD for each in signature.parameters.values())
+    for argument in () if takes_any else given:
+        if argument not in known:
+            return f"{name}() has no argument '{argument}'{instead(f'{argument}=', known)}"
+    try:
+        bound = signature.bind(*args, **given)
+    except TypeError as error:
+        return f"{name}(): {error}; allowed: {', '.join(known) or 'no argument'}"
+    for argument, value in bound.arguments.items():
+        kinds = _kinds(signature.parameters[argument], getattr(inspect.unwrap(function), "__globals__", {}))
+        if kinds and not isinstance(value, tuple(kind for kind, _ in kinds)):
+            allowed = " or ".join(word for _, word in kinds)
+            return f"{name}(): {argument}: found {short(repr(value), 60)}; allowed: {allowed}"
+    return None
+
+
+def _kinds(parameter: inspect.Parameter, known: Mapping[str, object]) -> list[tuple[type, str]]:
+    """Types that an annotation names, each in words; none of one that names anything else."""
+    found = []
+    outer = _WITHIN.sub("", _WITHIN.sub("", str(parameter.annotation)))
+    for word in map(str.strip, outer.split("|")):
+        module, _, name = word.rpartition(".")
+        kind = _KINDS.get(word) or (getattr(known.get(module), name, known.get(word)), f"a {word}")
+        protocol = getattr(kind[0], "_is_protocol", False)
+        if parameter.kind is parameter.VAR_POSITIONAL or protocol or not isinstance(kind[0], type):
+            return []
+        found.append(kind)
+    return found

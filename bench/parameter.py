@@ -12,6 +12,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import DTypeLike, NDArray
 
 from bench.arrays import NORMAL95
+from bench.names import short
 from bench.presented import ByName
 
 #: Level of the interval that is reported.
@@ -53,8 +54,13 @@ class Parameter(ByName, NDArrayOperatorsMixin):
         return np.array(self.value, dtype=dtype)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: object) -> Any:  # noqa: ANN401
-        values = (one.value if isinstance(one, Parameter) else one for one in inputs)
-        return getattr(ufunc, method)(*values, **options)
+        values = tuple(one.value if isinstance(one, Parameter) else one for one in inputs)
+        try:
+            return getattr(ufunc, method)(*values, **options)
+        except TypeError as error:
+            found = " and ".join(short(repr(one), 40) for one in inputs if one is not self)
+            allowed = f"allowed: numbers and arrays in {self.unit}"
+            raise TypeError(f"{ufunc.__name__} of a parameter: found {found}; {allowed}") from error
 
     def __str__(self) -> str:
         if self.lopsided:

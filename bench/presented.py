@@ -6,13 +6,15 @@ The public package `bench` provides the renderer, as it is above both results an
 from __future__ import annotations
 
 from abc import ABCMeta
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import is_dataclass
 from pathlib import Path
+from types import FunctionType
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeAlias
 
 from bench.errors import InputError
 from bench.files import write_text
-from bench.names import OF_FRAMES, instead, same_as, with_known_arguments
+from bench.names import OF_FRAMES, instead, meant, mistake, same_as, with_known_arguments
 
 if TYPE_CHECKING:
     import numpy as np
@@ -64,10 +66,80 @@ class Renderer(Protocol):
         ...
 
 
+class ByKey(dict[str, Any]):
+    """A dictionary whose error for a key that is not there names those that are."""
+
+    def __missing__(self, key: str) -> Any:  # noqa: ANN401 - a value of it
+        return meant(key, self)
+
+
+class LabelledTuple(tuple[Any, ...]):
+    """Parts of a result in their order, each by its place or its label."""
+
+    def __getitem__(self, which: Any) -> Any:  # noqa: ANN401 - a part, or several
+        return _labelled(self, which) if isinstance(which, str) else super().__getitem__(which)
+
+
+class LabelledList(list[Any]):
+    """The same as a list."""
+
+    def __getitem__(self, which: Any) -> Any:  # noqa: ANN401 - a part, or several
+        return _labelled(self, which) if isinstance(which, str) else super().__getitem__(which)
+
+
+def _labelled(parts: Iterable[Any], label: str) -> Any:  # noqa: ANN401 - one of them
+    return meant(label, {_label(one): one for one in parts})
+
+
+def _label(part: object) -> str:
+    """What names a part of a result among others; empty of one that has no name."""
+    labels = (getattr(part, of, None) for of in ("name", "coordinate", "effect") if is_dataclass(part))
+    named = (each if isinstance(each, str) else getattr(each, "name", "") for each in labels)
+    return next(filter(None, named), "")
+
+
+def _by_name(value: object) -> object:
+    """A dictionary, or parts with labels, whose entries are found by name."""
+    match value:
+        case dict() if type(value) is dict:
+            return ByKey(value)
+        case tuple() if type(value) is tuple and any(map(_label, value)):
+            return LabelledTuple(value)
+        case list() if type(value) is list and any(map(_label, value)):
+            return LabelledList(value)
+    return value
+
+
 class Constructed(ABCMeta):
-    """Of classes whose constructors are found under names that other libraries have for them."""
+    """Of classes whose constructors are found under names that other libraries have for them.
+
+    A call of a method or of the class with wrong arguments is one line with those that are allowed.
+    """
 
     if not TYPE_CHECKING:
+
+        def __init__(cls, name: str, bases: tuple[type, ...], space: dict[str, Any], **options: object) -> None:
+            super().__init__(name, bases, space, **options)
+            for each, of in space.items():
+                if each[0] != "_" and isinstance(of, FunctionType):
+                    setattr(cls, each, with_known_arguments(of))
+                elif each[0] != "_" and isinstance(of, classmethod):
+                    setattr(cls, each, classmethod(with_known_arguments(of.__func__)))
+
+        def __call__(cls, *args: object, **given: object) -> object:
+            """An instance, whose parts are found by name."""
+            try:
+                made = super().__call__(*args, **given)
+            except (AttributeError, TypeError, ValueError) as error:
+                said = mistake(cls.__init__, (None, *args), given)
+                if said is None:
+                    raise
+                raise TypeError(said) from error
+            if is_dataclass(made):
+                for name, value in [*vars(made).items()]:
+                    if (named := _by_name(value)) is not value:
+                        object.__setattr__(made, name, named)
+            return made
 
         def __getattr__(cls, name: str) -> object:
             if name.startswith("_"):
@@ -82,6 +154,9 @@ class Constructed(ABCMeta):
 
 class ByName(metaclass=Constructed):
     """What `[name]` gives is an attribute, too, as is what other libraries call its attributes."""
+
+    def __getitem__(self, name: str) -> Any:  # noqa: ANN401 - an attribute
+        return meant(name, {each: of for each, of in vars(self).items() if each[0] != "_"})
 
     if not TYPE_CHECKING:  # a checker of types shall find attributes that are mistyped
 
@@ -110,7 +185,6 @@ class Shown(ByName):
 
     renderer: ClassVar[staticmethod[[], Renderer]]
 
-    @with_known_arguments
     def plot(self, *names: str, ax: Axes | None = None, figsize: Size | None = None) -> Any:  # noqa: ANN401
         """Draw it, and return the axes of matplotlib: one, or an array of several.
 

@@ -197,6 +197,11 @@ np.allclose(trace.resample(200)["velocity"], trace[::5]["velocity"])
 found.effects["cogging_torque"] is found.effects[0] is found["cogging_torque"] and found.effects[:1] == [*found]
 float(found["inertia"]) == float(found.moment_of_inertia) == found.parameters["moment_of_inertia"].value
 found.gap["torque"] is found.torque and found.report() == found.summary()
+found.considered["cogging_torque"].accepted and found.considered["backlash"].probability < 0.01
+found.steps["cogging_torque"] is found.steps[1] and found.time_series["recording"] is found.time_series[0]
+est.parameters["inertia"] is est.inertia and chk.comparisons["inertia"].result == "same"
+found.where["position"].after is found.where[[one.coordinate for one in found.where].index("position")].after
+trace.plot(["velocity", "current"]).size == 2 and found.gap["torque"].identify == found.torque.identify
 found.plot("where").size >= 3 and "position" in found.plot("position").get_xlabel()
 rep.residual.size == rep.time.size and np.isclose(rep.rmse["torque"], np.sqrt(np.nanmean(rep.residuals**2)))
 bench.Rig(**rig.to_dict()).motor == rig.motor and bench.Rig(motor={"force_constant": 2.0}).kind == "linear"
@@ -273,6 +278,38 @@ ABSENT = {
     "trace.iloc[:100]": r"Trace has no 'iloc'; instead: \[first:last\]",
     "rig.to_toml('r.toml')": r"Rig has no 'to_toml'; instead: \.to_dict\(\)",
     "bench.plot_forest([est, est])": r"instead: bench\.check\(recording, rig, baseline\)\.plot\(\)",
+    "found.report('x')": r"^summary\(\): too many positional arguments; allowed: no argument$",
+    "found.report(format='html')": r"^summary\(\) has no argument 'format'; allowed: no argument$",
+    "found.plot(kind='bar')": r"^plot\(\) has no argument 'kind'; allowed: names, ax, figsize",
+    "est.plot(ax=3)": r"^plot\(\): ax: found 3; allowed: axes of matplotlib",
+    "est.plot(figsize=3)": r"^plot\(\): figsize: found 3; allowed: width and height in inch.* or None",
+    "est[0]": r"found 0; allowed: one of moment_of_inertia",
+    "est[['inertia', 'J']]": r"found \['inertia', 'J'\]; allowed: one of moment_of_inertia",
+    "est.parameters['mas']": r"mas: found none; allowed: moment_of_inertia",
+    "found.parameters['x']": r"x: found none; allowed: moment_of_inertia",
+    "found.considered['x']": r"x: found none; allowed: cogging_torque, ",
+    "found.gap['speed']": r"speed: found none; allowed: torque, velocity",
+    "est.inertia > '1'": r"^greater of a parameter: found '1'; allowed: numbers and arrays in kg\*m\*\*2",
+    "est.inertia + None": r"^add of a parameter: found None; allowed: numbers",
+    "est.save()": r"^save\(\): missing a required argument: 'path'; allowed: path",
+    "est.save(3)": r"^save\(\): path: found 3; allowed: a text or a path",
+    "est.to_json(indent=2)": r"^to_json\(\) has no argument 'indent'; allowed: path",
+    "est.to_dict(orient='records')": r"^to_dict\(\) has no argument 'orient'",
+    "est.predict()": r"^predict\(\): missing a required argument: 'recording'",
+    "chk['mass']": r"mass: found none; allowed: ",
+    "rep.rmse['speed']": r"speed: found none; allowed: torque, velocity",
+    "trace[['velocity', 'current']]": r"found \['velocity', 'current'\]; allowed: one of velocity, current, pos",
+    "trace[0.5:1.0]": r"found \[0\.5:1\.0\]; allowed: whole numbers.*\.between\(start, stop\)",
+    "trace.resample('10ms')": r"^resample\(\): rate: found '10ms'; allowed: a number",
+    "trace.between(0)": r"^between\(\): missing a required argument: 'stop'; allowed: start, stop",
+    "bench.Trace(3)": r"^Trace\(\): missing a required argument: 'signals'; allowed: time, signals, ",
+    "bench.identify()": r"^identify\(\): missing a required argument: 'trace'; allowed: trace, rig",
+    "bench.load_rig(3)": r"^load_rig\(\): path: found 3; allowed: a text or a path",
+    "bench.Estimate.load(3)": r"^load\(\): path: found 3; allowed: a text or a path",
+    "bench.simulate('lab.toml', seed='x')": r"^simulate\(\): seed: found 'x'; allowed: a whole number",
+    "bench.diagnose(trace, rig, excluded=3)": r"^diagnose\(\): excluded: found 3; allowed: .*several in a list",
+    "bench.list_effects('x')": r"^list_effects\(\): too many positional arguments; allowed: no argument",
+    "bench.list_effects()['backlas']": r"found none, did you mean 'backlash'\?; allowed: ",
     "bench.load('rig.toml')": r"rig\.toml: found a TOML file; allowed: a recording; .* bench\.load_rig take a rig",
 }
 

@@ -44,7 +44,7 @@ from bench.names import meant, with_known_arguments
 from bench.packed import unpack
 from bench.parameter import Parameter
 from bench.plant.model_file import StoredModel, model_xml
-from bench.presented import Presented
+from bench.presented import ByKey, Presented
 from bench.rig.given import Given, GivenRig, Units, recordings_of, trace_of
 from bench.rig.rig import Rig
 from bench.trace.motion import measured_velocity
@@ -201,7 +201,7 @@ class Diagnosis(Presented):
     @property
     def gap(self) -> dict[str, Gap]:
         """Gaps of torque and of velocity, as the contract's JSON has them."""
-        return {"torque": self.torque, "velocity": self.velocity}
+        return ByKey(torque=self.torque, velocity=self.velocity)
 
     @property
     def residuals(self) -> Array:

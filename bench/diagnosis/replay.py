@@ -21,7 +21,7 @@ from bench.fit.stored import EVERY, Balance
 from bench.names import meant, percent, with_known_arguments
 from bench.plant.model_file import StoredModel, load_model, read_table
 from bench.plant.tracking import track
-from bench.presented import Shown
+from bench.presented import ByKey, Shown
 from bench.rig.given import Given, GivenRig, Units, rig_of, trace_of
 from bench.rig.rig import Rig
 from bench.structured import csv_text
@@ -75,7 +75,7 @@ class Replay(Shown):
     def rmse(self) -> dict[str, float]:
         """RMS of the residuals of torque and velocity - effort_unit, speed_unit; nan where none is simulated."""
         residuals = {"torque": self.torque_residuals, "velocity": self.velocity_residuals}
-        return {name: known_rms(one) if np.isfinite(one).any() else math.nan for name, one in residuals.items()}
+        return ByKey({name: known_rms(one) if np.isfinite(one).any() else math.nan for name, one in residuals.items()})
 
     @property
     def velocity_residuals(self) -> Array:

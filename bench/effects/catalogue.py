@@ -15,7 +15,9 @@ import bench.effects
 from bench.effects.effect import Effect
 from bench.effects.signals import Scope
 from bench.errors import InputError
+from bench.names import with_known_arguments
 from bench.offered import EFFECTS_GROUP, offered
+from bench.presented import ByKey
 
 
 @cache
@@ -41,9 +43,10 @@ def catalogue() -> MappingProxyType[str, Effect]:
     return MappingProxyType(found)
 
 
+@with_known_arguments
 def list_effects() -> dict[str, str]:
     """Every effect by its name, as `diagnose` takes it, and what it is."""
-    return {name: effect.summary for name, effect in sorted(catalogue().items())}
+    return ByKey({name: effect.summary for name, effect in sorted(catalogue().items())})
 
 
 def simpler_forms(effect: Effect, scope: Scope) -> list[Effect]:

@@ -36,6 +36,7 @@ from bench.errors import InputError
 from bench.export.simulations import Joints, Simulations
 from bench.plant.model_file import StoredModel, load_models
 from bench.plant.stepped_effects import Acts, Made, Remembered, SteppedEffects, per_axis
+from bench.presented import ByName
 
 #: A model or its data of another engine, whose types are known where it is installed.
 Foreign = Any
@@ -47,7 +48,7 @@ ONE_STAGE = (
 )
 
 
-class Effects:
+class Effects(ByName):
     """Non-native effects at joints of another simulation, all joints of which are one object's.
 
     Args:

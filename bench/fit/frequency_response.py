@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from bench.arrays import NORMAL95, Array
 from bench.names import with_known_arguments
 from bench.parameter import Parameter
+from bench.presented import ByName
 from bench.rig.given import Given, GivenRig, Units, recordings_of
 from bench.trace.motion import measured_velocity
 
@@ -49,7 +50,7 @@ KNOWN = 0.1
 
 
 @dataclass(frozen=True)
-class FrequencyResponse:
+class FrequencyResponse(ByName):
     """Speed over torque at the frequencies that the recording excites.
 
     Attributes:

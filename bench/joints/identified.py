@@ -26,11 +26,12 @@ from bench.jobs.each import each
 from bench.jobs.process import Failure, Limits
 from bench.joints.friction_models import FrictionModel, friction_models
 from bench.joints.weight import constant_of, counted_differently, needs_constant, require_counted, with_constant
-from bench.names import words
+from bench.names import meant, words
 from bench.parameter import Parameter
 from bench.plant.axis_model import AxisModel, AxisParameters
 from bench.plant.model_file import Mounting, StoredModel
 from bench.plant.robot import Change, Poses, Robot, Twist, joint_rig, read_along
+from bench.presented import ByKey, ByName
 from bench.rig.rig import Rig
 from bench.servos.breakaway import StaticFriction
 from bench.servos.commanded import Coefficients, Gains
@@ -117,7 +118,7 @@ class Goals:
 
 
 @dataclass(frozen=True)
-class IdentifiedJoint:
+class IdentifiedJoint(ByName):
     """The result of logs for a joint.
 
     Attributes:
@@ -155,13 +156,16 @@ class IdentifiedJoint:
     twists: Mapping[Path, Twist] = field(default_factory=dict)
     friction_models: tuple[FrictionModel, ...] = ()
 
+    def __getitem__(self, name: str) -> Parameter:
+        return meant(name, self.parameters)
+
     @property
     def parameters(self) -> dict[str, Parameter]:
         """Those that are determined, by name."""
         found = self.servo or self.diagnosis or self.estimate
         parameters = {} if found is None else found.parameters
         known = {name: parameter for name, parameter in parameters.items() if name not in self.refused}
-        return known if self.constant is None else {**known, CONSTANT: self.constant}
+        return ByKey(known if self.constant is None else {**known, CONSTANT: self.constant})
 
     @property
     def checks(self) -> tuple[Check, ...]:

@@ -53,6 +53,9 @@ class IdentifiedRobot(Shown):
     stand: bool = False
     zeros: Mapping[str, Parameter] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        return f"IdentifiedRobot({self.mjcf.name}: {len(self.answered)} of {len(self.joints)} joints are identified)"
+
     def __getitem__(self, joint: str) -> IdentifiedJoint:
         return meant(joint, self.joints)
 

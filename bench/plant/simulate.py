@@ -22,7 +22,7 @@ from bench.plant.profile_names import DEFAULT
 from bench.plant.profiles import MOST_TICKS, MotionLimits, plan
 from bench.plant.run import Progress, run
 from bench.plant.sensing import Sensors, reported_states
-from bench.presented import Shown
+from bench.presented import ByName, Shown
 from bench.rig.given import GivenRig, rig_of
 from bench.rig.rig import Rig
 from bench.structured import json_text
@@ -145,7 +145,7 @@ def _require_possible(plant: Plant) -> None:
 
 
 @dataclass(frozen=True)
-class Truth:
+class Truth(ByName):
     """What a trace was simulated from; `friction` is `mechanics`, or `drive` where the drive's software makes it."""
 
     rig: str

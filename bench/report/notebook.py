@@ -132,6 +132,9 @@ def plot(result: object, names: Sequence[str] = (), ax: Axes | None = None, figs
     Of a diagnosis `where` names the gap over all coordinates, of a check `runs` all quantities over the runs.
     """
     parts = parts_of(result)
+    names = [each for name in names for each in (name if isinstance(name, list | tuple) else [name])]
+    if ax is not None and not hasattr(ax, "transAxes"):
+        raise InputError("plot(): ax", f"found {ax!r}", "allowed: axes of matplotlib, as plt.subplots() gives them")
     if (rest := REST.get(type(result))) is not None:
         first, *others = parts
         names = [each for name in names or (first,) for each in (others if name == rest else [name])]

@@ -14,7 +14,7 @@ from bench.arrays import Array
 from bench.assets import asset
 from bench.axis_kind import LINEAR, ROTARY, AxisKind, axis_kind
 from bench.errors import InputError
-from bench.names import nearest
+from bench.names import nearest, with_known_arguments
 from bench.rig import values
 from bench.rig.motor import Motor, catalogue_motor
 from bench.rig.values import RigTable, tolerance_of
@@ -445,6 +445,7 @@ def rig_file(given: str | Path) -> Path:
     return known[str(given)]
 
 
+@with_known_arguments
 def load_rig(path: str | Path, defaults: Mapping[str, Any] | None = None) -> Rig:
     """Read and check a rig file, or a shipped one by its name.
 

@@ -157,9 +157,14 @@ class Trace(Shown):
     def __getitem__(self, name: str | slice) -> NDArray[np.float64] | Trace:
         """Values of a signal, or a part of all; InputError naming the signal that the trace does not hold."""
         if isinstance(name, slice):
+            if not all(isinstance(end, int | np.integer | None) for end in (name.start, name.stop, name.step)):
+                allowed = "allowed: whole numbers, of samples; for times: .between(start, stop)"
+                raise InputError(self.origin, f"found [{name.start}:{name.stop}]", allowed)
             base = self.time_base and replace(self.time_base, sample_period=(name.step or 1) * self.sample_period)
             signals = {key: own[name] for key, own in self.signals.items()}
             return replace(self, time=self.time[name], signals=signals, time_base=base)
+        if not isinstance(name, str):
+            raise InputError(self.origin, f"found {name!r}", f"allowed: one of {', '.join(self.signals)}, or a slice")
         if name not in self.signals:
             raise InputError(self.origin, f"contains no {name}", f"found: {', '.join(self.signals) or 'no signal'}")
         return self.signals[name]
