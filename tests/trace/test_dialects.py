@@ -87,9 +87,9 @@ def paired(shift):
     return [f"{t:.6f},{speed:.3f},{t + shift:.6f},{amps:.5f}" for t, speed, amps in zip(TIME, SPEED, AMPS, strict=True)]
 
 
-def labelled(form):
-    """Labels in every line."""
-    return [form.format(*row.split(",")) for row in lines()]
+def labelled(form, at=str):
+    """Labels in every line, the time as `at` has it."""
+    return [form.format(at(ms), *others) for ms, *others in (row.split(",") for row in lines())]
 
 
 ROWS = list(lines())
@@ -131,6 +131,14 @@ DIALECTS = {
     "X,Y,X,Y": (["X,Y,X,Y", *paired(0.0)], {"time": "X [s]", **PAIRED}),
     "labels": (labelled("t[ms]:{} speed[rpm]:{}\tiq[A]:{}"), {"time": "t", "velocity": "speed"}),
     "pairs with units": (labelled("time={} ms, w={} rpm, i={}A"), {"velocity": "w", "current": "i"}),
+    **{
+        f"labels of a log, {front}": (labelled(front + " w: {} rpm i: {} A"), {"velocity": "w", "current": "i"})
+        for front in ("[{} ms]", "{} ms INFO drive:", "I ({} ms) motor_1:", "INFO: {} ms |")
+    },
+    "labels after a clock": (
+        labelled("2026-11-29 10:00:{:06.3f} [INFO] drive - w: {} rpm i: {} A", at=lambda ms: float(ms) / 1e3),
+        {"velocity": "w", "current": "i"},
+    ),
     "two columns of a name": (
         ["time [ms],velocity [rpm],velocity [rpm],current [A]", *(row.replace(",", ",7,", 1) for row in ROWS)],
         {"velocity": "column 3 [rpm]"},

@@ -53,9 +53,15 @@ _LIST = re.compile(r"[\[(]\s*[-+\d.][-+\d.eE,;\s]*[\])]")
 _NUMBERED = re.compile(r"(?:^|_)(?:joint|motor|servo|actuator|axis|id)(?:_?(?:id|index|number|no))?$", re.IGNORECASE)
 #: `iq_lft[A]: 2.36`, `w=1,5 rad/s`: a label, a value and perhaps a unit, which no next label is.
 _PAIR = re.compile(
-    r"([^\W\d][^\s:=,;|]*(?: ?\[[^\]\s]*\])?)\s*[:=]\s*"
+    r"(?<![^\W\d])([^\W\d][^\s:=,;|]{0,100}+(?: ?\[[^\]\s]{0,30}\])?)\s*[:=]\s*"
     r"([+-]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][+-]?\d+)?|nan|NaN)(?![.\d:])"
     r"(?:\s?([^\W\d][^\s:=,;|\[]*|[%°][^\s:=,;|\[]*)(?!\s*[:=\[]|[^\s,;|]))?"
+)
+#: What a log has in front of them: words, and among these a time.
+_WORD = r"(?:[\[(<]?[^\W\d]\w*+[\])>]?[:,|>\s-]++)*+"
+_FRONT = re.compile(
+    rf"\s*+{_WORD}(?:[\[(<]?((?:\d{{4}}-\d\d-\d\d[T ])?\d+:\d\d:\d\d(?:[.,]\d+)?|\d+(?:[.,]\d+)?)\s?(s|ms|us|µs)?"
+    rf"[\])>]?[:,;|>\s-]++)?{_WORD}"
 )
 #: Blanks before a name; a unit in brackets, behind a slash or behind `in` belongs to the name before it.
 _BEFORE_A_NAME = re.compile(r"\s+(?![\[(/]|in\s)(?<!/\s)(?<!\sin\s)")
@@ -94,7 +100,7 @@ def _recognises(source: Source) -> bool:
 
 def _read(source: Source) -> Recording:
     layout, notes = _layout_of(source), ()
-    if layout is None and (labels := _labels_in(source.head.splitlines())):
+    if labels := _labels_in(source.head.splitlines()):
         source, notes = _unlabelled(source, labels)
         layout = _layout_of(source)
     if layout is None:
@@ -143,11 +149,18 @@ def _labels_in(lines: list[str]) -> tuple[str, ...]:
 
 
 def _pairs_of(line: str) -> list[tuple[str, str]]:
-    """Labels, with the unit behind the value where that has one, and values of a line that consists of them."""
+    """Labels, with the unit behind the value where that has one, and values of a line that consists of them; in front
+    of them may be words, and a time."""
     pairs = list(_PAIR.finditer(line))
-    if len(pairs) < 2 or _PAIR.sub("", line).strip(" \t\r,;|&{}"):
+    if len(pairs) < 2 or _PAIR.sub("", line[pairs[0].start() :]).strip(" \t\r,;|&{}"):
         return []
-    return [(f"{one[1]} [{one[3]}]" if one[3] and "[" not in one[1] else one[1], one[2]) for one in pairs]
+    front = _FRONT.fullmatch(line[: pairs[0].start()].strip(" \t\r,;|&{") + " ")
+    if front is None:
+        return []
+    found = [(f"{one[1]} [{one[3]}]" if one[3] and "[" not in one[1] else one[1], one[2]) for one in pairs]
+    if front[1] and all(signal_of(split_label(label)[0]) != "time" for label, _ in found):
+        found.insert(0, (f"time [{front[2]}]" if front[2] else "time", front[1]))
+    return found
 
 
 def _unlabelled(source: Source, labels: Sequence[str]) -> tuple[Source, tuple[str, ...]]:
