@@ -50,8 +50,10 @@ def added(
             "viscous_friction_coefficient": parameter(0.08, 0.001),
             "coulomb_friction_torque": parameter(*friction),
         },
-        recordings=SimpleNamespace(rig=RIG, trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5))),
-        suspects=SimpleNamespace(policy=Policy(), stopped=stopped, withheld=withheld),
+        recordings=SimpleNamespace(
+            rig=RIG, trace=SimpleNamespace(time=np.linspace(0.0, seconds, 5)), detected=("event",) * withheld
+        ),
+        suspects=SimpleNamespace(policy=Policy(), stopped=stopped, detected=()),
         refused=refused or {},
         recorded=[SimpleNamespace(name="recording"), SimpleNamespace(name="holdout")],
         extension=SimpleNamespace(fitted=fitted),
