@@ -101,7 +101,7 @@ def _planned(name: str, motion: References, trace: Trace, rig: Rig, effect: Effe
     tried = candidates(bare, [effect])
     if not tried:
         return PlannedMotion(name, motion, {}, "the motion cannot show it")
-    fitted = shaped(bare, Hypothesis().plus(tried[0].term), 0)
+    fitted = shaped(bare, Hypothesis().plus(tried[0][0]), 0)
     known = (*effect.quantities, *effect.derived, *(shape.quantity for shape in effect.shapes))
     own = {quantity.name: kind.unit(quantity) for quantity in reversed(known)}
     return PlannedMotion(name, motion, uncertain(fitted).quantities(0, lambda _, key: own[key]))

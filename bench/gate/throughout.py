@@ -70,11 +70,15 @@ def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> tuple[str, str] | N
     turned = np.add.reduceat(demands[1] * effort, edges[:-1]) < 0.0
     asked = np.add.reduceat(demands**2, edges[:-1], axis=1) / sizes
     demanding = asked > DEMANDED**2 * np.mean(demands**2, axis=1, keepdims=True)
-    quiet, scaled = _rescaled(demands[0], effort, edges)
+    rescaled = _rescaled(demands[0], effort, edges)
+    right = np.stack([~rescaled.any(axis=0), ~turned])
+    # a balance of blocks at rest does not determine what motion takes
+    known = asked < SCALED**2 * asked.max(axis=1, initial=0.0, where=right, keepdims=True)
+    quiet, scaled = rescaled & known[0]
     faults = (
         (quiet, 0.0, f"{name} is nearly zero while the motion takes effort", "the signal dropped out"),
         (scaled, 0.0, f"{name} has another scale", "a unit changed"),
-        (turned & demanding[1], -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
+        (turned & known[1] & demanding[1], -1.0, f"the sign of {name} is turned", "a mode of the drive turned it"),
     )
     least, plain = 1.0 - EXPLAINED, _left(fitted, np.ones(effort.size))
     for wrong, factor, found, why in faults:
@@ -92,16 +96,17 @@ def _in_blocks(fitted: Balanced, name: str, trace: Trace) -> tuple[str, str] | N
     return likeliest
 
 
-def _rescaled(demand: Array, effort: Array, edges: NDArray[np.intp]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Blocks whose effort is nearly zero, and whose effort and its changes follow the demand by another scale than
-    most."""
+def _rescaled(demand: Array, effort: Array, edges: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Blocks (2, blocks) whose effort is nearly zero, and whose effort and its changes follow the demand by another
+    scale than most."""
     products = np.stack([demand, effort, demand * demand, effort * effort, demand * effort])
     mean_asked, mean, asked, had, both = np.add.reduceat(products, edges[:-1], axis=1) / np.diff(edges)
     asks, has, vary = asked - mean_asked**2, had - mean**2, both - mean_asked * mean
     alike = np.abs(vary) > ALIKE * np.sqrt(np.maximum(asks * has, 0.0))
     scales = np.log(np.abs([both / np.maximum(asked, 1e-300), vary / np.maximum(asks, 1e-300)]) + 1e-300)
     off = scales - np.median(scales, axis=1, keepdims=True)
-    return had < QUIET**2 * asked, alike & (np.abs(off).min(axis=0) > np.log(SCALED)) & (off[0] * off[1] > 0.0)
+    other = alike & (np.abs(off).min(axis=0) > np.log(SCALED)) & (off[0] * off[1] > 0.0)
+    return np.stack([had < QUIET**2 * asked, other])
 
 
 def _of_most(basis: Array, along: Array, power: Array, edges: NDArray[np.intp]) -> Array:

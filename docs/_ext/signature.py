@@ -89,7 +89,7 @@ def signature(effect: Effect) -> Signature:
     detected = frozenset(name for name in NAMES if effect.detect(affected[name], rig(), width[name]) is not None)
     main = bare[DEFAULT]
     tried = candidates(main, [*catalogue().values(), *RIVALS])
-    shares = {one.term.effect: one.gain / main.squares for one in tried}
+    shares = {term.effect: gain / main.squares for term, gain in tried}
     return Signature(present, text, affected[DEFAULT], recorded(DEFAULT), main, motions, detected, shares)
 
 

@@ -121,8 +121,10 @@ def files(tmp_path_factory):
 
 
 @pytest.mark.parametrize("command", CASES)
-def test_what_a_message_advises_gets_further(command, files, tmp_path, monkeypatch):
+def test_what_a_message_advises_gets_further(command, files, tmp_path, monkeypatch, request):
     monkeypatch.chdir(tmp_path)
+    if "--deadline" in command:  # which ends a process
+        request.getfixturevalue("worker_processes")
     shutil.copytree(files, tmp_path, dirs_exist_ok=True)
     said = run(command)
     PRINTED[command] = said.text

@@ -12,9 +12,8 @@ from tests.docs.pages import PAGES, run_commands
 
 
 def brief(line):
-    """One recording of what no test reads, and a motion of 2 s in place of 7."""
-    line = line.replace("--rigs 4 --rig my.toml", "--rigs 1 --rig my.toml")
-    return line.replace("--profile identification", "--profile fast_reversals")
+    """One recording of what no test reads."""
+    return line.replace("--rigs 4 --rig my.toml", "--rigs 1 --rig my.toml")
 
 
 @pytest.fixture(scope="module")
