@@ -90,10 +90,10 @@ class Difference:
     degrees: float = math.inf
 
     @classmethod
-    def of(cls, baseline: Measured, now: Measured, between: float, beside: float = 0.0) -> Difference:
+    def of(cls, baseline: Measured, now: Measured, between: float, known: float = 0.0) -> Difference:
         """Difference of a quantity in both states, with the variance above.
 
-        `between`: stated standard deviation between recordings - unit; `beside`: the same for a known difference of the
+        `between`: stated standard deviation between recordings - unit; `known`: that of a known difference of the
         states, such as their motion - unit.
         """
         parts = [(now.std_error**2 / now.recordings, now.degrees)]
@@ -106,7 +106,7 @@ class Difference:
             shown = math.sqrt(max(0.0, (baseline.spread or 0.0) ** 2 - baseline.std_error**2))
             parts += [(baseline.std_error**2 / baseline.recordings, baseline.degrees)]
             parts += [(max(between, shown) ** 2 * shares, math.inf)]
-        parts += [(2.0 * beside**2, math.inf)]
+        parts += [(2.0 * known**2, math.inf)]
         variance = sum(part for part, _ in parts)
         shakiness = sum(part**2 / degrees for part, degrees in parts)
         degrees = variance**2 / shakiness if shakiness > 0.0 else math.inf

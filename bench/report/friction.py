@@ -108,7 +108,7 @@ def _answers(found: FrictionMap) -> dict[str, str]:
         chance = f"{words(found.best.name)} is best, {chance}"
     elif found.name is None:
         chance = "physics allows no effect here"
-    sure = f"{sentence(chance)}; named below {CHANCE:g}."
+    sure = f"{sentence(chance)}; an effect is named below {CHANCE:g}."
     if found.offset is None:
         sure += " A constant offset is counted in the effect: such recordings do not distinguish them."
     before, after = found.unexplained

@@ -72,7 +72,7 @@ def test_few_recordings_add_their_own_errors_and_the_stated_spread():
     assert shown.std_error == pytest.approx(math.sqrt(own + 0.16 * shares))
     assert Difference.of(replace(baseline, spread=None), now, 0.0).std_error == pytest.approx(math.sqrt(own))
     assert math.isinf(stated.degrees)
-    known = Difference.of(Measured(1.0, "", 0.3), Measured(1.0, "", 0.4), between=0.0, beside=2.0)
+    known = Difference.of(Measured(1.0, "", 0.3), Measured(1.0, "", 0.4), between=0.0, known=2.0)
     assert known.std_error == pytest.approx(math.sqrt(0.09 + 0.16 + 2.0 * 4.0))
 
 
